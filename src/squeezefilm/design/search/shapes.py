@@ -26,8 +26,10 @@ from squeezefilm.design.search.stock import (
     Room,
     Shape,
     Sheet,  # noqa: F401
+    as_drawn,
     ceramic_named,
     counts,
+    cut_to_step,
     substrate_named,
 )
 from squeezefilm.physics.plate.layout import (
@@ -104,28 +106,29 @@ class Strips(Shape):
         else:
             length = float(values["length"])
             full = (length + self.gap) / count - self.gap
-            cover = float(values["cover"])
-            # Cut to a tenth of a millimetre, but for pieces that fill their pitch.
-            piece = full if cover == 1 else round(full * cover / CUT) * CUT
+            piece = _cut_within(full, float(values["cover"]))
+            # An odd number has one in the middle, which lies on a step only so.
+            if count % 2 and cut_to_step((length - piece) / 2) != as_drawn((length - piece) / 2):
+                piece = cut_to_step(piece - CUT)
         pitch = (length + self.gap) / count
         if not _LEAST_PIECE - 1e-9 <= piece <= pitch - self.gap + 1e-9:
             raise GeometryError(
                 f"{count} ceramics on {1e3 * length:.4g} mm are {1e3 * piece:.3g} mm long, and at "
                 f"least {1e3 * _LEAST_PIECE:g} mm and a gap of {1e3 * self.gap:.3g} mm are needed"
             )
-        # Pieces that fill their pitch may be longer than it by a rounding error.
-        inset = max(0.0, (pitch - self.gap - piece) / 2)
+        # Those that fill the plate begin at its edge, though they are cut to a step.
+        inset = 0.0 if values.get("cover") == 1 else max(0.0, (pitch - self.gap - piece) / 2)
         thickness = float(values["ceramic_thickness"])
         below = [
             CeramicPatch(
-                x=number_of * pitch + inset,
+                x=x,
                 y=0.0,
                 length=piece,
                 width=width,
                 thickness=thickness,
-                polarity=1 if number_of % 2 == 0 else -1,
+                polarity=1 if number % 2 == 0 else -1,
             )
-            for number_of in range(count)
+            for number, x in enumerate(_places(count, piece, length, inset))
         ]
         above = [
             CeramicPatch(
@@ -151,6 +154,22 @@ class Strips(Shape):
             patches=(*below, *above),
             glue=self.glue,
         )
+
+
+def _cut_within(full: si.Metre, cover: si.Dimensionless) -> si.Metre:
+    """The length of a piece that covers a share of the room of a full one: cut to a step, and no
+    longer than that."""
+    piece = cut_to_step(full * cover)
+    return piece if piece <= full + 1e-9 else cut_to_step(piece - CUT)
+
+
+def _places(count: int, piece: si.Metre, length: si.Metre, inset: si.Metre) -> list[si.Metre]:
+    """Where pieces begin along a length (m), evenly from an inset to its mirror image: on a step,
+    and the second half as the first seen from the other end."""
+    spacing = (length - piece - 2 * inset) / (count - 1) if count > 1 else 0.0
+    first = [cut_to_step(inset + number * spacing) for number in range(count // 2)]
+    middle = [as_drawn((length - piece) / 2)] * (count % 2)
+    return [*first, *middle, *(as_drawn(length - piece - x) for x in reversed(first))]
 
 
 @si.checked_numbers
@@ -197,7 +216,9 @@ class EdgeStrips(Shape):
         even = lines % 2 == 0
         patches = (
             CeramicPatch(0.0, 0.0, length, strip, thickness),
-            CeramicPatch(0.0, width - strip, length, strip, thickness, polarity=1 if even else -1),
+            CeramicPatch(
+                0.0, as_drawn(width - strip), length, strip, thickness, polarity=1 if even else -1
+            ),
         )
         return RectangularPlate(
             length=length,
@@ -219,9 +240,9 @@ def _rim(gasket: Gasket, length: si.Metre, width: si.Metre) -> tuple[FoamSupport
     w = gasket.width
     places = (
         (0.0, 0.0, length, w),
-        (0.0, width - w, length, w),
-        (0.0, w, w, width - 2 * w),
-        (length - w, w, w, width - 2 * w),
+        (0.0, as_drawn(width - w), length, w),
+        (0.0, w, w, as_drawn(width - 2 * w)),
+        (as_drawn(length - w), w, w, as_drawn(width - 2 * w)),
     )
     foam = gasket.thickness, gasket.young_modulus, gasket.quality_factor
     return tuple(FoamSupport(*place, *foam, face="top") for place in places)
@@ -263,7 +284,7 @@ class Disc(Shape):
             ceramic=ceramic_named(str(values["ceramic"]), own),
             ceramic_outer_diameter=float(values["ceramic_diameter"])
             if "ceramic_diameter" in values
-            else round(diameter * float(values["cover"]) / CUT) * CUT,
+            else cut_to_step(diameter * float(values["cover"])),
             ceramic_thickness=float(values["ceramic_thickness"]),
             nodal_circles=int(values["nodal_circles"]),
             glue=self.glue,
@@ -297,7 +318,7 @@ class Ring(Shape):
         return (
             *self.stock(),
             counts("nodal_diameters", self.least_diameters, self.most_diameters),
-            number("mean_diameter", around / math.pi, longest / math.pi, "m"),
+            number("mean_diameter", *_mean_diameters(around, longest), "m"),
             number("radial_width", track, widest, "m"),
         )
 
@@ -310,20 +331,28 @@ class Ring(Shape):
             )
         m = int(values["nodal_diameters"])
         return DiscPlate(
-            diameter=mean + track,
+            diameter=as_drawn(mean + track),
             thickness=float(values["thickness"]),
             quality_factor=quality,
             substrate=substrate_named(str(values["substrate"]), own),
             ceramic=ceramic_named(str(values["ceramic"]), own),
-            ceramic_outer_diameter=mean + track,
+            ceramic_outer_diameter=as_drawn(mean + track),
             ceramic_thickness=float(values["ceramic_thickness"]),
-            inner_diameter=mean - track,
-            ceramic_inner_diameter=mean - track,
+            inner_diameter=as_drawn(mean - track),
+            ceramic_inner_diameter=as_drawn(mean - track),
             nodal_circles=0,
             nodal_diameters=m,
             sectors=2 * m,
             glue=self.glue,
         )
+
+
+def _mean_diameters(around: si.Metre, longest: si.Metre) -> tuple[si.Metre, si.Metre]:
+    """The least and the most mean diameter (m) of rings whose circumference lies between two, on a
+    step where there is one between them."""
+    least, most = around / math.pi, longest / math.pi
+    low, high = (step_ * CUT for step_ in (math.ceil(least / CUT), math.floor(most / CUT)))
+    return (as_drawn(low), as_drawn(high)) if low <= high else (least, most)
 
 
 AnyShape = Strips | EdgeStrips | Disc | Ring

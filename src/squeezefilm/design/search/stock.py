@@ -107,8 +107,19 @@ def require_known(name: str, kind: Kind) -> None:
 
 Body = RectangularPlate | DiscPlate
 
-CUT: si.Metre = 1e-4
-"""Ceramics are cut to whole multiples of this."""
+CUT: si.Metre = 5e-5
+"""Ceramics are cut and placed to whole multiples of this."""
+_CUTS_PER_METRE = 20_000
+
+
+def cut_to_step(length: si.Metre) -> si.Metre:
+    """The whole multiple of `CUT` that is nearest to a length (m)."""
+    return round(length * _CUTS_PER_METRE) / _CUTS_PER_METRE
+
+
+def as_drawn(length: si.Metre) -> si.Metre:
+    """A length (m) that follows from others, without the last digits of their difference."""
+    return round(length, 9)
 
 
 @dataclass(frozen=True)

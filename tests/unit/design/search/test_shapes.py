@@ -26,6 +26,23 @@ def test_strips_are_one_fewer_than_the_lines_and_fill_the_plate() -> None:
         assert signs == [(-1) ** k for k in range(len(signs))]
 
 
+def test_every_length_is_a_whole_number_of_steps_and_the_plate_is_its_own_mirror_image() -> None:
+    """As a workshop reads it: no 15.237500000000001 mm, in whatever file it is written."""
+    wanted = requirements(**{"most_lines = 9": "most_lines = 9\nleast_cover = 0.5"})
+    for one in (wanted, load_requirements("touchpad-glass")):
+        for plate in drawn(one, 0):
+            assert isinstance(plate, RectangularPlate)
+            for patch in plate.patches:
+                for length in (patch.x, patch.y, patch.length, patch.width):
+                    assert length == round(length * 20_000) / 20_000
+            begins = sorted(patch.x for patch in plate.patches)
+            ends = sorted(plate.length - patch.x - patch.length for patch in plate.patches)
+            assert begins == pytest.approx(ends, abs=1e-12)
+            in_row = [patch for patch in plate.patches if patch.y == 0]
+            for before, after in itertools.pairwise(in_row):
+                assert after.x - before.x - before.length > 1e-3 - 5.1e-5
+
+
 def test_the_papers_own_plate_is_in_its_space() -> None:
     wanted, paper = load_requirements("biet2008-plate"), load_display("biet2008-plate").actuator
     values = {
