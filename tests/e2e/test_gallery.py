@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.design.textures.report import gallery as texture_gallery
+import gallery as texture_gallery
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ from tests.unit.design.search.made_up import requirements
 from tests.unit.design.search.report.made_search import made_search
 
 from squeezefilm.core.errors import GeometryError
-from squeezefilm.design.search import reference
+from squeezefilm.design.search import candidate
 from squeezefilm.design.search.candidate import reference_of
 from squeezefilm.design.search.requirements import load_requirements
 from squeezefilm.physics.chain.prediction import Prediction, predict
@@ -41,13 +41,13 @@ def test_a_reference_that_cannot_be_judged_says_why_and_nothing_beats_it(
     def refused(*_: object, **__: object) -> Prediction:
         raise GeometryError("too thin to be solved")
 
-    monkeypatch.setattr(reference, "predict", refused)
+    monkeypatch.setattr(candidate, "predict", refused)
     found = reference_of(wanted)
     assert (found.reason, found.numbers) == ("too thin to be solved", {})
     monkeypatch.undo()
     screened = predict("biet2008-plate", theory="timoshenko")
     screened = replace(screened, objections=("not solved: too large",))
-    monkeypatch.setattr(reference, "predict", lambda *_, **__: screened)
+    monkeypatch.setattr(candidate, "predict", lambda *_, **__: screened)
     assert reference_of(wanted).reason == "not solved: too large"
     plates = made_search()
     assert plates.beats_reference

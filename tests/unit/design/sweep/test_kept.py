@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.sweep import kept
+from squeezefilm.design.sweep import points
 from squeezefilm.design.sweep.points import FILE, Answer, Kept, Point, address
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.uncertainty.parameters import with_values
@@ -35,7 +35,7 @@ def test_an_address_is_of_all_that_the_answer_depends_on_and_nothing_else(
     known: dict[object, object] = {}
     assert own == address(POINT, known)
     assert own == address(POINT, known)
-    monkeypatch.setattr(kept, "computed_by", lambda: "another code")
+    monkeypatch.setattr(points, "computed_by", lambda: "another code")
     assert address(POINT) != own
 
 

@@ -14,12 +14,8 @@ from squeezefilm.design.fabrication.report.sheet_parts import (
     NUMBER,
     VIEWS,
     Sheet,
-    notes,
-    origin_rows,
+    finished,
     scale_for,
-    scale_said,
-    table,
-    title_block,
     tolerance_said,
 )
 from squeezefilm.design.fabrication.wiring import ANTIPHASE, Electrode
@@ -53,18 +49,8 @@ def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     whole = _dimensions(sheet, made, plate, sign)
     low = top - size_y - 34.0
     extra = section_view(sheet, made, made.parts, _MIDDLE, low, _keys_of_thickness(plate))
-    rows = [
-        ("Scale, sheet", f"{scale_said(scale)}, A3; lengths in mm"),
-        ("Substrate", plate.substrate.name),
-        ("Ceramic", plate.ceramic.name),
-        ("Glue", "none" if plate.glue is None else f"{millimetres(plate.glue.thickness)} mm"),
-        ("Mass", f"{1e3 * made.mass:.4g} g, assembled"),
-        *origin_rows(made.display),
-    ]
-    block = title_block(sheet, made.display.title, made.display.name, rows)
-    y = table(sheet, HEAD, electrode_rows(made.electrodes), VIEWS[3], block + 110.0)
-    notes(sheet, [*_said(plate, face, whole), *extra, *common], y - 3.0)
-    return sheet.drawing()
+    said = [*_said(plate, face, whole), *extra, *common]
+    return finished(sheet, made, HEAD, electrode_rows(made.electrodes), said)
 
 
 def electrode_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:

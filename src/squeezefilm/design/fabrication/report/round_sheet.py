@@ -14,12 +14,8 @@ from squeezefilm.design.fabrication.report.sheet_parts import (
     NUMBER,
     VIEWS,
     Sheet,
-    notes,
-    origin_rows,
+    finished,
     scale_for,
-    scale_said,
-    table,
-    title_block,
     tolerance_said,
 )
 from squeezefilm.design.fabrication.wiring import Electrode
@@ -63,16 +59,8 @@ def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     shown = [one for one in made.parts if one not in teeth[1:]]
     low = sheet.origin[1] - reach - 16.0 - 7.0 * len(lines)
     extra = section_view(sheet, made, shown, _MIDDLE, low, _keys_of_thickness(actuator))
-    rows = [
-        ("Scale, sheet", f"{scale_said(scale)}, A3; lengths in mm"),
-        *_materials(made.parts),
-        ("Mass", f"{1e3 * made.mass:.4g} g, assembled"),
-        *origin_rows(made.display),
-    ]
-    block = title_block(sheet, made.display.title, made.display.name, rows)
-    y = table(sheet, HEAD, sector_rows(made.electrodes), VIEWS[3], block + 110.0)
-    notes(sheet, [*_said(made), *extra, *common], y - 3.0)
-    return sheet.drawing()
+    said = [*_said(made), *extra, *common]
+    return finished(sheet, made, HEAD, sector_rows(made.electrodes), said)
 
 
 def sector_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
@@ -186,13 +174,6 @@ def _keys_of_thickness(actuator: DiscPlate | AnnularStator) -> dict[int, str]:
         1: "actuator.ceramic_thickness",
         -1: "actuator.glue.thickness",
     }
-
-
-def _materials(parts: Sequence[Part]) -> Iterable[tuple[str, str]]:
-    for kind, said in (("substrate", "Substrate"), ("ceramic", "Ceramic")):
-        yield said, next(one.material for one in parts if one.kind == kind)
-    glue = [one for one in parts if one.kind == "glue"]
-    yield "Glue", f"{millimetres(glue[0].thickness)} mm" if glue else "none"
 
 
 def _said(made: Fabrication) -> Iterable[str]:

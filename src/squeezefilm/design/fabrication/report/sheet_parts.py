@@ -6,6 +6,7 @@ import math
 import textwrap
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.distributions import Normal
@@ -26,6 +27,9 @@ from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.results import stamp
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.parameters import value_at
+
+if TYPE_CHECKING:
+    from squeezefilm.design.fabrication.fabricate import Fabrication
 
 LAYERS = {
     "FRAME": Layer(7, width=0.35e-3),
@@ -68,12 +72,6 @@ def scale_for(width: si.Metre, height: si.Metre, room: tuple[float, float]) -> s
         if 1e3 * scale * width <= room[0] and 1e3 * scale * height <= room[1]:
             return scale
     return min(room[0] / (1e3 * width), room[1] / (1e3 * height))
-
-
-@si.checked_numbers
-def scale_said(scale: si.Dimensionless) -> str:
-    """2:1, 1:5."""
-    return f"{scale:g}:1" if scale >= 1 else f"1:{1 / scale:.6g}"
 
 
 @dataclass
@@ -344,14 +342,36 @@ def title_block(sheet: Sheet, title: str, name: str, rows: Sequence[tuple[str, s
     return top
 
 
-def origin_rows(display: Display) -> list[tuple[str, str]]:
-    """Which description the sheet is of, and when it was drawn by what."""
-    made = stamp(display)
-    return [
-        ("SHA-256", str(made["config_sha256"])[:32] + " …"),
-        ("Drawn by", f"squeezefilm {made['squeezefilm_version']}"),
-        ("Date (UTC)", str(made["created_utc"])[:10]),
-    ]
+def finished(
+    sheet: Sheet,
+    made: Fabrication,
+    head: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    texts: Iterable[str],
+) -> Drawing:
+    """The drawing of a sheet that has its views: with title block, table of electrodes, notes."""
+    origin, scale = stamp(made.display), sheet.scale
+    materials = {part.kind: part.material for part in reversed(made.parts)}
+    glue = next((millimetres(part.thickness) for part in made.parts if part.kind == "glue"), None)
+    ratio = f"{scale:g}:1" if scale >= 1 else f"1:{1 / scale:.6g}"
+    block = title_block(
+        sheet,
+        made.display.title,
+        made.display.name,
+        [
+            ("Scale, sheet", f"{ratio}, A3; lengths in mm"),
+            ("Substrate", materials["substrate"]),
+            ("Ceramic", materials["ceramic"]),
+            ("Glue", "none" if glue is None else f"{glue} mm"),
+            ("Mass", f"{1e3 * made.mass:.4g} g, assembled"),
+            ("SHA-256", str(origin["config_sha256"])[:32] + " …"),
+            ("Drawn by", f"squeezefilm {origin['squeezefilm_version']}"),
+            ("Date (UTC)", str(origin["created_utc"])[:10]),
+        ],
+    )
+    y = table(sheet, head, rows, VIEWS[3], block + 110.0)
+    notes(sheet, texts, y - 3.0)
+    return sheet.drawing()
 
 
 def tolerance_said(display: Display, path: str) -> str:

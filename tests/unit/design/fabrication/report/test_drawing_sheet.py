@@ -29,7 +29,6 @@ from squeezefilm.design.fabrication.report.sheet_parts import (
     PAPER,
     Sheet,
     scale_for,
-    scale_said,
     table,
     tolerance_said,
 )
@@ -256,8 +255,8 @@ def test_the_cut_meets_as_many_ceramics_as_can_be(preset: Preset) -> None:
 
 
 def test_scales_are_usual_ones() -> None:
-    said = [scale_said(scale_for(one, one, (100.0, 100.0))) for one in (5e-3, 0.06, 0.3)]
-    assert said == ["20:1", "1:1", "1:5"]
+    scales = [scale_for(one, one, (100.0, 100.0)) for one in (5e-3, 0.06, 0.3)]
+    assert scales == [20.0, 1.0, 0.2]
     assert scale_for(90.0, 90.0, (100.0, 100.0)) == pytest.approx(100 / 90e3)
     assert scale_for(0.083, 0.049, (172.0, 150.0)) == 2.0
 
