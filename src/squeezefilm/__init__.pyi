@@ -42,9 +42,8 @@ if TYPE_CHECKING:
     from squeezefilm.design.plate.command import PlateAnalysis
     from squeezefilm.design.plate.modes import ModeList
     from squeezefilm.design.plate.ring import RingAnalysis
-    from squeezefilm.design.search.found import DesignSearch
+    from squeezefilm.design.search.found import DesignSearch, Glimpse
     from squeezefilm.design.search.requirements import NamedRequirements
-    from squeezefilm.design.search.run import Glimpse
     from squeezefilm.design.sweep.swept import Sweep
     from squeezefilm.instruments.bench.play import PlayResult
     from squeezefilm.instruments.session.play.plan import PlayView
