@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -116,6 +117,29 @@ def _part(variable: Number | Step | Choice, settings: Mapping[str, float | int |
     at = min(int((float(value) - variable.low) / width), _PARTS - 1)
     ends = (si.format_quantity(variable.low + k * width, variable.unit, 3) for k in (at, at + 1))
     return f"{name} {' to '.join(ends)}"
+
+
+def nearest_of(screened: Sequence[Evaluated]) -> Evaluated | None:
+    """The design that can be built whose worst breach is the smallest; None where none can be."""
+    built = [design for design in screened if not design.reason]
+    return min(
+        built, key=lambda design: max((b.excess for b in design.broken), default=0.0), default=None
+    )
+
+
+def conflict_of(screened: Sequence[Evaluated]) -> tuple[str, str, si.Dimensionless] | None:
+    """The two limits (keys of criteria) that screened designs are farthest from keeping both, and
+    by what share of its limit the best of them misses one; None where each pair is kept by one."""
+    excess = [{b.key: b.excess for b in one.broken} for one in screened if not one.reason]
+    keys = sorted({key for broken in excess for key in broken})
+    alone = {key: min(broken.get(key, 0.0) for broken in excess) for key in keys}
+    pairs = {
+        (first, second): min(max(o.get(first, 0.0), o.get(second, 0.0)) for o in excess)
+        for first, second in itertools.combinations(keys, 2)
+        if alone[first] == alone[second] == 0
+    }
+    pair = max(pairs, key=lambda key: pairs[key], default=None)
+    return None if pair is None or pairs[pair] <= 0 else (*pair, pairs[pair])
 
 
 def margins(requirements: Requirements, one: Evaluated) -> dict[str, si.Dimensionless]:

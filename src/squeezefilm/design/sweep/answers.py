@@ -45,8 +45,7 @@ class Asked:
     @property
     def unit(self) -> si.Unit:
         """The unit that the key says, "1" where it says none."""
-        found = _SUFFIX.findall(self.key)
-        return _UNITS[found[-1]] if found else si.Unit("1")
+        return unit_in(self.key)
 
     @property
     def draws(self) -> bool:
@@ -103,6 +102,12 @@ def numbers_of(summary: Any, path: str = "") -> Iterator[tuple[str, float]]:
         yield path, float(summary)
     elif summary is None:
         yield path, math.nan
+
+
+def unit_in(key: str) -> si.Unit:
+    """The unit that a key or a column's name says, "1" where it says none."""
+    suffixes = _SUFFIX.findall(key)
+    return _UNITS[suffixes[-1]] if suffixes else si.Unit("1")
 
 
 def without_units(key: str) -> str:

@@ -38,6 +38,7 @@ from squeezefilm.design.search.report.words import (
     counts_sentence,
     effect_head,
     effect_rows,
+    empty_front_sentences,
     front_head,
     front_row,
     limit_gain,
@@ -128,6 +129,8 @@ def first_sentences(found: DesignSearch) -> Iterator[tuple[str, str]]:
         yield "doubt", "The search was stopped: these are the plates found until then."
     if chosen is None:
         yield "limit", f"No plate meets the requirements. {counts_sentence(found)}"
+        for sentence in empty_front_sentences(found):
+            yield "limit", sentence
     else:
         yield "good", counts_sentence(found)
         # What a tolerance may push across a limit is not called good.

@@ -16,6 +16,7 @@ from squeezefilm.design.search.report.words import (
     counts_sentence,
     effect_head,
     effect_rows,
+    empty_front_sentences,
     front_head,
     front_row,
     limit_sentences,
@@ -48,6 +49,7 @@ def show_design(found: DesignSearch) -> None:
             "No plate meets the requirements. What each limit costs is below: ease the one that "
             "most designs break, or give the shapes more room."
         )
+        _say(console, empty_front_sentences(found))
         for reason, count in counted(o.reason for o in found.screened if o.reason)[:3]:
             console.print(f"! {many(count, 'design')} cannot be built: {printable(reason)}")
     if compared := reference_sentences(found):

@@ -12,7 +12,13 @@ from squeezefilm.core.kit.numbers import changed, shown, signed
 from squeezefilm.design.search.candidate import Design, Evaluated
 from squeezefilm.design.search.criteria import CRITERIA, OF_SOLVED, bounded, criterion_of
 from squeezefilm.design.search.found import DesignSearch, FrontMember
-from squeezefilm.design.search.reasons import gains_in_words, limit_in_words, margins
+from squeezefilm.design.search.reasons import (
+    conflict_of,
+    gains_in_words,
+    limit_in_words,
+    margins,
+    nearest_of,
+)
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.space import Choice, Variable
 from squeezefilm.design.search.stock import OWN
@@ -119,6 +125,28 @@ def counts_sentence(found: DesignSearch) -> str:
             else "the front is empty."
         )
     )
+
+
+def empty_front_sentences(found: DesignSearch) -> list[str]:
+    """What stands in the way where no plate meets the requirements: the two limits that conflict,
+    and the nearest plate; none where there is a front."""
+    if found.front:
+        return []
+    said = []
+    bounds = {one.key: one.limit_said(bound) for one, bound in bounded(found.requirements.limits)}
+    if (conflict := conflict_of(found.screened)) is not None:
+        first, second, miss = conflict
+        said.append(
+            f"Two limits conflict: {bounds[first]}, and {bounds[second]}. Screened designs keep "
+            f"each, and none both; the best misses one by {si.percent(miss, 1)} of it."
+        )
+    if (nearest := nearest_of(found.screened)) is not None and nearest.broken:
+        breaks = "; ".join(breach.sentence for breach in nearest.broken)
+        said.append(
+            f"The nearest that was screened: {chosen_words(found.requirements, nearest.design)}. "
+            f"Of it {breaks}."
+        )
+    return said
 
 
 def front_words(found: DesignSearch) -> str:

@@ -9,8 +9,10 @@ from pathlib import Path
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import TABLE_BYTES
+from squeezefilm.core.kit.numbers import shown
 from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.core.regular_file import read_regular_text
+from squeezefilm.design.sweep.answers import unit_in, without_units
 
 Row = tuple[str, str, str, str]
 """A name with its unit, both values as they stand in the table, and the second over the first."""
@@ -54,19 +56,23 @@ def _ratio(first: str, second: str) -> str:
         return ""
 
 
-def show_comparison(found: Sequence[Row]) -> None:
-    """Print what differs; numbers are SI with the unit in the name."""
+def show_comparison(rows: Sequence[Row]) -> None:
+    """Print what differs, each number with its unit."""
     console = plain_console()
-    heading(console, "What differs (SI units)")
-    if not found:
+    heading(console, "What differs")
+    if not rows:
         console.print("nothing: both rows say the same")
         return
-    shown = [(name, _short(a), _short(b), ratio) for name, a, b, ratio in found]
-    table(console, ("", "first", "second", "second / first"), shown)
+    lines = [
+        (without_units(name), _with_unit(first, name), _with_unit(second, name), ratio)
+        for name, first, second, ratio in rows
+    ]
+    table(console, ("", "first", "second", "second / first"), lines)
 
 
-def _short(text: str) -> str:
+def _with_unit(text: str, name: str) -> str:
+    """A cell with the unit that its column's name says; a dash for an empty one."""
     try:
-        return f"{float(text):.5g}"
+        return shown(float(text), unit_in(name), 5)
     except ValueError:
         return text or "–"

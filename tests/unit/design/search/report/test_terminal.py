@@ -40,6 +40,7 @@ def test_an_empty_front_says_what_to_do(printed: Printed) -> None:
     shown = one_line(printed())
     assert "No plate meets the requirements" in shown
     assert "ease the one that most designs break" in shown
+    assert "The nearest that was screened:" in shown
     assert "designs cannot be built: 9 ceramics on 83 mm are too short" in shown
     assert "The plate to build" not in shown
 

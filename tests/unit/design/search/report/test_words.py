@@ -7,9 +7,10 @@ from typing import Any
 import pytest
 from tests.unit.design.search.report.made_search import made_search, requirements_of
 
-from squeezefilm.design.search.candidate import design_of
-from squeezefilm.design.search.criteria import CRITERIA, OF_SOLVED
+from squeezefilm.design.search.candidate import Evaluated, design_of
+from squeezefilm.design.search.criteria import CRITERIA, OF_SOLVED, Breach
 from squeezefilm.design.search.found import DesignSearch
+from squeezefilm.design.search.reasons import conflict_of, nearest_of
 from squeezefilm.design.search.report import words
 from squeezefilm.design.search.requirements import Requirements
 
@@ -151,6 +152,35 @@ def test_a_limit_that_no_screened_design_was_asked_is_not_said_to_be_kept() -> N
     asked = "half-bandwidths to the nearest mode at least 3; sound level at 0.5 m at most 90 dB"
     assert said[-1] == f"Asked of solved plates only: {asked}."
     assert not any("neighbour" in one for one in said[:-1])
+
+
+def test_an_empty_front_names_the_limits_that_conflict_and_the_nearest_plate() -> None:
+    found = made_search(limits={"most_temperature_rise": 20.5})
+    assert not found.front
+    said = words.empty_front_sentences(found)
+    nearest = nearest_of(found.screened)
+    assert nearest is not None
+    assert nearest.broken[0].sentence in said[-1]
+    worst = nearest.broken[0].excess
+    assert all(max((b.excess for b in o.broken), default=0.0) >= worst
+               for o in found.screened if not o.reason)  # fmt: skip
+    conflict = conflict_of(found.screened)
+    assert len(said) == 1 + (conflict is not None)
+    assert words.empty_front_sentences(made_search()) == []
+
+
+def test_limits_conflict_where_designs_keep_each_and_none_both() -> None:
+    design = made_search(screened=12, solved=3).screened[0]
+
+    def breaking(**excess: float) -> Evaluated:
+        broken = tuple(Breach(key, 1.0, 1.0, by) for key, by in excess.items())
+        return replace(design, broken=broken, reason="")
+
+    hot, heavy = breaking(power=0.2), breaking(mass=0.5)
+    assert conflict_of([hot, heavy]) == ("mass", "power", 0.2)
+    assert conflict_of([hot, heavy, breaking()]) is None
+    # Where one is kept by nobody, it stands in the way alone.
+    assert conflict_of([hot, breaking(power=0.3, mass=0.5)]) is None
 
 
 def test_too_few_solved_plates_say_so() -> None:
