@@ -147,10 +147,7 @@ def result_rows(analysis: StudyAnalysis) -> Rows:
 
 
 def _value_and_interval(found: Estimate, scale: float, unit: str) -> tuple[str, str]:
-    low, high = scale * found.low, scale * found.high
-    between = f"{low:.3g} to {high:.3g}{unit}" if not math.isnan(low) else "no interval"
-    value = f"{scale * found.value:.3g}{unit}"
-    return value, f"{between} ({found.method}, {100 * found.level:g} %)"
+    return f"{scale * found.value:.3g}{unit}", between(found, scale, unit)
 
 
 def _course_first(course: Course) -> list[str]:
@@ -239,31 +236,25 @@ def _task_rows(analysis: TaskAnalysis) -> Rows:
         s, u = (scale, unit) if name.lower() == analysis.measure.lower() else _scale_of(name)
         rows.append((name[0].upper() + name[1:], *_value_and_interval(found, s, u)))
     if analysis.spread is not None:
-        spread = analysis.spread
         what = "ln(Weber fraction)" if percent else "the exponent"
-        rows.append(
-            (
-                f"Spread of {what} over people",
-                f"{spread.value:.2g}",
-                f"{spread.low:.2g} to {spread.high:.2g} "
-                f"({spread.method}, {100 * spread.level:g} %)",
-            )
-        )
+        spread = _value_and_interval(analysis.spread, 1.0, "")
+        rows.append((f"Spread of {what} over people", *spread))
     return rows
 
 
 def _scale_of(name: str) -> tuple[float, str]:
     """Shares and differences in parts are shown in per cent, other numbers as they are."""
-    parts = ("bias", "point", "reversals", "false alarms")
+    parts = ("bias", "reversals", "false alarms")
     return (100.0, " %") if name.startswith(parts) else (1.0, "")
 
 
-def between(interval: Interval | None, scale: float = 1.0, unit: str = "") -> str:
+def between(found: Interval | Estimate | None, scale: float = 1.0, unit: str = "") -> str:
     """Both ends, the method and the level; a dash for none."""
-    if interval is None:
+    if found is None:
         return "–"
-    low, high = scale * interval.low, scale * interval.high
-    return f"{low:.3g} to {high:.3g}{unit} ({interval.method}, {100 * interval.level:g} %)"
+    ends = f"{scale * found.low:.3g} to {scale * found.high:.3g}{unit}"
+    ends = "no interval" if math.isnan(found.low) else ends
+    return f"{ends} ({found.method}, {100 * found.level:g} %)"
 
 
 def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
