@@ -52,7 +52,7 @@ QUICK = (
     "physics.film.planar.gap",
     "physics.film.validity.knudsen_number",
     "core.formats.wav",
-    "physics.texture_files.pictures",
+    "physics.texture_files.image_file",
     "core.materials",
     "physics.plate.beam.modes.euler",
     "physics.plate.laminate",

@@ -18,10 +18,6 @@ from squeezefilm.core.materials import ElasticMaterial
 from squeezefilm.physics.plate.elements.box_model import Medium, isotropic_solid, piezoceramic_solid
 from squeezefilm.physics.plate.layout import DiscPlate
 from squeezefilm.physics.plate.ring.elements import harmonic_system
-from squeezefilm.physics.plate.ring.materials import (
-    soft_teeth,
-    stiff_teeth,
-)
 from squeezefilm.physics.plate.ring.modes import (
     annular_admittance,
     annular_modes,
@@ -36,6 +32,8 @@ from squeezefilm.physics.plate.ring.section import (
     alternate_sectors,
     bonded_disc,
     full_drive,
+    soft_teeth,
+    stiff_teeth,
 )
 from squeezefilm.physics.plate.ring.stator import (
     HARD_PZT,

@@ -19,7 +19,7 @@ from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.isolated_reading import IsolatedReader, Read
 from squeezefilm.measure.recordings.files.matlab import read_matlab
 from squeezefilm.measure.recordings.read import check_folder
-from squeezefilm.physics.texture_files.pictures import picture_from
+from squeezefilm.physics.texture_files.image_file import picture_from
 
 DESCRIPTION = """\
 kind = "frequency response"

@@ -13,7 +13,7 @@ from squeezefilm.core.hard_limits import HardLimit
 from squeezefilm.core.regular_file import read_regular, read_regular_text
 from squeezefilm.instruments.session.record.trace import read_trace
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.physics.texture_files.pictures import read_picture
+from squeezefilm.physics.texture_files.image_file import read_picture
 
 TEN = HardLimit("bytes of a test", 0, 10, "ten are enough")
 READERS = [lambda path: load(Display, path), text_of_file, read_picture, read_trace]

@@ -33,7 +33,7 @@ from squeezefilm.physics.plate.layout import DiscPlate
 from squeezefilm.physics.render.program.inverse import LOWEST_SPEED
 from squeezefilm.physics.render.program.lowering import Program
 from squeezefilm.physics.render.program.renderer import render
-from squeezefilm.physics.texture_files.pictures import picture_from
+from squeezefilm.physics.texture_files.image_file import picture_from
 from squeezefilm.physics.texture_files.texture_file import (
     TextureFile,
     load_texture,

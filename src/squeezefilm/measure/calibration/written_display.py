@@ -31,7 +31,7 @@ from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.physics.uncertainty.draws import Input
-from squeezefilm.physics.uncertainty.joint_draws import AMPLITUDE_SHARE, FRICTION_OFFSET
+from squeezefilm.physics.uncertainty.model_choices import AMPLITUDE_SHARE, FRICTION_OFFSET
 from squeezefilm.physics.uncertainty.parameters import SKIN_COMPLIANCE, Parameter, with_values
 
 _ROWS = 256

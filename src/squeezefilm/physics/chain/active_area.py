@@ -50,7 +50,8 @@ class ActiveArea:
 
     @functools.cached_property
     def _finely(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
-        """µ′/µ over small parts of the area, rising, and the share of the area that each is."""
+        """Relative friction µ′/µ over small parts of the area, rising, and the share of the area
+        that each is."""
         assert self.relative_friction is not None, "asked only where there is a friction"
         fine = _halfway(_halfway(self.relative_friction).T).T
         parts = np.outer(_parts(self.x), _parts(self.y))

@@ -183,8 +183,8 @@ def _met(
 def _friction(
     law: FrictionLaw, met: si.MetreArray, weights: si.DimensionlessArray
 ) -> si.DimensionlessArray:
-    """µ′/µ of pads whose points meet amplitudes (m) and carry shares of the load, both of shape
-    (places, points)."""
+    """Relative friction µ′/µ of pads whose points meet amplitudes (m) and carry shares of the load,
+    both of shape (places, points)."""
     kind = law.kind
     if not kind.shares_load:
         raise OutOfRangeError(
@@ -262,7 +262,7 @@ def _inside(
     y: si.MetreArray,
     region: ActiveRegion | None,
 ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
-    """Whether places are in the area: near a round rim only those half a contact from it."""
+    """True where places are in the area: near a round rim only those half a contact from it."""
     left, right, _, _ = shape.bounds
     if region is not None or left >= 0:
         return np.ones((x.size, y.size), dtype=bool)

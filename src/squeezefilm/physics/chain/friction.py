@@ -42,7 +42,8 @@ class FilmLoad(NamedTuple):
 
 
 class FrictionLaw(PadLaw):
-    """µ′/µ as a function of amplitude and speed, at one frequency and force, by one model.
+    """Relative friction µ′/µ as a function of amplitude and speed, at one frequency and force, by
+    one model.
 
     "paper2008" and "paper2008-printed" hold the gap and take what the film does not carry to be in
     contact, at an unchanged friction coefficient (paper eq 14, corrected and as printed).
@@ -98,7 +99,8 @@ class FrictionLaw(PadLaw):
     def over_speeds(
         self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray, limit: Limit | None = None
     ) -> si.DimensionlessArray:
-        """µ′/µ at speeds (m/s, from 0) and amplitudes (m), shape (speeds, amplitudes)."""
+        """Relative friction µ′/µ at speeds (m/s, from 0) and amplitudes (m), shape (speeds,
+        amplitudes)."""
         a, speeds = np.ravel(amplitude), np.ravel(speed)
         if not self.kind.fitted:
             return np.repeat(self.curve(a)[None, :], speeds.size, axis=0)
@@ -106,12 +108,13 @@ class FrictionLaw(PadLaw):
 
     @si.checked_numbers
     def at(self, amplitude: si.Metre) -> si.Dimensionless:
-        """µ′/µ (dimensionless, 0 to 1) at one amplitude (m)."""
+        """Relative friction µ′/µ (dimensionless, 0 to 1) at one amplitude (m)."""
         return float(self.curve(np.array([amplitude]))[0])
 
     @si.checked_numbers
     def curve(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
-        """µ′/µ (dimensionless, 0 to 1) at an array of amplitudes (m), same shape (1-D)."""
+        """Relative friction µ′/µ (dimensionless, 0 to 1) at an array of amplitudes (m), same shape
+        (1-D)."""
         if self.kind.shares_load:
             return self.friction_in("own", np.ravel(amplitude))
         found = paper.relative_friction(

@@ -37,7 +37,7 @@ class ModelKind(NamedTuple):
 
     @property
     def shares_load(self) -> bool:
-        """Whether film and asperities share the load, at a gap that yields."""
+        """True where film and asperities share the load, at a gap that yields."""
         return self.friction != "asymptote"
 
 
@@ -54,8 +54,8 @@ MODEL_KINDS: dict[FrictionModel, ModelKind] = {
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionLimits:
-    """µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin; how far they are apart
-    belongs in the uncertainty of µ′/µ.
+    """Relative friction µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin; how
+    far they are apart belongs in the uncertainty of µ′/µ.
 
     `own`: each ridge at its own balance (a skin compliant at rest, the default); `one_gap`: all
     ridges tied to one mean gap.

@@ -75,8 +75,8 @@ class FrictionTable:
     def __call__(
         self, amplitude: si.MetreArray, speed: si.MetrePerSecondLike | None = None
     ) -> si.DimensionlessArray:
-        """µ′/µ at amplitudes (m) and a finger's speeds (m/s, either sign; None: the nominal one);
-        both broadcast. Raises `OutOfRangeError` outside of the table."""
+        """Relative friction µ′/µ at amplitudes (m) and a finger's speeds (m/s, either sign; None:
+        the nominal one); both broadcast. Raises `OutOfRangeError` outside of the table."""
         values, highest = np.asarray(amplitude, dtype=float), float(self.amplitude[-1])
         # A hair of slack: an exponential envelope may overshoot its target by rounding.
         slack = 1e-9 * highest
@@ -100,14 +100,14 @@ class FrictionTable:
 
     @si.checked_numbers
     def over_speeds(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
-        """µ′/µ at the table's speeds and amplitudes (m), shape (k, n)."""
+        """Relative friction µ′/µ at the table's speeds and amplitudes (m), shape (k, n)."""
         column, across = _place(self.amplitude, np.asarray(amplitude, dtype=float))
         known = self.relative_friction
         return np.asarray(known[:, column] * (1 - across) + known[:, column + 1] * across)
 
     @si.checked_numbers
     def at_speed(self, speed: si.MetrePerSecond) -> si.DimensionlessArray:
-        """µ′/µ at the table's amplitudes and one speed (m/s), shape (n,)."""
+        """Relative friction µ′/µ at the table's amplitudes and one speed (m/s), shape (n,)."""
         if self.speed.size == 1:
             return np.asarray(self.relative_friction[0])
         row, along = _place(self.speed, np.array(abs(speed)))

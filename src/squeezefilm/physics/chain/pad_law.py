@@ -115,12 +115,13 @@ class PadLaw:
 
     @si.checked_numbers
     def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
-        """µ′/µ in both limits of the skin at amplitudes (m)."""
+        """Relative friction µ′/µ in both limits of the skin at amplitudes (m)."""
         a = np.atleast_1d(np.asarray(amplitude, dtype=float))
         return FrictionLimits(a, self.friction_in("own", a), self.friction_in("one-gap", a))
 
     def friction_in(self, limit: Limit, amplitude: si.MetreArray) -> si.DimensionlessArray:
-        """µ′/µ in a limit of the skin at amplitudes (m), shape (n,), at the law's speed."""
+        """Relative friction µ′/µ in a limit of the skin at amplitudes (m), shape (n,), at the law's
+        speed."""
         if self.kind.friction == "lift":
             return np.asarray(self._lifted(amplitude, self.speed, limit)[0])
         return self.sharing(amplitude, limit).relative_friction
@@ -128,8 +129,9 @@ class PadLaw:
     def _lifted(
         self, amplitude: si.MetreArray, speed: si.MetrePerSecondLike, limit: Limit
     ) -> si.DimensionlessArray:
-        """µ′/µ by `levitation_friction`, shape (speeds, amplitudes): the mean over ridges that each
-        meet their own amplitude, or one film that meets the root of their mean square."""
+        """Relative friction µ′/µ by `levitation_friction`, shape (speeds, amplitudes): the mean
+        over ridges that each meet their own amplitude, or one film that meets the root of their
+        mean square."""
         met, shares = self.ridge_swings
         _require_tabulated(amplitude, met)
         if limit == "one-gap":
@@ -141,8 +143,9 @@ class PadLaw:
     def _lifted_ridge(
         self, amplitude: si.MetreArray, speed: si.MetrePerSecond
     ) -> si.DimensionlessArray:
-        """µ′/µ of a ridge at the amplitudes that it meets (m), any shape, by `levitation_friction`
-        with the length fitted to people or the gap and length of 2016, or by `ridge_friction`."""
+        """Relative friction µ′/µ of a ridge at the amplitudes that it meets (m), any shape, by
+        `levitation_friction` with the length fitted to people or the gap and length of 2016, or by
+        `ridge_friction`."""
         pressure, ambient = self.contact_pressure, self.gas.ambient_pressure
         if self.kind.ridges:
             load = self.finger.plateau_pressure(self.normal_force)
@@ -156,8 +159,9 @@ class PadLaw:
         return levitation_friction(amplitude / scale, published_rest_gap(pressure))
 
     def ripple(self, amplitude: si.Metre) -> FrictionRipple:
-        """µ′/µ along an even wave at an amplitude (m), each ridge by itself: by the law's
-        levitation, else by partial levitation whatever the model. See `friction_ripple`."""
+        """Relative friction µ′/µ along an even wave at an amplitude (m), each ridge by itself: by
+        the law's levitation, else by partial levitation whatever the model. See
+        `friction_ripple`."""
         if self.kind.friction == "lift":
             position = np.arange(_RIPPLE_POSITIONS) / _RIPPLE_POSITIONS * self.half_wavelength
             along = [replace(self, place=None, position=float(x)) for x in position]
@@ -273,8 +277,8 @@ class PadLaw:
 
     @si.checked_numbers
     def ridge_friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
-        """µ′/µ of one ridge at the amplitudes that it meets (m), shape (n,): the pad's in the limit
-        "own" is the mean over its ridges."""
+        """Relative friction µ′/µ of one ridge at the amplitudes that it meets (m), shape (n,): the
+        pad's in the limit "own" is the mean over its ridges."""
         if self.kind.friction == "lift":
             return self._lifted_ridge(amplitude, self.speed)
         posture, at = PadPosture(swings=np.ones(1)), np.zeros(1)

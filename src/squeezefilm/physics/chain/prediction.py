@@ -92,7 +92,8 @@ class Prediction(Result):
 
     @functools.cached_property
     def friction(self) -> FrictionTable:
-        """µ′/µ over amplitude (up to this one) and speed, a fast table: see `FrictionLaw.table`."""
+        """Relative friction µ′/µ over amplitude (up to this one) and speed, a fast table: see
+        `FrictionLaw.table`."""
         return self.law.table(self.vibration_amplitude)
 
     @functools.cached_property
@@ -123,7 +124,7 @@ class Prediction(Result):
 
     @property
     def place_was_asked(self) -> bool:
-        """Whether the pad is at a place on the face that somebody asked for."""
+        """True where the pad is at a place on the face that somebody asked for."""
         return self.law.place is not None and not self.law.place.is_best_of_area
 
     @property

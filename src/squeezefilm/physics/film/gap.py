@@ -165,7 +165,7 @@ class PaperGap:
 
     @property
     def symmetric(self) -> bool:
-        """Whether antinode and groove lie at the centre of the contact, as in the paper."""
+        """True where antinode and groove lie at the centre of the contact, as in the paper."""
         return self.wave_offset == 0 and self.ridge_offset == 0
 
     @si.checked_numbers

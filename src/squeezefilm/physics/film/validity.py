@@ -95,7 +95,7 @@ class ValidityCheck:
 
     @property
     def holds(self) -> bool:
-        """Whether the value lies in the range."""
+        """True where the value lies in the range."""
         above = self.low is None or self.value >= self.low
         return above and (self.high is None or self.value <= self.high)
 
@@ -115,7 +115,7 @@ class FilmValidity:
 
     @property
     def holds(self) -> bool:
-        """Whether every check holds."""
+        """True where every check holds."""
         return all(check.holds for check in self.checks)
 
     @property

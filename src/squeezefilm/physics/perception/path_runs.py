@@ -40,7 +40,7 @@ class Run:
 
     @property
     def along_x(self) -> bool:
-        """Whether it goes along x more than along y; at 45° it counts as along x."""
+        """True where it goes along x more than along y; at 45° it counts as along x."""
         return abs(math.cos(self.heading)) >= abs(math.sin(self.heading)) - 1e-9
 
 

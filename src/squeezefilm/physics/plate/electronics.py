@@ -72,7 +72,7 @@ AMPLIFIERS: tuple[Amplifier, ...] = (
 
 @dataclass(frozen=True)
 class AmplifierCheck:
-    """Whether a part can drive the load, and what it would give or lacks, in words."""
+    """True where a part can drive the load, and what it would give or lacks, in words."""
 
     kind: str
     part: str
@@ -270,7 +270,7 @@ def driven_ceramics(plate: RectangularPlate) -> int:
 def amplifier_check(
     amplifier: Amplifier, voltage: si.Volt, current: si.Ampere, slew_rate: si.VoltPerSecond
 ) -> AmplifierCheck:
-    """Whether an amplifier gives a voltage and a current amplitude (V, A) with a slope (V/s)."""
+    """True where an amplifier gives a voltage and a current amplitude (V, A) with a slope (V/s)."""
 
     def said(value: float, unit: str) -> str:
         return si.format_quantity(value, si.Unit(unit), 3)

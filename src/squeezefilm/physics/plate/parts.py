@@ -48,7 +48,7 @@ class Sector:
 
     @property
     def is_whole(self) -> bool:
-        """Whether it goes all round."""
+        """True where it goes all round."""
         return self.end - self.start > WHOLE_TURN - 1e-9
 
     @property

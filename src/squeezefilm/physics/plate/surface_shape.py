@@ -63,7 +63,7 @@ class SurfaceShape(ABC):
     def on_face(
         self, x: si.MetreLike, y: si.MetreLike
     ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
-        """Whether points (m, broadcast) lie on the face."""
+        """True where points (m, broadcast) lie on the face."""
         left, right, front, back = self.bounds
         return np.asarray(
             (x >= left - _EDGE) & (x <= right + _EDGE) & (y >= front - _EDGE) & (y <= back + _EDGE)
@@ -197,7 +197,7 @@ class DiscSurface(SurfaceShape):
     def on_face(
         self, x: si.MetreLike, y: si.MetreLike
     ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
-        """Whether points (m, broadcast) lie on the face."""
+        """True where points (m, broadcast) lie on the face."""
         r, known = np.hypot(x, y), self.mode.surface_radius
         return np.asarray((r >= known[0] - _EDGE) & (r <= known[-1] + _EDGE))
 
@@ -234,7 +234,8 @@ class TrackSurface(SurfaceShape):
     def on_face(
         self, x: si.MetreLike, y: si.MetreLike
     ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
-        """Whether points (m, broadcast) lie on the face: the track is closed, so every x does."""
+        """True where points (m, broadcast) lie on the face: the track is closed, so every x
+        does."""
         _, _, inner, outer = self.bounds
         return np.asarray(np.broadcast_arrays((y >= inner - _EDGE) & (y <= outer + _EDGE), x)[0])
 

@@ -97,7 +97,7 @@ class WorkingMode:
 
     @property
     def has_shape(self) -> bool:
-        """Whether the shape over the face is solved or, of a stator, measured: not of a beam."""
+        """True where the shape over the face is solved or, of a stator, measured: not of a beam."""
         return self.solid is not None or self.disc is not None or self.model == MEASURED
 
     @property

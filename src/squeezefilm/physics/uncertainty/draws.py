@@ -27,18 +27,16 @@ from squeezefilm.physics.plate.heat.warming import heat_source
 from squeezefilm.physics.plate.loaded_mode import LoadedMode
 from squeezefilm.physics.plate.working_mode import WorkingMode
 from squeezefilm.physics.uncertainty.free_amplitude import FreeAmplitude
-from squeezefilm.physics.uncertainty.joint_draws import (
+from squeezefilm.physics.uncertainty.model_choices import (
     AMPLITUDE_SHARE,
     FRICTION_OFFSET,
-    calibrated_inputs,
-)
-from squeezefilm.physics.uncertainty.model_choices import (
     HEIGHT_LAW,
     LIFTS,
     MECHANISM,
     MOISTURE,
     SLIP,
     Choice,
+    calibrated_inputs,
     model_choices,
     same_interface,
 )
@@ -375,7 +373,7 @@ def outcome_of(
 
 
 def between_limits(law: FrictionLaw, draw: Draw, amplitude: si.MetreArray) -> si.DimensionlessArray:
-    """µ′/µ at amplitudes (m) of a pad as soft as the draw has it.
+    """Relative friction µ′/µ at amplitudes (m) of a pad as soft as the draw has it.
 
     At a place what a stiff pad differs by from ridges that sink each by themselves is taken from an
     even wave of the same amplitude: on the solved shape the one ridge that moves most would press

@@ -179,8 +179,8 @@ def uncertain_parameters(
 
 
 def _has(display: Display, path: str) -> bool:
-    """Whether there is such a value: laws of asperities have fields of their own, a stator has no
-    ceramic of its own, and of d31 and e31 the one counts that is believed."""
+    """True where there is such a value: laws of asperities have fields of their own, a stator has
+    no ceramic of its own, and of d31 and e31 the one counts that is believed."""
     *_, part, name = path.split(".")
     if part == "ceramic":
         ceramic = getattr(display.actuator, "ceramic", None)

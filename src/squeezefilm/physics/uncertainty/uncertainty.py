@@ -50,9 +50,9 @@ _FIRST_ROWS = 8
 
 @dataclass(frozen=True, eq=False)
 class UncertainFriction:
-    """µ′/µ with its interval: `nominal` as described, `interval` between the 5 % and 95 % quantiles
-    of `samples` (µ′/µ) with their `amplitudes` (m), parameters, laws and mechanisms drawn at once,
-    `draws` in number.
+    """Relative friction µ′/µ with its interval: `nominal` as described, `interval` between the 5 %
+    and 95 % quantiles of `samples` (µ′/µ) with their `amplitudes` (m), parameters, laws and
+    mechanisms drawn at once, `draws` in number.
 
     `influences` are ranked, the most important to know better first; `groups` are what could be
     measured and what nobody knows. Draws that are `refused` (asperities pressed through) have no
@@ -288,7 +288,8 @@ def _interval(values: si.FloatArray) -> tuple[float, float] | None:
 
 
 def _nominal(mixture: Mixture) -> float:
-    """µ′/µ as described; of a model that shares no load by the one that the draws are made with."""
+    """Relative friction µ′/µ as described; of a model that shares no load by the one that the draws
+    are made with."""
     p = mixture.prediction
     if p.law.model == mixture.model:
         return float(p.relative_friction)
@@ -297,7 +298,8 @@ def _nominal(mixture: Mixture) -> float:
 
 @dataclass(frozen=True, eq=False)
 class FrictionBand:
-    """µ′/µ over the vibration amplitude with everything but the amplitude uncertain.
+    """Relative friction µ′/µ over the vibration amplitude with everything but the amplitude
+    uncertain.
 
     `low` and `high` are quantiles that hold `level` of the draws at each amplitude; NaN where more
     than 2 % of them are refused.
@@ -378,7 +380,8 @@ def _drawn_curves(
     amplitude: si.MetreArray,
     progress: Callable[[str, float], None] | None,
 ) -> si.DimensionlessArray:
-    """µ′/µ of each draw at each amplitude, shape (draws, n); NaN where refused."""
+    """Relative friction µ′/µ of each draw at each amplitude, shape (draws, n); NaN where
+    refused."""
     samples = len(points)
     rows = np.full((samples, amplitude.size), np.nan)
     for number, draw in enumerate(mixture.draws(points)):

@@ -15,7 +15,7 @@ from squeezefilm.physics.contact.finger import fingertip
 from squeezefilm.physics.plate import layout
 from squeezefilm.physics.plate.round_layout import DiscPlate
 from squeezefilm.physics.plausibility import ratios
-from squeezefilm.physics.plausibility.bounds import Bound, bounds, shown
+from squeezefilm.physics.plausibility.checks import Bound, bounds, shown
 
 _M, _KG3 = si.Unit("m"), si.Unit("kg/m3")
 

@@ -12,8 +12,7 @@ from tests.pictures import coloured_bytes, picture_bytes
 
 from squeezefilm.core.errors import ConfigError, InputError, SqueezefilmWarning
 from squeezefilm.physics.render.texture.image import MOST_PIXELS
-from squeezefilm.physics.texture_files.image_file import ImageFile
-from squeezefilm.physics.texture_files.pictures import picture_from, read_picture
+from squeezefilm.physics.texture_files.image_file import ImageFile, picture_from, read_picture
 from squeezefilm.physics.texture_files.texture_file import load_texture, texture_from_text
 
 GRID = np.random.default_rng(5).random((7, 11))

@@ -1,4 +1,4 @@
-"""What is drawn of a calibrated display, `physics.uncertainty.joint_draws`."""
+"""What is drawn of a calibrated display, `physics.uncertainty.model_choices`."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.uncertainty.drawn import evaluate
 from squeezefilm.physics.uncertainty.draws import Mixture
-from squeezefilm.physics.uncertainty.joint_draws import (
+from squeezefilm.physics.uncertainty.model_choices import (
     AMPLITUDE_SHARE,
     FRICTION_OFFSET,
     calibrated_inputs,

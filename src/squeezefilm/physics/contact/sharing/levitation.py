@@ -66,7 +66,8 @@ def levitation_friction(
     relative_amplitude: Annotated[si.DimensionlessArray, si.AtLeast(0.0), si.AtMost(1e6)],
     rest_gap: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1e6)] = 0.0,
 ) -> si.DimensionlessArray:
-    """µ′/µ within 1e-5 over the amplitude in scales g, any shape; `rest_gap` is u0/ℓ.
+    """Relative friction µ′/µ within 1e-5 over the amplitude in scales g, any shape; `rest_gap` is
+    u0/ℓ.
 
     Without a gap at rest friction falls at once, with one it falls as a Gaussian at first. Range:
     amplitudes small against the gap, a contact of many wavelengths of the squeezed film (a squeeze
@@ -100,8 +101,9 @@ def ridge_friction(
     plateau_pressure: Annotated[si.Pascal, si.Above(0.0)],
     decay_length: Annotated[si.Metre, si.Above(0.0)],
 ) -> si.DimensionlessArray:
-    """µ′/µ of ridges over the amplitudes that they meet (m), any shape: the film of a plateau,
-    solved, lifts it until p_s (1 − exp(−u/ℓ)) is what the film carries at the mean gap u.
+    """Relative friction µ′/µ of ridges over the amplitudes that they meet (m), any shape: the film
+    of a plateau, solved, lifts it until p_s (1 − exp(−u/ℓ)) is what the film carries at the mean
+    gap u.
 
     Within 2e-3 below 50 nm, else 1e-4 beside the table's error. Where the film would have to be
     thinner than the vibration is deep, the gap stays at what the vibration leaves (0.7 % of it at

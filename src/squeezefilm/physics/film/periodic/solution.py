@@ -96,7 +96,7 @@ class Found:
 
     @property
     def closed(self) -> bool:
-        """Whether it is the closed form of a small vibration."""
+        """True where it is the closed form of a small vibration."""
         return self.force is not None
 
     @property

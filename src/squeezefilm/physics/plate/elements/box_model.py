@@ -61,7 +61,7 @@ class Medium:
 
     @property
     def piezoelectric(self) -> bool:
-        """Whether the medium carries a potential."""
+        """True where the medium carries a potential."""
         return self.stress_matrix is not None
 
     def gradient_matrix(self, mechanical: float = 1.0, electrical: float = 1.0) -> si.FloatArray:

@@ -159,5 +159,5 @@ def _transfer(source: LineMesh, target: LineMesh) -> si.FloatArray:
 
 
 def modes_below(slabs: Slabs, shift: float) -> int:
-    """How many modes lie below a shift, electrodes shorted (Sylvester's law of inertia)."""
+    """Count the modes that lie below a shift, electrodes shorted (Sylvester's law of inertia)."""
     return SlabFactor(slabs, shift, count=True).modes_below

@@ -117,7 +117,7 @@ def cut(slabs: Slabs) -> list[list[int]]:
 
 
 def mirrors(slabs: Slabs, elements: Sequence[int]) -> bool:
-    """Whether a stretch may reuse its mirror image: not where two ceramics touch along x, for
+    """True where a stretch may reuse its mirror image: not where two ceramics touch along x, for
     there the order of their potentials would change."""
     x = slabs.model.x
     for e in elements[1:]:

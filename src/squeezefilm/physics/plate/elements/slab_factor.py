@@ -67,7 +67,7 @@ class SlabFactor:
 
     @property
     def modes_below(self) -> int:
-        """How many modes lie below the shift (Sylvester's law of inertia)."""
+        """Count the modes that lie below the shift (Sylvester's law of inertia)."""
         potentials = int(np.sum((self._slabs.components == 3) & ~self._slabs.held))
         return self._negative - potentials
 

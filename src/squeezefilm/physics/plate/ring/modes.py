@@ -56,7 +56,7 @@ class AnnularMode:
 
     @property
     def is_rigid(self) -> bool:
-        """Whether the body moves without deforming."""
+        """True where the body moves without deforming."""
         return self.label == "rigid"
 
     def modal_force(self, drive: SectorDrive) -> si.NewtonPerVolt:

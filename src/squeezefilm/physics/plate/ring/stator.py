@@ -11,7 +11,6 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import GeometryError, UnreachableError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.plate.elements.box_model import isotropic_solid, piezoceramic_solid
-from squeezefilm.physics.plate.ring.materials import soft_teeth, stiff_teeth
 from squeezefilm.physics.plate.ring.modes import (
     DEFAULT_DEGREE,
     AnnularMode,
@@ -23,6 +22,8 @@ from squeezefilm.physics.plate.ring.section import (
     RingLayer,
     SectorDrive,
     alternate_sectors,
+    soft_teeth,
+    stiff_teeth,
 )
 
 ToothModel = Literal["soft", "stiff"]

@@ -71,7 +71,7 @@ class ShearMode:
 
     @property
     def is_rigid(self) -> bool:
-        """Whether the plate moves without deforming."""
+        """True where the plate moves without deforming."""
         return self.frequency == 0
 
     @si.checked_numbers

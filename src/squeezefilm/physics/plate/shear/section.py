@@ -91,7 +91,8 @@ class ShearLayout:
         return x if self.mirrored(0) else 0, y if self.mirrored(1) else 0
 
     def mirrored(self, axis: int) -> bool:
-        """Whether the laminate (not its polarity) is its own mirror image along x (0) or y (1)."""
+        """True where the laminate (not its polarity) is its own mirror image along x (0) or y
+        (1)."""
         edges = (self.x_edges, self.y_edges)[axis]
         middle = edges[0] + edges[-1]
         same_edges = np.allclose(edges, middle - edges[::-1], rtol=0, atol=_SAME)

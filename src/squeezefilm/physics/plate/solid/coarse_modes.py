@@ -34,7 +34,7 @@ class CoarseModes:
 
 
 def class_fits(parity: Symmetry, label: Label) -> bool:
-    """Whether a mode with these nodal lines can belong to a class of symmetry."""
+    """True where a mode with these nodal lines can belong to a class of symmetry."""
     return all(
         p is None or p == ("S" if lines % 2 == 0 else "A")
         for p, lines in zip(parity, label, strict=True)

@@ -18,7 +18,7 @@ SNAP = 1e-9  # m; edges nearer than this are one
 
 
 def symmetric_axes(plate: RectangularPlate) -> tuple[bool, bool]:
-    """Whether geometry and supports are their own mirror image along x and along y."""
+    """True where geometry and supports are their own mirror image along x and along y."""
     return tuple(mirror_map(plate, axis) is not None for axis in (0, 1))  # type: ignore[return-value]
 
 
@@ -65,7 +65,7 @@ def drive_signs(plate: RectangularPlate) -> si.FloatArray:
 
 
 def only_stretches(plate: RectangularPlate) -> bool:
-    """Whether plate and drive are their own image in the plate's middle plane: every ceramic and
+    """True where plate and drive are their own image in the plate's middle plane: every ceramic and
     support has its like on the other face, with the same sign. Such a drive bends nothing."""
     other_face = {"bottom": "top", "top": "bottom"}
 

@@ -155,7 +155,7 @@ class FidelityTable:
 
     @property
     def amplitude_survives(self) -> Annotated[NDArray[np.bool_], si.Unit("1")]:
-        """Whether each period keeps its swing of amplitude at each speed, shape (p, v)."""
+        """True where each period keeps its swing of amplitude at each speed, shape (p, v)."""
         return self.amplitude_kept >= self.kept
 
     @property

@@ -66,7 +66,7 @@ class FingerPath:
 
     @property
     def along_x(self) -> bool:
-        """Whether the motion keeps to the line y = 0."""
+        """True where the motion keeps to the line y = 0."""
         return not np.any(self.y)
 
     @si.checked_numbers

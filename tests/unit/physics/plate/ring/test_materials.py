@@ -10,8 +10,7 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import ElasticMaterial
 from squeezefilm.physics.plate.elements.box_model import Medium, isotropic_solid
-from squeezefilm.physics.plate.ring.materials import soft_teeth, stiff_teeth
-from squeezefilm.physics.plate.ring.section import RingLayer
+from squeezefilm.physics.plate.ring.section import RingLayer, soft_teeth, stiff_teeth
 
 STEEL = isotropic_solid(ElasticMaterial("steel", 200e9, 0.3, 7800.0))
 PLAIN = STEEL.stiffness
