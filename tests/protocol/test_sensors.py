@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.instruments.device.ports import FingerSample, Sensor
-from squeezefilm.instruments.device.replay import ReplaySensor
+from squeezefilm.instruments.device.ports import FingerSample, ReplaySensor, Sensor
 
 
 def test_a_recording_comes_when_its_time_has_come() -> None:

@@ -27,7 +27,7 @@ from squeezefilm.instruments.bench.conversation import Conversation
 from squeezefilm.instruments.bench.loop_check import check_loop
 from squeezefilm.instruments.bench.played_session import PlayedSession, judge_session, tile_summary
 from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
-from squeezefilm.instruments.device.replay import ReplaySensor
+from squeezefilm.instruments.device.ports import ReplaySensor
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.play.plan import PlayView
 from squeezefilm.instruments.session.play.real_time import PlayOutcome, run_play

@@ -12,8 +12,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
 from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.instruments.session.loop.tick import make_tick
-from squeezefilm.instruments.session.play.plan import PlayPlan
-from squeezefilm.instruments.session.play.tile import TextureTile, tile_of
+from squeezefilm.instruments.session.play.plan import PlayPlan, TextureTile, tile_of
 from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.rendered_texture import lowered

@@ -25,8 +25,7 @@ from squeezefilm.instruments.control.plate_loop import (
     first_state,
 )
 from squeezefilm.instruments.twin import plant_kernel as k
-from squeezefilm.instruments.twin.envelope_step import Fingers
-from squeezefilm.instruments.twin.friction_rows import FrictionTables
+from squeezefilm.instruments.twin.envelope_step import Fingers, FrictionTables
 from squeezefilm.instruments.twin.hand import Hand
 from squeezefilm.instruments.twin.held import advance_held, heard, hearing
 from squeezefilm.instruments.twin.settings import TwinSettings

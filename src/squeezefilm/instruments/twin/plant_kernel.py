@@ -36,14 +36,16 @@ from squeezefilm.instruments.twin.envelope_step import (
     SLEW,
     Electrical,
     Fingers,
+    FrictionTables,
     Limits,
     Resonance,
+    at_speed,
     drawn_current,
     envelope_step,
+    row_between,
     table_place,
     voltage_given,
 )
-from squeezefilm.instruments.twin.friction_rows import FrictionTables, at_speed, row_between
 from squeezefilm.instruments.twin.hand import wanted
 from squeezefilm.physics.contact.sliding.kernel import Drive, Ground, Law, Track, slide_march
 from squeezefilm.physics.contact.sliding.skin_motion import Forces, Skin, slide_by, transition

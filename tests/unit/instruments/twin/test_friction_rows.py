@@ -4,8 +4,13 @@ import numpy as np
 import pytest
 from scipy.interpolate import RegularGridInterpolator
 
-from squeezefilm.instruments.twin.envelope_step import Fingers, table_place
-from squeezefilm.instruments.twin.friction_rows import FrictionTables, at_speed, row_between
+from squeezefilm.instruments.twin.envelope_step import (
+    Fingers,
+    FrictionTables,
+    at_speed,
+    row_between,
+    table_place,
+)
 
 HIGHEST = 3e-6
 FORCES = np.array([0.1, 0.4, 0.5, 2.0])

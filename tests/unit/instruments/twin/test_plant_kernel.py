@@ -12,8 +12,7 @@ import pytest
 from scipy.signal import lsim
 
 from squeezefilm.instruments.twin import plant_kernel as k
-from squeezefilm.instruments.twin.envelope_step import Fingers
-from squeezefilm.instruments.twin.friction_rows import FrictionTables
+from squeezefilm.instruments.twin.envelope_step import Fingers, FrictionTables
 from squeezefilm.instruments.twin.plant_kernel import gaussian, uniform
 
 STEP = 50  # us

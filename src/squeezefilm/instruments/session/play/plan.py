@@ -1,4 +1,7 @@
-"""What a session is to do, and what it tells while it runs."""
+"""What a session is to do, what it tells while it runs, and a texture as a device's tile.
+
+A tile holds amplitudes over x that a device looks up by itself, without a loop.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,142 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Annotated, Literal
 
+import numpy as np
+
 from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import Limits
-from squeezefilm.core.errors import InputError
+from squeezefilm.core.errors import InputError, UnreachableError
+from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
 from squeezefilm.instruments.device.wire.states import Fault, State
-from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.play.tile import TextureTile
+from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
+from squeezefilm.physics.render.fidelity.trace import RelativeFriction
+from squeezefilm.physics.render.program.layout import FASTEST
+from squeezefilm.physics.render.program.lowering import Program
+from squeezefilm.physics.render.program.made_for import MadeForSpeed
+from squeezefilm.physics.render.program.renderer import render
+
+_METRE = si.Unit("m")
+_MICROMETRE: si.Metre = 1e-6
+_FINER = 16
+# What a position may miss a whole number of micrometres by.
+_ROUNDING = 1e-6
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TextureTile:
+    """A texture at even places along x, straight lines between, nothing outside.
+
+    Attributes:
+        program: the texture it was sampled from.
+        origin, pitch: place of the first amplitude and from each to the next (m), whole µm.
+        amplitude: there (m, zero-to-peak), shape (size,).
+        largest_error: how far the tile is from the texture at most, at 16 places per pitch (m);
+            at a square grating's edges that is the whole step, within one pitch.
+        mean_error: the same on average (m).
+        made_for: the finger's speed for which friction became amplitude, and the error in friction
+            at half and double of it; None where no law was there to say.
+    """
+
+    program: Program
+    origin: si.Metre
+    pitch: si.Metre
+    amplitude: si.MetreArray
+    largest_error: si.Metre
+    mean_error: si.Metre
+    made_for: MadeForSpeed | None
+
+    def voltage(self, drive: DriveTable) -> si.VoltArray:
+        """The tile's levels (V, zero-to-peak), shape (size,).
+
+        Raises:
+            InputError: an amplitude above the drive's largest.
+        """
+        si.require("amplitude", self.amplitude, _METRE, at_most=drive.largest_amplitude)
+        return np.asarray(np.interp(self.amplitude, drive.amplitude, drive.voltage))
+
+
+def tile_of(
+    program: Program,
+    origin: si.Metre,
+    pitch: si.Metre,
+    size: int,
+    *,
+    speed: si.MetrePerSecond = EXPLORING_SPEED,
+    law: RelativeFriction | None = None,
+) -> TextureTile:
+    """A steady texture sampled into a device's tile.
+
+    A tile knows no speed, no time and no y, and the device plays it without compensation. Where
+    the friction of the display depends on the finger's speed it is made for one.
+
+    Args:
+        program: the lowered texture.
+        origin: of the first amplitude (m), a whole number of micrometres within ±2 km.
+        pitch: from one to the next (m), a whole number of micrometres, at least 1 µm.
+        size: how many; 2 to 512.
+        speed: of the finger for which friction becomes amplitude (m/s), above 0.
+        law: amplitude and speed → relative friction of the display, to state the error at others.
+
+    Raises:
+        InputError: a texture that may depend on speed, direction, time or y, or a place, pitch or
+            size that the device cannot take.
+        UnreachableError: a texture that wants what the display cannot reach on the tile.
+    """
+    si.require("speed", speed, si.Unit("m/s"), above=0.0, at_most=FASTEST)
+    moving = sorted(program.wanted_depends_on - {"x"})
+    if moving:
+        raise InputError(
+            f"the texture may depend on {', '.join(moving)}, and a tile holds amplitudes over x "
+            "alone; play it in mode stream",
+            quantity="program",
+        )
+    if not isinstance(size, int) or not 2 <= size <= LONGEST_TILE:
+        raise InputError(
+            f"size = {size!r} cannot be used: a tile holds 2 to {LONGEST_TILE} amplitudes",
+            quantity="size",
+        )
+    si.require("origin", origin, _METRE, at_least=-2e3, at_most=2e3)
+    si.require("pitch", pitch, _METRE, at_least=_MICROMETRE, at_most=1.0)
+    for name, value in (("origin", origin), ("pitch", pitch)):
+        steps = value / _MICROMETRE
+        if abs(steps - round(steps)) > _ROUNDING * max(1.0, abs(steps)):
+            raise InputError(
+                f"{name} = {si.format_quantity(value, _METRE)} is no whole number of micrometres, "
+                "which the device counts in; round it",
+                quantity=name,
+            )
+    places: si.FloatArray = round(origin / _MICROMETRE) + round(pitch / _MICROMETRE) * np.arange(
+        float(size)
+    )
+    amplitude = _amplitudes(program, places, speed)
+    between: si.FloatArray = np.linspace(places[0], places[-1], (size - 1) * _FINER + 1)
+    wanted = _amplitudes(program, between, speed)
+    missed = np.abs(np.interp(between, places, amplitude) - wanted)
+    return TextureTile(
+        program=program,
+        origin=origin,
+        pitch=pitch,
+        amplitude=amplitude,
+        largest_error=float(np.max(missed)),
+        mean_error=float(np.mean(missed)),
+        made_for=None if law is None else MadeForSpeed.of(law, amplitude, speed),
+    )
+
+
+def _amplitudes(program: Program, places: si.FloatArray, speed: si.MetrePerSecond) -> si.FloatArray:
+    """The texture's amplitudes at places along x (µm) for a speed (m/s), each by itself."""
+    # Divided, not multiplied by 1e-6: so a whole number of µm is the same float as in a texture.
+    x = places / 1e6
+    found = render(program, x, 0.0, speed, np.arange(x.size, dtype=float))
+    met = found.counters
+    if met.unreachable or met.faults:
+        raise UnreachableError(
+            f"at {met.unreachable + met.faults} of {x.size} places on the tile the texture wants "
+            "what the display cannot reach; change its ends or the tile's place"
+        )
+    return found.amplitude
+
 
 PlayMode = Literal["stream", "tile"]
 

@@ -22,9 +22,8 @@ from squeezefilm.instruments.device.wire.messages import (
 from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.play.plan import Ending, PlayPlan
+from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, tile_of
 from squeezefilm.instruments.session.play.player import FADE, LOOP_LIMIT, Player
-from squeezefilm.instruments.session.play.tile import tile_of
 
 PlanOf = Callable[..., LoopPlan]
 LIMITS = Limits(120.0, 1e6, 120.0, 0.0, 20e3, 60e3, insulation="glass")

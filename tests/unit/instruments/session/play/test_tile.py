@@ -11,7 +11,7 @@ from squeezefilm.core.errors import InputError, UnreachableError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.device.machine.playing import Tile
 from squeezefilm.instruments.session.loop.plan import DriveTable
-from squeezefilm.instruments.session.play.tile import tile_of
+from squeezefilm.instruments.session.play.plan import tile_of
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.texture.composition import Composable
