@@ -151,7 +151,7 @@ def predict_measurement(
     Raises `InputError` for a question that cannot be read or answered, where nothing is asked, and
     for a file that is there already.
     """
-    asked = [question(one) for one in ([ask] if isinstance(ask, str) else ask)]
+    asked = [question(text) for text in ([ask] if isinstance(ask, str) else ask)]
     return predict_blind(display, asked, out, seed=seed, progress=progress)
 
 
@@ -169,8 +169,8 @@ def predicted(
     """
     if not what:
         raise InputError("nothing is to be predicted; name at least one answer")
-    for one in what:
-        _ = _asked_friction(one) if one.answer == FRICTION else asked_by(one)
+    for seen in what:
+        _ = _asked_friction(seen) if seen.answer == FRICTION else asked_by(seen)
     tell = progress or (lambda _: None)
     display = source if isinstance(source, Display) else calibrated_display(source)
     how = (
@@ -178,12 +178,12 @@ def predicted(
         if isinstance(source, Display)
         else f"the calibration of {display.name} on {len(source.observations)} observations"
     )
-    rows = _of_friction(display, [one for one in what if one.answer == FRICTION], seed, tell) | (
+    rows = _of_friction(display, [seen for seen in what if seen.answer == FRICTION], seed, tell) | (
         _of_plate(display, what, seed, tell)
         if isinstance(source, Display)
         else _of_calibration(source, what)
     )
-    predictions = tuple(_predicted(one, rows[id(one)]) for one in what)
+    predictions = tuple(_predicted(seen, rows[id(seen)]) for seen in what)
     return BlindPrediction(display.name, how, predictions, stamp(display, seed), "")
 
 
@@ -194,32 +194,32 @@ def sealed(prediction: BlindPrediction) -> str:
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
 
-def _asked_friction(one: Observation) -> object:
-    return touching(Observation(one.answer, one.value, 1.0, one.conditions))
+def _asked_friction(seen: Observation) -> object:
+    return touching(Observation(seen.answer, seen.value, 1.0, seen.conditions))
 
 
-def _predicted(one: Observation, draws: si.FloatArray) -> Predicted:
+def _predicted(seen: Observation, draws: si.FloatArray) -> Predicted:
     known = draws[np.isfinite(draws)]
     if known.size < 0.5 * draws.size:
         raise InputError(
-            f"{one.answer.replace('_', ' ')} has no value in most draws; ask for another condition"
+            f"{seen.answer.replace('_', ' ')} has no value in most draws; ask for another condition"
         )
     low, middle, high = (float(value) for value in np.quantile(known, _TAILS))
-    return Predicted(one.answer, dict(one.conditions), middle, (low, high), float(np.std(known)))
+    return Predicted(seen.answer, dict(seen.conditions), middle, (low, high), float(np.std(known)))
 
 
 def _of_calibration(source: Calibration, what: Sequence[Observation]) -> dict[int, si.FloatArray]:
-    found = {}
-    for one in what:
-        if one.answer != FRICTION:
+    draws = {}
+    for seen in what:
+        if seen.answer != FRICTION:
             try:
-                found[id(one)] = source.answer(asked_by(one))
+                draws[id(seen)] = source.answer(asked_by(seen))
             except KeyError as error:
                 known = ", ".join(asked.said for asked in source.joint.asked)
                 raise InputError(
-                    f"the calibration did not compute the {asked_by(one).said}; it has: {known}"
+                    f"the calibration did not compute the {asked_by(seen).said}; it has: {known}"
                 ) from error
-    return found
+    return draws
 
 
 def _of_plate(
@@ -259,7 +259,7 @@ def _of_friction(
     if not wanted:
         return {}
     mixture = finger_mixture(display, predict(display))
-    where = tuple(touching(Observation(FRICTION, 0.5, 1.0, one.conditions)) for one in wanted)
+    where = tuple(touching(Observation(FRICTION, 0.5, 1.0, seen.conditions)) for seen in wanted)
     curves = friction_of_points(mixture, sobol_points(mixture, _FRICTION, seed), where, tell)
     random, joint = np.random.default_rng(seed), display.joint
     if joint is not None and joint.friction_offset_deviation > 0:
@@ -269,7 +269,7 @@ def _of_friction(
         scale = random.choice(GRID, len(curves))
         off = scale * BELIEVED[FRICTION] * random.normal(size=len(curves))
     curves = np.clip(curves + off[:, None], 0.0, 1.2)
-    return {id(one): curves[:, k] for k, one in enumerate(wanted)}
+    return {id(seen): curves[:, k] for k, seen in enumerate(wanted)}
 
 
 def _digest(content: dict[str, Any]) -> str:
@@ -287,10 +287,10 @@ def load_prediction(path: str | Path) -> BlindPrediction:
         content = read_json(path, DESCRIPTION_BYTES, "a prediction")
         if content["kind"] != KIND:
             raise ValueError
-        found = BlindPrediction(
+        prediction = BlindPrediction(
             str(content["display"]),
             str(content["how"]),
-            tuple(_read(one) for one in content["predictions"]),
+            tuple(_read(row) for row in content["predictions"]),
             dict(content["stamp"]),
             str(content["sha256"]),
         )
@@ -300,13 +300,13 @@ def load_prediction(path: str | Path) -> BlindPrediction:
         raise InputError(
             f"{path} is no prediction of squeezefilm; write one with measure predict"
         ) from error
-    if _digest(content) != found.sha256:
+    if _digest(content) != prediction.sha256:
         raise InputError(
             f"{path} was changed after it was written: its content's SHA-256 is "
-            f"{_digest(content)[:16]}…, the file says {found.sha256[:16]}…. It is not scored; a "
-            "prediction counts as it was made"
+            f"{_digest(content)[:16]}…, the file says {prediction.sha256[:16]}…. It is not scored; "
+            "a prediction counts as it was made"
         )
-    return found
+    return prediction
 
 
 def _read(row: dict[str, Any]) -> Predicted:
@@ -329,19 +329,19 @@ def score(path: str | Path, observations: Sequence[Observation]) -> tuple[Score,
     `load_prediction`, or where no observation is of anything that was predicted.
     """
     prediction = load_prediction(path)
-    found = []
-    for one in prediction.predictions:
+    scores = []
+    for foretold in prediction.predictions:
         for seen in observations:
-            if seen.answer == one.answer and _alike(one.conditions, seen.conditions):
-                found.append(_scored(one, seen))
-    if not found:
-        predicted = ", ".join(one.answer for one in prediction.predictions)
-        measured = ", ".join(one.answer for one in observations) or "nothing"
+            if seen.answer == foretold.answer and _alike(foretold.conditions, seen.conditions):
+                scores.append(_scored(foretold, seen))
+    if not scores:
+        predicted = ", ".join(foretold.answer for foretold in prediction.predictions)
+        measured = ", ".join(foretold.answer for foretold in observations) or "nothing"
         raise InputError(
             f"nothing that was measured ({measured}) is what was predicted ({predicted}, under its "
             "conditions); give the recording that the prediction was made for"
         )
-    return tuple(found)
+    return tuple(scores)
 
 
 def _alike(predicted: dict[str, float], seen: Any) -> bool:
@@ -351,15 +351,15 @@ def _alike(predicted: dict[str, float], seen: Any) -> bool:
     )
 
 
-def _scored(one: Predicted, seen: Observation) -> Score:
-    spread = math.hypot(one.standard_deviation, seen.standard_error)
-    off = (seen.value - one.median) / spread
+def _scored(predicted: Predicted, seen: Observation) -> Score:
+    spread = math.hypot(predicted.standard_deviation, seen.standard_error)
+    off = (seen.value - predicted.median) / spread
     absolute = seen.answer == FRICTION
     return Score(
-        one,
+        predicted,
         seen,
-        (one.median - seen.value) / (1.0 if absolute else seen.value),
-        one.interval[0] <= seen.value <= one.interval[1],
+        (predicted.median - seen.value) / (1.0 if absolute else seen.value),
+        predicted.interval[0] <= seen.value <= predicted.interval[1],
         -(off**2) / 2 - math.log(spread * math.sqrt(2 * math.pi)),
     )
 
@@ -372,6 +372,6 @@ def keep_scores(display: str | Path, prediction: str | Path, scores: Sequence[Sc
     target = Path(display)
     known = load_prediction(prediction)
     lines = [f"# blind prediction {Path(prediction).name}, SHA-256 {known.sha256}, {known.how}:"]
-    lines += [f"#   {one.sentence}" for one in scores]
+    lines += [f"#   {scored.sentence}" for scored in scores]
     text = read_regular_text(target, DESCRIPTION_BYTES, "display")
     write_whole(target, text.rstrip("\n") + "\n\n" + "\n".join(lines) + "\n")

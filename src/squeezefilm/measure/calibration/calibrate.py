@@ -94,8 +94,8 @@ def calibrate(
     if not every:
         raise InputError("nothing was observed; give at least one observation")
     tell = progress or (lambda _: None)
-    of_friction = tuple(one for one in every if one.answer == FRICTION)
-    of_plate = tuple(one for one in every if one.answer != FRICTION)
+    of_friction = tuple(seen for seen in every if seen.answer == FRICTION)
+    of_plate = tuple(seen for seen in every if seen.answer != FRICTION)
     likelihood = FrictionLikelihood(of_friction)
     _ = likelihood.where  # refused before any long work
     if of_plate and isinstance(display.actuator, AnnularStator):
@@ -123,7 +123,7 @@ def friction_before(display: Display, seed: int) -> FrictionInterval | None:
     drawn, refused = evaluate(mixture, sobol_points(mixture, _BEFORE, seed), lambda _: None)
     if refused.share > MOST_REFUSED:
         return None
-    low, middle, high = (float(one) for one in quantiles(drawn.friction))
+    low, middle, high = (float(quantile) for quantile in quantiles(drawn.friction))
     return FrictionInterval(middle, (low, high), float(np.nanmedian(drawn.amplitude)))
 
 
@@ -168,13 +168,13 @@ def _joint(finger: _Finger, plate: PlateFit | None, count: int, seed: int) -> _M
 
     random = np.random.default_rng(seed)
     p, volts = finger.prediction, finger.prediction.voltage
-    found = np.full((count, 2), np.nan)
+    felt = np.full((count, 2), np.nan)
     free = np.full(count, p.held_amplitude)
     modes: list[WorkingMode] = [p.mode] * count
     rows = np.zeros(count, dtype=int)
     if plate is not None:
         rows = random.integers(len(plate.posterior.scores), size=count)
-        answers = [plate.predictive.of(one)[rows] for one in WORKING]
+        answers = [plate.predictive.of(answer)[rows] for answer in WORKING]
         free = answers[1] * (volts or 0.0) if volts is not None else free
         modes = [
             dataclasses.replace(p.mode, amplitude_per_volt=float(a), quality_factor=float(q))
@@ -182,10 +182,10 @@ def _joint(finger: _Finger, plate: PlateFit | None, count: int, seed: int) -> _M
         ]
     for number, draw in enumerate(finger.mixture.draws(finger.points)):
         try:
-            found[number] = _felt(finger.mixture, draw, modes[number], float(free[number]))
+            felt[number] = _felt(finger.mixture, draw, modes[number], float(free[number]))
         except SqueezefilmError:
             continue
-    amplitude, friction = found.T
+    amplitude, friction = felt.T
     alone = friction
     if finger.draws is not None:
         where = (Touching(float(np.nanmedian(amplitude))),)
@@ -229,7 +229,7 @@ def _calibration(
     joint, refused = made.joint, float(np.mean(~np.isfinite(made.joint.friction)))
     after = None
     if refused <= MOST_REFUSED:
-        low, middle, high = (float(one) for one in quantiles(joint.friction))
+        low, middle, high = (float(quantile) for quantile in quantiles(joint.friction))
         after = FrictionInterval(middle, (low, high), float(np.nanmedian(made.with_finger)))
     misfits = [] if plate is None else [plate.posterior.misfit]
     misfits += [] if finger.posterior is None else [finger.posterior.misfit]
@@ -261,36 +261,38 @@ def _errors(plate: PlateFit) -> dict[str, float]:
 
 
 def _doubts(plate: PlateFit | None, finger: _Finger, refused: float) -> tuple[str, ...]:
-    found = []
+    doubts = []
     if plate is not None and plate.posterior.effective < 200:
-        found.append(
+        doubts.append(
             f"The draws of the plate are worth {plate.posterior.effective:.0f} independent ones "
             "only; the ends of its intervals are rough."
         )
     if finger.posterior is not None and finger.posterior.effective < FEWEST:
-        found.append(
+        doubts.append(
             f"The draws of finger and laws are worth {finger.posterior.effective:.0f} independent "
             "ones only: the observations of friction are sharper than what was drawn. The ends of "
             "friction's interval are rough; draw more."
         )
     if refused > MOST_REFUSED:
-        found.append(
+        doubts.append(
             f"{si.percent(refused, 1)} of the draws have no friction at this voltage, so it is "
             "given no interval."
         )
-    return tuple(found)
+    return tuple(doubts)
 
 
 def _values(plate: PlateFit | None, finger: _Finger, joint: Joint) -> tuple[CalibratedValue, ...]:
     """Plate and finger before and after."""
     from scipy.special import ndtr
 
-    found = []
+    values = []
     if plate is not None:
         after = plate.problem.scores.values(plate.posterior.scores)
-        for k, one in enumerate(plate.problem.scores.parameters):
+        for k, parameter in enumerate(plate.problem.scores.parameters):
             left = float(np.std(plate.posterior.scores[:, k]))
-            found.append(_value(one.path, one.unit, one.distribution, after[:, k], left))
+            values.append(
+                _value(parameter.path, parameter.unit, parameter.distribution, after[:, k], left)
+            )
     if finger.posterior is not None:
         share = ndtr(joint.finger)
         for k, item in enumerate(finger.mixture.inputs):
@@ -299,14 +301,14 @@ def _values(plate: PlateFit | None, finger: _Finger, joint: Joint) -> tuple[Cali
                 drawn = np.array(item.drawn(share[:, k]), dtype=float)
                 unit = getattr(item, "unit", si.Unit("1"))
                 left = float(np.std(joint.finger[:, k]))
-                found.append(_value(item.path, unit, distribution, drawn, left))
-    return tuple(found)
+                values.append(_value(item.path, unit, distribution, drawn, left))
+    return tuple(values)
 
 
 def _value(
     path: str, unit: si.Unit, prior: Distribution, after: si.FloatArray, left: float
 ) -> CalibratedValue:
-    low, middle, high = (float(one) for one in np.quantile(after, _TAILS))
+    low, middle, high = (float(quantile) for quantile in np.quantile(after, _TAILS))
     ends = prior.quantile(np.array([_TAILS[0], _TAILS[-1]]))
     return CalibratedValue(
         path,
@@ -331,8 +333,8 @@ def _identified(plate: PlateFit | None, finger: _Finger) -> Identification:
             identification(finger.mixture.paths, scores, finger.posterior.weights.sum(axis=1))
         )
     return Identification(
-        tuple(one for part in parts for one in part.known),
-        tuple(one for part in parts for one in part.combinations),
+        tuple(known for part in parts for known in part.known),
+        tuple(known for part in parts for known in part.combinations),
     )
 
 

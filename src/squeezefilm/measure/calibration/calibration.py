@@ -37,7 +37,7 @@ class CalibratedValue:
     def sentence(self) -> str:
         """As one says it."""
         middle, low, high = (
-            si.format_quantity(one, self.unit, 4) for one in (self.median, *self.interval)
+            si.format_quantity(number, self.unit, 4) for number in (self.median, *self.interval)
         )
         return f"{self.path} = {middle} ({low} to {high})"
 
@@ -110,12 +110,12 @@ class Calibration:
     @property
     def fits(self) -> bool:
         """True where the model explains all that was observed."""
-        return all(one.judgement == "fits" for one in self.misfits)
+        return all(misfit.judgement == "fits" for misfit in self.misfits)
 
     @property
     def sentences(self) -> tuple[str, ...]:
         """Sentences on what came out, doubts first."""
-        said = [*self.doubts, *(one.sentence for one in self.misfits)]
+        said = [*self.doubts, *(misfit.sentence for misfit in self.misfits)]
         if self.after is not None:
             low, high = self.after.interval
             words = f"µ′/µ = {self.after.median:.2f} ({low:.2f}–{high:.2f})"
@@ -146,15 +146,15 @@ class Calibration:
             "observations": to_json(self.observations),
             "parameters": [
                 {
-                    "path": one.path,
-                    "unit": one.unit.symbol,
-                    "prior_interval": list(one.prior),
-                    "median": one.median,
-                    "standard_deviation": one.standard_deviation,
-                    "interval": list(one.interval),
-                    "share_of_prior_spread_left": one.left,
+                    "path": value.path,
+                    "unit": value.unit.symbol,
+                    "prior_interval": list(value.prior),
+                    "median": value.median,
+                    "standard_deviation": value.standard_deviation,
+                    "interval": list(value.interval),
+                    "share_of_prior_spread_left": value.left,
                 }
-                for one in self.values
+                for value in self.values
             ],
             "combinations": to_json(self.identification.combinations),
             "laws": to_json(self.laws),

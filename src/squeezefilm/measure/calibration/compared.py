@@ -52,44 +52,44 @@ def compared(
         before, after = (
             np.exp(problem.answers(scores)) for scores in (points, plate.posterior.scores)
         )
-        for one, column in zip(problem.observations, problem.columns, strict=True):
-            intervals[id(one)] = _ends(before[:, column], one), _ends(after[:, column], one)
+        for seen, column in zip(problem.observations, problem.columns, strict=True):
+            intervals[id(seen)] = _ends(before[:, column], seen), _ends(after[:, column], seen)
     if friction is not None:
         posterior = friction.posterior
         drawn = posterior.curves[:first_draws]
-        for k, one in enumerate(posterior.likelihood.observations):
-            intervals[id(one)] = _ends(drawn[:, k], one), _ends(friction.curves[:, k], one)
-    return tuple(_compared(one, *intervals.get(id(one), ((), ()))) for one in observations)
+        for k, seen in enumerate(posterior.likelihood.observations):
+            intervals[id(seen)] = _ends(drawn[:, k], seen), _ends(friction.curves[:, k], seen)
+    return tuple(_compared(seen, *intervals.get(id(seen), ((), ()))) for seen in observations)
 
 
-def _ends(values: si.FloatArray, one: Observation) -> tuple[float, ...]:
+def _ends(values: si.FloatArray, seen: Observation) -> tuple[float, ...]:
     """Low end, median and high end over what was measured; none where most draws have no value."""
-    known = values[np.isfinite(values)] / one.value
+    known = values[np.isfinite(values)] / seen.value
     if known.size < 0.5 * values.size:
         return ()
     return tuple(round(float(end), _DIGITS) for end in np.quantile(known, _TAILS))
 
 
 def _compared(
-    one: Observation, before: tuple[float, ...], after: tuple[float, ...]
+    seen: Observation, before: tuple[float, ...], after: tuple[float, ...]
 ) -> ComparedAnswer:
-    of_friction = one.answer == FRICTION
-    unit = UNITS.get(one.answer, "")
-    measured = si.format_quantity(one.value, si.Unit(unit), 5) if unit else f"{one.value:.4g}"
+    of_friction = seen.answer == FRICTION
+    unit = UNITS.get(seen.answer, "")
+    measured = si.format_quantity(seen.value, si.Unit(unit), 5) if unit else f"{seen.value:.4g}"
     return ComparedAnswer(
-        said=said_of(one),
+        said=said_of(seen),
         measured=measured,
-        error=float(f"{one.standard_error / one.value:.3g}"),
+        error=float(f"{seen.standard_error / seen.value:.3g}"),
         before=before,
         after=after,
-        recording=one.recording,
-        relative_friction=float(f"{one.value:.6g}") if of_friction else None,
+        recording=seen.recording,
+        relative_friction=float(f"{seen.value:.6g}") if of_friction else None,
         vibration_amplitude=(
-            float(f"{one.conditions['vibration_amplitude']:.6g}") if of_friction else None
+            float(f"{seen.conditions['vibration_amplitude']:.6g}") if of_friction else None
         ),
     )
 
 
-def said_of(one: Observation) -> str:
+def said_of(seen: Observation) -> str:
     """An observation's answer in words, with the conditions that tell it from others."""
-    return touching(one).said if one.answer == FRICTION else asked_by(one).said
+    return touching(seen).said if seen.answer == FRICTION else asked_by(seen).said

@@ -100,14 +100,14 @@ def scales_of(scores: si.DimensionlessArray) -> si.DimensionlessArray:
 def unit_covariances(names: Sequence[str]) -> si.DimensionlessArray:
     """Covariances of what the model may be off by (relative), of every kind at a scale of 1, shape
     (kinds, answers, answers), for answers by `names`."""
-    found = np.zeros((len(KINDS), len(names), len(names)))
+    covariances = np.zeros((len(KINDS), len(names), len(names)))
     shares = np.array([BELIEVED[name] for name in names])
     for number, kind in enumerate(KINDS):
         own = np.array([name in kind for name in names])
         shared = SHARED if kind == FREQUENCIES else 0.0
         alike = np.where(np.eye(len(names), dtype=bool), 1.0, shared)
-        found[number] = np.outer(own * shares, own * shares) * alike
-    return found
+        covariances[number] = np.outer(own * shares, own * shares) * alike
+    return covariances
 
 
 def solver_covariance(names: Sequence[str], errors: si.DimensionlessArray) -> si.DimensionlessArray:

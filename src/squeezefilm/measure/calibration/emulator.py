@@ -47,10 +47,10 @@ class Emulator:
     def __call__(self, coordinates: si.FloatArray) -> si.FloatArray:
         """Logarithms of the answers at points, shape (points, answers)."""
         x = np.asarray(coordinates, dtype=float)
-        found = _with_one(x) @ self._trends
+        logarithms = _with_one(x) @ self._trends
         for k, lengths in enumerate(self._lengths):
-            found[:, k] += _matern(x / lengths, self._shown / lengths) @ self._weights[:, k]
-        return np.asarray(found)
+            logarithms[:, k] += _matern(x / lengths, self._shown / lengths) @ self._weights[:, k]
+        return np.asarray(logarithms)
 
 
 def emulator_of(

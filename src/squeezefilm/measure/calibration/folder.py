@@ -98,15 +98,15 @@ def calibrate_display(
         raise InputError(
             f"{folder} holds nothing that a calibration can use: {'; '.join(seen.left_out)}"
         )
-    found = calibrate(
+    calibration = calibrate(
         display,
         seen.observations,
         parameters=parameters,
         seed=seed,
         progress=progress,
     )
-    file = None if out is None else write_calibrated(found, out, seen.recordings)
-    return FolderCalibration(found, seen.recordings, seen.left_out, file)
+    file = None if out is None else write_calibrated(calibration, out, seen.recordings)
+    return FolderCalibration(calibration, seen.recordings, seen.left_out, file)
 
 
 @reads_text

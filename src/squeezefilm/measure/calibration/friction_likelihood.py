@@ -79,17 +79,17 @@ class FrictionLikelihood:
     @cached_property
     def where(self) -> tuple[Touching, ...]:
         """The conditions, in the order of the observations."""
-        return tuple(touching(one) for one in self.observations)
+        return tuple(touching(seen) for seen in self.observations)
 
     @cached_property
     def observed(self) -> si.DimensionlessArray:
         """Observed values, shape (observations,)."""
-        return np.array([one.value for one in self.observations])
+        return np.array([seen.value for seen in self.observations])
 
     @cached_property
     def noise(self) -> si.DimensionlessArray:
         """Standard errors, shape (observations,)."""
-        return np.array([one.standard_error for one in self.observations])
+        return np.array([seen.standard_error for seen in self.observations])
 
     def _covariance(self, scale: float) -> si.FloatArray:
         error = scale * BELIEVED[FRICTION]
@@ -102,13 +102,13 @@ class FrictionLikelihood:
 
         off = self.observed - curves
         known = np.isfinite(off).all(axis=1)
-        found = np.full((len(curves), GRID.size), -math.inf)
+        logarithms = np.full((len(curves), GRID.size), -math.inf)
         for k, scale in enumerate(GRID):
             factor = cho_factor(self._covariance(float(scale)), lower=True)
             solved = cho_solve(factor, off[known].T)
             determinant = 2 * float(np.sum(np.log(np.diag(factor[0]))))
-            found[known, k] = -(np.sum(off[known].T * solved, axis=0) + determinant) / 2
-        return found
+            logarithms[known, k] = -(np.sum(off[known].T * solved, axis=0) + determinant) / 2
+        return logarithms
 
     def errors(
         self,
@@ -122,7 +122,7 @@ class FrictionLikelihood:
         one seed the first conditions are the same whatever follows them."""
         own, far = _likeness(at, at), _likeness(self.where, at)
         noise = np.random.default_rng(seed).normal(size=(len(at), len(curves))).T
-        found = np.zeros((len(curves), len(at)))
+        errors = np.zeros((len(curves), len(at)))
         for scale in np.unique(scales):
             rows = scales == scale
             error = (scale * BELIEVED[FRICTION]) ** 2
@@ -130,8 +130,8 @@ class FrictionLikelihood:
             left = error * (own - far.T @ gain)
             # A condition named twice has no error of its own: a hair keeps the factor.
             root = np.linalg.cholesky(left + 1e-9 * error * np.eye(len(at)))
-            found[rows] = (self.observed - curves[rows]) @ gain + noise[rows] @ root.T
-        return found
+            errors[rows] = (self.observed - curves[rows]) @ gain + noise[rows] @ root.T
+        return errors
 
     def misfit(self, curves: si.DimensionlessArray) -> Misfit:
         """Judgement of how well the best of the draws explains what was observed, without a

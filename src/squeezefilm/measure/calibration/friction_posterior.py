@@ -48,27 +48,29 @@ def finger_mixture(display: Display, prediction: Prediction) -> Mixture:
     mixture = copy.copy(Mixture(display, prediction, driven=True))
     # A drawn actuator is the plate's posterior, which is drawn beside this one.
     beside = ("actuator.", "joint.")
-    mixture.inputs = tuple(one for one in mixture.inputs if not one.path.startswith(beside))
-    mixture.paths = tuple(one.path for one in mixture.inputs)
+    mixture.inputs = tuple(item for item in mixture.inputs if not item.path.startswith(beside))
+    mixture.paths = tuple(item.path for item in mixture.inputs)
     return mixture
 
 
 def friction_of(mixture: Mixture, draw: Draw, where: tuple[Touching, ...]) -> si.DimensionlessArray:
     """µ′/µ of a draw under each of some conditions, NaN where its contact is refused."""
-    found = np.full(len(where), np.nan)
+    friction = np.full(len(where), np.nan)
     law = mixture.law(draw)
-    for force, speed in dict.fromkeys((one.force, one.speed) for one in where):
-        rows = [k for k, one in enumerate(where) if (one.force, one.speed) == (force, speed)]
+    for force, speed in dict.fromkeys((at.force, at.speed) for at in where):
+        rows = [k for k, at in enumerate(where) if (at.force, at.speed) == (force, speed)]
         here = dataclasses.replace(
             law,
             normal_force=law.normal_force if force is None else force,
             speed=law.speed if speed is None else speed,
         )
         try:
-            found[rows] = between_limits(here, draw, np.array([where[k].amplitude for k in rows]))
+            friction[rows] = between_limits(
+                here, draw, np.array([where[k].amplitude for k in rows])
+            )
         except SqueezefilmError:
             continue
-    return found
+    return friction
 
 
 @as_drawn()
@@ -82,12 +84,12 @@ def friction_of_points(
 
     Kept on disk in pieces, so that what was interrupted goes on. `tell` is told some ten times.
     """
-    found = np.empty((len(points), len(where)))
+    friction = np.empty((len(points), len(where)))
     about = json.dumps(
         [
             to_json(mixture.display),
             mixture.paths,
-            [one.spread for one in mixture.inputs],
+            [item.spread for item in mixture.inputs],
             mixture.prediction.frequency,
             mixture.prediction.mode.half_wavelength,
             mixture.model,
@@ -106,8 +108,8 @@ def friction_of_points(
                 [friction_of(mixture, draw, where) for draw in mixture.draws(piece)]
             )
             _KEPT.put(question, kept)
-        found[first : first + len(piece)] = kept.reshape(len(piece), len(where))
-    return found
+        friction[first : first + len(piece)] = kept.reshape(len(piece), len(where))
+    return friction
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,11 +148,11 @@ class FrictionPosterior:
         from squeezefilm.physics.uncertainty.model_choices import Choice
 
         weight = self.weights.sum(axis=1)
-        for k, one in enumerate(self.mixture.inputs):
-            if isinstance(one, Choice):
-                drawn = np.array(one.drawn(self.points[:, k]))
-                after = {o.name: float(weight[drawn == o.name].sum()) for o in one.options}
-                yield one.path, {o.name: o.weight for o in one.options}, after
+        for k, item in enumerate(self.mixture.inputs):
+            if isinstance(item, Choice):
+                drawn = np.array(item.drawn(self.points[:, k]))
+                after = {o.name: float(weight[drawn == o.name].sum()) for o in item.options}
+                yield item.path, {o.name: o.weight for o in item.options}, after
 
 
 @dataclass(frozen=True, eq=False)
@@ -228,16 +230,16 @@ def friction_posterior(
     more_draws = draws // 2
     points = qmc.Sobol(len(mixture.inputs), rng=seed).random(draws)
     curves = friction_of_points(mixture, points, likelihood.where, tell)
-    found = weighted(mixture, likelihood, points, curves)
+    posterior = weighted(mixture, likelihood, points, curves)
     # Draws of every round count by the mixture of all that was drawn from.
     proposals: list[tuple[int, si.FloatArray | None, si.FloatArray | None]] = [(draws, None, None)]
     for _ in range(ROUNDS):
         scores = ndtri(np.clip(points, 1e-9, 1 - 1e-9))
-        weight = found.weights.sum(axis=1)
+        weight = posterior.weights.sum(axis=1)
         middle = weight @ scores
         spread = (scores - middle).T @ (weight[:, None] * (scores - middle))
         # Few draws know little of a covariance: as much of the priors' as they are worth.
-        share = found.effective / (found.effective + scores.shape[1])
+        share = posterior.effective / (posterior.effective + scores.shape[1])
         spread = _WIDER * (share * spread + (1 - share) * np.eye(len(middle)))
         fresh = random.multivariate_normal(middle, spread, more_draws)
         at_prior = random.random(more_draws) < _DEFENSIVE
@@ -257,8 +259,8 @@ def friction_posterior(
                     np.log(1 - _DEFENSIVE) + _log_ratio(scores, centre, covariance),
                 )
             parts.append(np.log(count / total) + logs)
-        found = weighted(mixture, likelihood, points, curves, logsumexp(parts, axis=0))
-    return found
+        posterior = weighted(mixture, likelihood, points, curves, logsumexp(parts, axis=0))
+    return posterior
 
 
 def _log_ratio(

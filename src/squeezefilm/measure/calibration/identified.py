@@ -80,16 +80,16 @@ class Identification:
             "not told": "The data say next to nothing of",
         }
         for standing, verb in words.items():
-            told = [one for one in self.known if one.standing == standing]
+            told = [known for known in self.known if known.standing == standing]
             names = [
-                one.path
+                known.path
                 if standing == "not told"
-                else f"{one.path} ({si.percent(one.left)} of its prior spread is left)"
-                for one in told
+                else f"{known.path} ({si.percent(known.left)} of its prior spread is left)"
+                for known in told
             ]
             if names:
                 said.append(f"{verb} {_and(names)}.")
-        said += [one.sentence for one in self.combinations if len(one.parts) > 1]
+        said += [known.sentence for known in self.combinations if len(known.parts) > 1]
         return tuple(said)
 
 
@@ -183,12 +183,12 @@ class Candidate:
 
 def candidates(answers: Mapping[str, si.FloatArray]) -> list[Candidate]:
     """Those of `ACCURACIES` among draws of answers and parameters by name."""
-    found = []
+    options = []
     for name, values in answers.items():
         if name in ACCURACIES:
             share, words = ACCURACIES[name]
-            found.append(Candidate(words, f"{100 * share:.3g} %", np.log(np.abs(values)), share))
-    return found
+            options.append(Candidate(words, f"{100 * share:.3g} %", np.log(np.abs(values)), share))
+    return options
 
 
 def friction_candidate(values: si.DimensionlessArray, amplitude: si.Metre) -> Candidate:
@@ -213,11 +213,13 @@ def ranked(
     noise = random.normal(size=rows.size)
     found = [
         NextMeasurement(
-            one.name, one.accuracy, min(_left(friction, one, rows, noise, known) / width, 1.0)
+            option.name,
+            option.accuracy,
+            min(_left(friction, option, rows, noise, known) / width, 1.0),
         )
-        for one in options
+        for option in options
     ]
-    return tuple(sorted(found, key=lambda one: one.left))
+    return tuple(sorted(found, key=lambda option: option.left))
 
 
 def _left(

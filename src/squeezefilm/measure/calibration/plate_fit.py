@@ -51,7 +51,7 @@ class PlateFit:
     @property
     def paths(self) -> tuple[str, ...]:
         """Paths of the parameters."""
-        return tuple(one.path for one in self.problem.scores.parameters)
+        return tuple(parameter.path for parameter in self.problem.scores.parameters)
 
     def values(self, scores: si.DimensionlessArray) -> Mapping[str, float]:
         """Values by path of one row of scores (parameters,)."""
@@ -76,7 +76,7 @@ def answers_to_solve(display: Display, observations: tuple[Observation, ...]) ->
         lines = (n - 1, 0) if m == 0 else (0, m - 1)
         if max(lines) >= 2:
             asked.append(Asked(MODE_FREQUENCY, lines))
-    asked += [asked_by(one) for one in observations]
+    asked += [asked_by(seen) for seen in observations]
     return tuple(dict.fromkeys(asked))
 
 
@@ -87,7 +87,7 @@ def design_sizes(parameters: int) -> tuple[int, int]:
 
 def _rough(problem: PlateProblem) -> bool:
     """True where the emulator's error widens what some observation says."""
-    noise = [one.standard_error / one.value for one in problem.observations]
+    noise = [seen.standard_error / seen.value for seen in problem.observations]
     errors = problem.emulator.errors[problem.columns]
     return bool(np.any(errors > _SMALL * np.array(noise)))
 
@@ -105,8 +105,8 @@ class Solves:
     ) -> None:
         self.display, self.scores, self.tell = display, scores, tell
         self.asked = answers_to_solve(display, observations)
-        observed = {asked_by(one) for one in observations}
-        self._needed = np.array([one in observed or one in WORKING for one in self.asked])
+        observed = {asked_by(seen) for seen in observations}
+        self._needed = np.array([answer in observed or answer in WORKING for answer in self.asked])
         self.points: list[si.FloatArray] = []
         self.logs: list[si.FloatArray] = []
         self.errors: list[si.FloatArray] = []
@@ -116,25 +116,25 @@ class Solves:
 
     def add(self, points: si.DimensionlessArray, said: str) -> None:
         """Solve plates at scores; one that has no such mode is left out and counted."""
-        paths = [one.path for one in self.scores.parameters]
+        paths = [parameter.path for parameter in self.scores.parameters]
         for number, (point, row) in enumerate(
             zip(points, self.scores.values(points), strict=True), 1
         ):
             self.tell(f"{said}: plate {number} of {len(points)}")
             try:
                 display = with_calibrated(self.display, dict(zip(paths, row.tolist(), strict=True)))
-                found = solved_answers(display.actuator, self.asked)
+                solved = solved_answers(display.actuator, self.asked)
             except SqueezefilmError as error:
                 self._lose(str(error))
                 continue
-            lacking = self._needed & ~(found.values > 0)
+            lacking = self._needed & ~(solved.values > 0)
             if np.any(lacking):
                 self._lose(f"it has no {self.asked[int(np.argmax(lacking))].said}")
                 continue
             self.points.append(point)
-            self.logs.append(np.log(found.values))
-            self.errors.append(found.errors)
-            self.readings.append(found.readings)
+            self.logs.append(np.log(solved.values))
+            self.errors.append(solved.errors)
+            self.readings.append(solved.readings)
 
     def _lose(self, why: str) -> None:
         self.lost += 1
@@ -156,9 +156,10 @@ class Solves:
         whole = np.asarray(np.isfinite(logs).all(axis=0))
         emulator = emulator_of(self.scores.coordinates(np.array(self.points)), logs[:, whole])
         solver_errors, readings = (
-            np.sqrt(np.mean(np.square(one), axis=0))[whole] for one in (self.errors, self.readings)
+            np.sqrt(np.mean(np.square(part), axis=0))[whole]
+            for part in (self.errors, self.readings)
         )
-        asked = tuple(one for one, has in zip(self.asked, whole.tolist(), strict=True) if has)
+        asked = tuple(part for part, has in zip(self.asked, whole.tolist(), strict=True) if has)
         return PlateProblem(self.scores, emulator, asked, solver_errors, readings, observations)
 
 

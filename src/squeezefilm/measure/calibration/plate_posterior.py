@@ -61,29 +61,29 @@ class PlateProblem:
     observations: tuple[Observation, ...]
 
     def __post_init__(self) -> None:
-        for one in self.observations:
-            if not (one.value > 0 and one.standard_error > 0):
+        for seen in self.observations:
+            if not (seen.value > 0 and seen.standard_error > 0):
                 raise InputError(
-                    f"{asked_by(one).said} was observed as {one.value:.6g} with a standard error "
-                    f"of {one.standard_error:.6g}; both must be above 0"
+                    f"{asked_by(seen).said} was observed as {seen.value:.6g} with a standard error "
+                    f"of {seen.standard_error:.6g}; both must be above 0"
                 )
-            if asked_by(one) not in self.asked:
-                raise InputError(f"the emulator does not know the {asked_by(one).said}")
+            if asked_by(seen) not in self.asked:
+                raise InputError(f"the emulator does not know the {asked_by(seen).said}")
 
     @cached_property
     def columns(self) -> list[int]:
         """Columns of the emulator's answers that the observations are of."""
-        return [self.asked.index(asked_by(one)) for one in self.observations]
+        return [self.asked.index(asked_by(seen)) for seen in self.observations]
 
     @cached_property
     def observed(self) -> si.FloatArray:
         """Logarithms of what was observed, shape (observations,)."""
-        return np.log([one.value for one in self.observations])
+        return np.log([seen.value for seen in self.observations])
 
     @cached_property
     def noise(self) -> si.DimensionlessArray:
         """Relative standard errors of the observations, shape (observations,)."""
-        return np.array([one.standard_error / one.value for one in self.observations])
+        return np.array([seen.standard_error / seen.value for seen in self.observations])
 
     @cached_property
     def reading_covariance(self) -> si.DimensionlessArray:
@@ -92,16 +92,16 @@ class PlateProblem:
         that all readings of an answer share, which no number of them averages away."""
         same = np.equal.outer(self.columns, self.columns)
         shared = self.readings[self.columns]
-        own = np.array([READ_ALONE.get(one.answer, 0.0) for one in self.observations])
+        own = np.array([READ_ALONE.get(seen.answer, 0.0) for seen in self.observations])
         return np.asarray(np.outer(shared, shared) * same + np.diag(self.noise**2 + own**2))
 
     @cached_property
     def model_covariance(self) -> si.DimensionlessArray:
         """Covariance of the emulator's and the solver's relative errors, shape (asked, asked); not
         to be used of an answer that others fix (`moved`)."""
-        names = [one.name for one in self.asked]
-        found = solver_covariance(names, self.solver_errors)
-        return np.asarray(found + np.diag(self.emulator.errors**2))
+        names = [answer.name for answer in self.asked]
+        covariance = solver_covariance(names, self.solver_errors)
+        return np.asarray(covariance + np.diag(self.emulator.errors**2))
 
     @cached_property
     def covariance(self) -> si.DimensionlessArray:
@@ -114,12 +114,12 @@ class PlateProblem:
     @cached_property
     def discrepancies(self) -> si.DimensionlessArray:
         """`unit_covariances` of the emulator's answers, shape (kinds, asked, asked)."""
-        return unit_covariances([one.name for one in self.asked])
+        return unit_covariances([answer.name for answer in self.asked])
 
     @property
     def names(self) -> list[str]:
         """Names of what was observed."""
-        return [asked_by(one).said for one in self.observations]
+        return [asked_by(seen).said for seen in self.observations]
 
     def answers(self, scores: si.DimensionlessArray) -> si.FloatArray:
         """Logarithms of all answers at scores (points, parameters), shape (points, asked)."""
@@ -131,7 +131,7 @@ class PlateProblem:
         three = [Asked(name) for name in BOUND]
         if not set(three) <= set(self.asked):
             return None
-        short, opened, coupling = (self.asked.index(one) for one in three)
+        short, opened, coupling = (self.asked.index(answer) for answer in three)
         return short, opened, coupling
 
     def bound(self, logs: si.FloatArray) -> si.FloatArray:
@@ -140,23 +140,23 @@ class PlateProblem:
         if self._bound is None:
             return logs
         short, opened, coupling = self._bound
-        found = np.array(logs)
-        squares = np.exp(2 * np.minimum(found[:, coupling], _MOST_COUPLED))
-        found[:, opened] = found[:, short] - np.log1p(-squares) / 2
-        return found
+        bound = np.array(logs)
+        squares = np.exp(2 * np.minimum(bound[:, coupling], _MOST_COUPLED))
+        bound[:, opened] = bound[:, short] - np.log1p(-squares) / 2
+        return bound
 
     def moved(self, logs: si.FloatArray) -> si.DimensionlessArray:
         """By how much errors of the answers (columns) move the answers (rows) at `logs` (points,
         asked), shape (points, asked, asked): each its own but for a parallel resonance that is
         `bound`."""
-        found = np.tile(np.eye(len(self.asked)), (len(logs), 1, 1))
+        moved = np.tile(np.eye(len(self.asked)), (len(logs), 1, 1))
         if self._bound is not None:
             short, opened, coupling = self._bound
             squares = np.exp(2 * np.minimum(logs[:, coupling], _MOST_COUPLED))
-            found[:, opened, opened] = 0.0
-            found[:, opened, short] = 1.0
-            found[:, opened, coupling] = squares / (1 - squares)
-        return found
+            moved[:, opened, opened] = 0.0
+            moved[:, opened, short] = 1.0
+            moved[:, opened, coupling] = squares / (1 - squares)
+        return moved
 
     def residuals(self, scores: si.DimensionlessArray) -> si.FloatArray:
         """Observed less predicted logarithms, shape (points, observations)."""
@@ -178,9 +178,9 @@ class PlateProblem:
         parameters + kinds): scores, and last those of the discrepancy's scales; none of a
         discrepancy `_FURTHEST` from the usual, which proposals of the sampler reach."""
         usual = np.all(np.abs(points[:, -len(KINDS) :]) < _FURTHEST, axis=1)
-        found = np.full(len(points), -np.inf)
-        found[usual] = self._log_posterior(points[usual])
-        return found
+        densities = np.full(len(points), -np.inf)
+        densities[usual] = self._log_posterior(points[usual])
+        return densities
 
     def _log_posterior(self, points: si.DimensionlessArray) -> si.DimensionlessArray:
         scores, scales = points[:, : -len(KINDS)], scales_of(points[:, -len(KINDS) :])
@@ -229,8 +229,8 @@ def best_fit(problem: PlateProblem, starts: int = 4, seed: int = 1) -> si.Dimens
 
     random = np.random.default_rng(seed)
     begun = np.vstack([np.zeros(count), random.normal(0, 0.7, (max(starts - 1, 0), count))])
-    fits = [least_squares(off, one, jac=slopes) for one in begun]
-    return np.asarray(min(fits, key=lambda one: float(one.cost)).x)
+    fits = [least_squares(off, fitted, jac=slopes) for fitted in begun]
+    return np.asarray(min(fits, key=lambda fitted: float(fitted.cost)).x)
 
 
 def sampled_posterior(
@@ -310,7 +310,7 @@ class Predictive:
         """The draws of one answer, shape (draws,). Raises `InputError` for one that is not
         there."""
         if asked not in self.asked:
-            known = ", ".join(one.said for one in self.asked)
+            known = ", ".join(answer.said for answer in self.asked)
             raise InputError(f"nothing was computed of the {asked.said}; there are: {known}")
         return np.asarray(self.values[:, self.asked.index(asked)])
 

@@ -88,17 +88,17 @@ def calibration_parameters(
 
 def _usual(actuator: RectangularPlate | DiscPlate) -> list[str]:
     """The paths of `ASSUMED` that an actuator has and that its answers depend on."""
-    found = [path for path in ASSUMED if path in SHARES]
+    paths = [path for path in ASSUMED if path in SHARES]
     plate = isinstance(actuator, RectangularPlate)
-    found += ["actuator.substrate.young_modulus", "actuator.thickness"]
-    found += ["actuator.patches.*.thickness" if plate else "actuator.ceramic_thickness"]
-    found += ["actuator.substrate.density"]
+    paths += ["actuator.substrate.young_modulus", "actuator.thickness"]
+    paths += ["actuator.patches.*.thickness" if plate else "actuator.ceramic_thickness"]
+    paths += ["actuator.substrate.density"]
     # With a quality factor of its own for the substrate every material has one.
     of_all = actuator.substrate.quality_factor is None
-    found += ["actuator.quality_factor" if of_all else "actuator.ceramic.quality_factor"]
+    paths += ["actuator.quality_factor" if of_all else "actuator.ceramic.quality_factor"]
     if actuator.glue is not None:
-        found += ["actuator.glue.thickness", "actuator.glue.young_modulus"]
-    return [path for path in ASSUMED if path in found]
+        paths += ["actuator.glue.thickness", "actuator.glue.young_modulus"]
+    return [path for path in ASSUMED if path in paths]
 
 
 def _parameter(display: Display, path: str, prior: Distribution | None) -> Parameter:
@@ -174,14 +174,14 @@ def ceramic_with_shares(
         si.require(name, share, above=0)
     full = ceramic.full_constants
     scaled: dict[str, Any] = {}
-    for one in dataclasses.fields(full):
-        kind, value = one.name.split("_")[0], getattr(full, one.name)
+    for constant in dataclasses.fields(full):
+        kind, value = constant.name.split("_")[0], getattr(full, constant.name)
         if kind in ("free", "stress"):
-            scaled[one.name] = None
+            scaled[constant.name] = None
         elif kind == "compliance":
-            scaled[one.name] = value / stiffness
+            scaled[constant.name] = value / stiffness
         else:
-            scaled[one.name] = value * (charge if kind == "charge" else permittivity)
+            scaled[constant.name] = value * (charge if kind == "charge" else permittivity)
     constants = dataclasses.replace(full, **scaled)
     s11, s12 = constants.compliance_11, constants.compliance_12
     return dataclasses.replace(
@@ -217,26 +217,31 @@ class NormalScores:
         from scipy.special import ndtr
 
         share = ndtr(np.clip(scores, -8.0, 8.0))
-        columns = [one.distribution.quantile(share[:, k]) for k, one in enumerate(self.parameters)]
+        columns = [
+            parameter.distribution.quantile(share[:, k])
+            for k, parameter in enumerate(self.parameters)
+        ]
         return np.stack(columns, axis=1) if columns else np.zeros((len(scores), 0))
 
     def coordinates(self, scores: si.DimensionlessArray) -> si.DimensionlessArray:
         """The emulator's coordinates of scores, shape (points, parameters)."""
         logs = np.log(np.abs(self.values(scores)))
-        found = np.asarray((logs - self._middle) / np.abs(self._half))
+        coordinates = np.asarray((logs - self._middle) / np.abs(self._half))
         if self._glue is not None:
-            thick, stiff = found[:, self._glue].T
-            found[:, self._glue] = np.stack([thick - stiff, thick + stiff], axis=1) / 2
-        return found
+            thick, stiff = coordinates[:, self._glue].T
+            coordinates[:, self._glue] = np.stack([thick - stiff, thick + stiff], axis=1) / 2
+        return coordinates
 
     def scores(self, values: si.FloatArray) -> si.DimensionlessArray:
         """The scores of values, shape (points, parameters); those beyond a prior at its end."""
         from scipy.special import ndtri
 
-        found = np.empty(np.shape(values))
-        for k, one in enumerate(self.parameters):
-            found[:, k] = ndtri(np.clip(share_of(one.distribution, values[:, k]), 1e-9, 1 - 1e-9))
-        return found
+        scores = np.empty(np.shape(values))
+        for k, parameter in enumerate(self.parameters):
+            scores[:, k] = ndtri(
+                np.clip(share_of(parameter.distribution, values[:, k]), 1e-9, 1 - 1e-9)
+            )
+        return scores
 
 
 def share_of(prior: Distribution, values: si.FloatArray) -> si.DimensionlessArray:

@@ -108,8 +108,8 @@ def question(text: str) -> Observation:
     """
     answer, _, rest = text.partition(":")
     conditions: dict[str, float] = {}
-    for part in filter(None, (one.strip() for one in rest.split(","))):
-        name, equals, value = (one.strip() for one in part.partition("="))
+    for part in filter(None, (piece.strip() for piece in rest.split(","))):
+        name, equals, value = (piece.strip() for piece in part.partition("="))
         if name not in CONDITIONS or not equals:
             raise InputError(
                 f"'{part}' is no condition of {answer.strip()}."
@@ -144,19 +144,19 @@ def solved_answers(actuator: Actuator, asked: tuple[Asked, ...]) -> SolvedAnswer
     """
     if isinstance(actuator, AnnularStator):
         raise InputError("a stator's answers are measured values; ask for a plate or a disc")
-    for one in asked:
-        if one.name not in PLATE_ANSWERS and not (
-            one.lines is not None and isinstance(actuator, RectangularPlate)
+    for answer in asked:
+        if answer.name not in PLATE_ANSWERS and not (
+            answer.lines is not None and isinstance(actuator, RectangularPlate)
         ):
             raise InputError(
-                f"the solved {actuator.type} has no answer '{one.said}'; it has: "
+                f"the solved {actuator.type} has no answer '{answer.said}'; it has: "
                 f"{', '.join(PLATE_ANSWERS)}"
             )
-    found = _working(actuator)
-    for one in asked:
-        if one.lines is not None and isinstance(actuator, RectangularPlate):
-            found[one] = _other_mode(actuator, one.lines)
-    rows = np.array([found[one] for one in asked]).reshape(-1, 3)
+    answers = _working(actuator)
+    for answer in asked:
+        if answer.lines is not None and isinstance(actuator, RectangularPlate):
+            answers[answer] = _other_mode(actuator, answer.lines)
+    rows = np.array([answers[answer] for answer in asked]).reshape(-1, 3)
     return SolvedAnswers(rows[:, 0], rows[:, 1], rows[:, 2])
 
 
@@ -229,9 +229,9 @@ def _read_beside(mode: SolidMode, named: _Named) -> Mapping[str, float]:
     except InputError:
         return {}
     return {
-        one.answer: abs(one.value / named[one.answer][0] - 1)
-        for one in fit.observations
-        if named[one.answer][0] > 0
+        seen.answer: abs(seen.value / named[seen.answer][0] - 1)
+        for seen in fit.observations
+        if named[seen.answer][0] > 0
     }
 
 

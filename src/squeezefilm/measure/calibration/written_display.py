@@ -48,21 +48,21 @@ def calibrated_display(
     What the data said nothing of keeps its value and source; a plate's value that moved with others
     is marked as assumed.
     """
-    found = calibration.display
-    stated = dict(found.provenance)
+    changed = calibration.display
+    stated = dict(changed.provenance)
     # A ceramic's constants that were written out have no place in the description's sources.
     source = _source(calibration)
     moved: dict[str, float] = {}
-    for one in calibration.values:
-        if one.path in SHARES or one.path == SKIN_COMPLIANCE:
+    for learnt in calibration.values:
+        if learnt.path in SHARES or learnt.path == SKIN_COMPLIANCE:
             continue
-        told = one.left <= NOT_TOLD
-        if not told and not one.path.startswith("actuator."):
+        told = learnt.left <= NOT_TOLD
+        if not told and not learnt.path.startswith("actuator."):
             continue
-        spread = _spread(one)
-        value = _middle(one, spread)
-        if not one.path.startswith("actuator."):
-            moved[one.path] = value
+        spread = _spread(learnt)
+        value = _middle(learnt, spread)
+        if not learnt.path.startswith("actuator."):
+            moved[learnt.path] = value
         origin = (
             Provenance(source, "measured", spread)
             if told
@@ -70,14 +70,14 @@ def calibrated_display(
                 f"not told by what was measured, moved with the rest; {source}", "assumed", spread
             )
         )
-        for path in _written_out(found, one.path):
+        for path in _written_out(changed, learnt.path):
             stated[path] = origin
-    found = with_values(found, moved)
+    changed = with_values(changed, moved)
     stated |= _ceramic_sources(calibration, source)
-    found = dataclasses.replace(found, provenance=stated, joint=None, calibration=None)
+    changed = dataclasses.replace(changed, provenance=stated, joint=None, calibration=None)
     return dataclasses.replace(
-        found,
-        joint=_joint(calibration, found),
+        changed,
+        joint=_joint(calibration, changed),
         calibration=CalibrationRecord(
             _day(),
             __version__,
@@ -118,20 +118,20 @@ def _source(calibration: Calibration) -> str:
     return words if calibration.fits else f"{words}; the model does not fit them"
 
 
-def _spread(one: CalibratedValue) -> Distribution:
+def _spread(value: CalibratedValue) -> Distribution:
     """A normal distribution where the data told the value well, else a range."""
-    low, high = one.interval
-    reach = 3 * one.standard_deviation
-    inside = one.prior[0] <= one.median - reach and one.median + reach <= one.prior[1]
-    if one.left < _TOLD_WELL and inside:
-        return Normal(one.median, one.standard_deviation)
+    low, high = value.interval
+    reach = 3 * value.standard_deviation
+    inside = value.prior[0] <= value.median - reach and value.median + reach <= value.prior[1]
+    if value.left < _TOLD_WELL and inside:
+        return Normal(value.median, value.standard_deviation)
     # As wide as the draws, within the prior: uniform with their interval's 5 % and 95 % ends.
     wider = (high - low) / 18
-    return Uniform(max(low - wider, one.prior[0]), min(high + wider, one.prior[1]))
+    return Uniform(max(low - wider, value.prior[0]), min(high + wider, value.prior[1]))
 
 
-def _middle(one: CalibratedValue, spread: Distribution) -> float:
-    return float(min(max(one.median, spread.support[0]), spread.support[1]))
+def _middle(value: CalibratedValue, spread: Distribution) -> float:
+    return float(min(max(value.median, spread.support[0]), spread.support[1]))
 
 
 def _written_out(display: Display, path: str) -> list[str]:
@@ -146,12 +146,13 @@ def _written_out(display: Display, path: str) -> list[str]:
 def _ceramic_sources(calibration: Calibration, source: str) -> dict[str, Provenance]:
     """Sources of the constants of a ceramic that was moved by shares."""
     actuator = calibration.display.actuator
-    shares = [one for one in calibration.values if one.path in SHARES]
+    shares = [value for value in calibration.values if value.path in SHARES]
     if not shares or not isinstance(actuator, RectangularPlate | DiscPlate):
         return {}
     words = "; ".join(
-        f"{SHARES[one.path]}: {one.median:.3f} ({one.interval[0]:.3f} to {one.interval[1]:.3f})"
-        for one in shares
+        f"{SHARES[share.path]}: {share.median:.3f} "
+        f"({share.interval[0]:.3f} to {share.interval[1]:.3f})"
+        for share in shares
     )
     whole = Provenance(f"{source}. Moved together by shares: {words}", "measured")
     with_it = Provenance(f"with in_plane_stiffness: {source}", "measured")
@@ -159,9 +160,9 @@ def _ceramic_sources(calibration: Calibration, source: str) -> dict[str, Provena
     names = ["in_plane_stiffness", "charge_coefficient", "relative_permittivity"]
     if ceramic.constants is not None:
         names += [
-            f"constants.{one.name}"
-            for one in dataclasses.fields(ceramic.constants)
-            if getattr(ceramic.constants, one.name) is not None
+            f"constants.{entry.name}"
+            for entry in dataclasses.fields(ceramic.constants)
+            if getattr(ceramic.constants, entry.name) is not None
         ]
     return {f"actuator.ceramic.{name}": whole if name == names[0] else with_it for name in names}
 
@@ -213,14 +214,14 @@ def _shares(
     from scipy.special import ndtr
 
     own = dict(zip(joint.finger_paths, ndtr(joint.finger[rows]).T, strict=True))
-    found = {}
-    old = {one.path: one for one in before}
-    for one in after:
-        if one.path in own:
-            drawn = old[one.path]
-            if isinstance(one, Parameter) and isinstance(drawn, Parameter):
-                values = drawn.distribution.quantile(own[one.path])
-                found[one.path] = share_of(one.distribution, values)
+    columns = {}
+    old = {item.path: item for item in before}
+    for item in after:
+        if item.path in own:
+            drawn = old[item.path]
+            if isinstance(item, Parameter) and isinstance(drawn, Parameter):
+                values = drawn.distribution.quantile(own[item.path])
+                columns[item.path] = share_of(item.distribution, values)
             else:
-                found[one.path] = own[one.path]
-    return found
+                columns[item.path] = own[item.path]
+    return columns

@@ -58,10 +58,10 @@ def correlation_factor(residual: si.Array) -> float:
     √((1 + ρ)/(1 − ρ)) for a correlation ρ that falls geometrically with the distance; 1 where it
     could be noise.
     """
-    found = structure_of(residual)
-    if found.significance < STRUCTURED:
+    structure = structure_of(residual)
+    if structure.significance < STRUCTURED:
         return 1.0
-    alike = min(found.correlation, _MOST_ALIKE)
+    alike = min(structure.correlation, _MOST_ALIKE)
     return float(np.sqrt((1 + alike) / (1 - alike)))
 
 
@@ -84,9 +84,9 @@ def adequacy_of(
     """
     size = float(np.mean(np.abs(data))) or 1.0
     left = float(np.mean(np.abs(residual))) / size
-    found = structure_of(residual)
-    structured = found.significance > STRUCTURED
-    noise = left * float(np.sqrt(max(1 - found.correlation, 0.0))) if structured else left
+    structure = structure_of(residual)
+    structured = structure.significance > STRUCTURED
+    noise = left * float(np.sqrt(max(1 - structure.correlation, 0.0))) if structured else left
     misfit = float(np.sqrt(max(left**2 - noise**2, 0.0)))
     where = place(_worst(residual))
     local = _beyond_noise(residual, noise * size) / (float(np.max(np.abs(data))) or 1.0)

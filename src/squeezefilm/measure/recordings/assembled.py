@@ -148,7 +148,7 @@ def _ceramic(reading: Reading) -> CeramicBar | CeramicDisc | None:
     body: CeramicBar | CeramicDisc | None = said.bar or said.disc
     if body is not None:
         *sides, density = dataclasses.astuple(body)
-        shown = " × ".join(quantity(one, si.Unit("m")) for one in sides)
+        shown = " × ".join(quantity(side, si.Unit("m")) for side in sides)
         weight = quantity(density, si.Unit("kg/m3"))
         name = "bar" if said.bar else "disc"
         reading.facts.append(("body", f"a bare ceramic {name}, {shown}, {weight}"))
@@ -193,7 +193,7 @@ def _place(reading: Reading) -> tuple[si.Metre, si.Metre] | None:
         raise reading.description.error("x and y go together; give both, or none", [given])
     if said.x is None:
         return None
-    shown = ", ".join(quantity(one, si.Unit("m")) for one in (said.x, said.y))
+    shown = ", ".join(quantity(side, si.Unit("m")) for side in (said.x, said.y))
     reading.facts.append(("place", f"x, y = {shown}"))
     return said.x, said.y
 
@@ -265,7 +265,7 @@ def _sweeps(reading: Reading) -> kinds.VoltageSweeps:
         raise reading.wanting("voltage", "sweeps at several voltages are told apart by it")
     motion, voltage = motion_per_volt(reading, frequency)
     assert voltage is not None
-    found, directions = [], []
+    sweeps, directions = [], []
     for start, stop in _runs(frequency, voltage):
         rows = slice(start, stop)
         if stop - start < 3:
@@ -277,7 +277,7 @@ def _sweeps(reading: Reading) -> kinds.VoltageSweeps:
             )
         up = frequency[stop - 1] > frequency[start]
         step = slice(None, None, 1 if up else -1)
-        found.append(
+        sweeps.append(
             kinds.FrequencyResponse(
                 frequency[rows][step],
                 motion[rows][step],
@@ -288,11 +288,11 @@ def _sweeps(reading: Reading) -> kinds.VoltageSweeps:
         )
         directions.append("up" if up else "down")
     told = (
-        f"{quantity(float(one.voltage or 0), si.Unit('V'))} {way}"
-        for one, way in zip(found, directions, strict=True)
+        f"{quantity(float(sweep.voltage or 0), si.Unit('V'))} {way}"
+        for sweep, way in zip(sweeps, directions, strict=True)
     )
     reading.facts.append(("sweeps", ", ".join(told)))
-    return kinds.VoltageSweeps(tuple(found), tuple(directions), reading.told())
+    return kinds.VoltageSweeps(tuple(sweeps), tuple(directions), reading.told())
 
 
 def joined_sweeps(
@@ -300,7 +300,7 @@ def joined_sweeps(
 ) -> kinds.VoltageSweeps:
     """Sweeps that were read from files of their own, as one recording."""
     down = [any(how.startswith("swept downwards") for _, how in read.facts) for _, read in parts]
-    directions = tuple("down" if one else "up" for one in down)
+    directions = tuple("down" if fell else "up" for fell in down)
     return kinds.VoltageSweeps(tuple(sweep for sweep, _ in parts), directions, told)
 
 

@@ -81,7 +81,7 @@ class Described:
 
     def told(self, file: Path) -> Told:
         """Words on the recording itself."""
-        words = {one.name: getattr(self, one.name) for one in dataclasses.fields(Told)}
+        words = {entry.name: getattr(self, entry.name) for entry in dataclasses.fields(Told)}
         return Told(**words | {"file": file.name, "name": self.name or file.stem})
 
 

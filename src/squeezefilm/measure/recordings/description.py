@@ -213,15 +213,15 @@ class DescribedSweeps(Described):
 
     def responses(self) -> tuple[DescribedResponse, ...]:
         """The descriptions of the sweeps that have files of their own."""
-        common = {one.name: getattr(self, one.name) for one in dataclasses.fields(Described)}
+        common = {entry.name: getattr(self, entry.name) for entry in dataclasses.fields(Described)}
         return tuple(
             DescribedResponse(
                 kind="frequency response",
                 columns=self.columns,
-                voltage=one.voltage,
-                **common | {"file": one.file},
+                voltage=entry.voltage,
+                **common | {"file": entry.file},
             )
-            for one in self.sweeps
+            for entry in self.sweeps
         )
 
 
@@ -280,7 +280,7 @@ def _kind(text: str, path: Path) -> str:
     except (ValueError, RecursionError):
         # The loader says what is wrong with the text, in better words.
         return "impedance"
-    allowed = ", ".join(f'"{one}"' for one in KINDS)
+    allowed = ", ".join(f'"{known}"' for known in KINDS)
     if kind is None:
         raise ConfigError(f"the key 'kind' is missing; it is one of {allowed}", file=path)
     if not isinstance(kind, str) or kind not in KINDS:

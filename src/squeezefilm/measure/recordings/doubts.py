@@ -71,7 +71,7 @@ def _frequencies(f: si.HertzArray) -> Iterator[str]:
         )
     steps = np.diff(f)
     ratios = np.diff(np.log(f))
-    spread = min(np.max(one) / max(np.median(one), 1e-300) for one in (steps, ratios))
+    spread = min(np.max(apart) / max(np.median(apart), 1e-300) for apart in (steps, ratios))
     if spread > 1.9 and f.size >= _FEW:
         at = int(np.argmax(steps / np.median(steps)))
         yield (
@@ -100,10 +100,10 @@ def _response(response: kinds.FrequencyResponse) -> Iterator[str]:
 
 
 def _sweeps(sweeps: kinds.VoltageSweeps) -> Iterator[str]:
-    for number, one in enumerate(sweeps.sweeps, 1):
-        for doubt in _response(one):
+    for number, sweep in enumerate(sweeps.sweeps, 1):
+        for doubt in _response(sweep):
             yield f"sweep {number}: {doubt}"
-    if len({one.voltage for one in sweeps.sweeps}) < 2:
+    if len({sweep.voltage for sweep in sweeps.sweeps}) < 2:
         yield "all sweeps are at one voltage: nothing can be told of how the plate depends on it"
 
 

@@ -211,10 +211,10 @@ class Reading:
         return volts
 
     def _column(self, name: str) -> Column:
-        found: Column = getattr(self.columns, name)
-        if found.unit.strip() == "dB" and name in _RATIOS:
-            return replace(found, unit="dB re 1 1")
-        return found
+        column: Column = getattr(self.columns, name)
+        if column.unit.strip() == "dB" and name in _RATIOS:
+            return replace(column, unit="dB re 1 1")
+        return column
 
     def _place(self, name: str) -> int:
         wanted = self._column(name).column

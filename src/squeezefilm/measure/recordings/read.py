@@ -140,8 +140,8 @@ class FolderCheck:
     def summary(self) -> dict[str, Any]:
         """Numbers for ``--json``."""
         return {
-            "recordings": [one.summary() for one in self.checks],
-            "refused": [{"file": str(one.file), "why": one.why} for one in self.refused],
+            "recordings": [check.summary() for check in self.checks],
+            "refused": [{"file": str(check.file), "why": check.why} for check in self.refused],
         }
 
 
@@ -192,7 +192,10 @@ def check_recording(path: str | Path, described: str | Path | None = None) -> Re
         description=description.path,
         points=sum(reading.table.values.shape[0] for reading in readings),
         facts=tuple(facts),
-        doubts=(*(one for reading in readings for one in reading.doubts), *doubts_of(recording)),
+        doubts=(
+            *(doubt for reading in readings for doubt in reading.doubts),
+            *doubts_of(recording),
+        ),
     )
 
 
@@ -203,10 +206,10 @@ def _read(file: Path, description: Description) -> tuple[Recording, list[Reading
         recording, reading = assembled(description, _table(file, description))
         return recording, [reading]
     parts: list[tuple[FrequencyResponse, Reading]] = []
-    for one in said.responses():
-        sweep = dataclasses.replace(description, kind="frequency response", said=one)
-        found, reading = assembled(sweep, _table(file.parent / one.file, sweep))
-        parts.append((cast(FrequencyResponse, found), reading))
+    for response in said.responses():
+        sweep = dataclasses.replace(description, kind="frequency response", said=response)
+        sweep_read, reading = assembled(sweep, _table(file.parent / response.file, sweep))
+        parts.append((cast(FrequencyResponse, sweep_read), reading))
     return joined_sweeps(parts, said.told(file)), [reading for _, reading in parts]
 
 
@@ -220,20 +223,20 @@ def check_folder(folder: str | Path) -> FolderCheck:
     if not root.is_dir():
         raise InputError(f"{root} is no folder; give one with recordings in it")
     checks, refused, read = [], [], set()
-    descriptions = [one for one in sorted(root.glob("*.toml")) if _has_kind(one)]
-    themselves = [one for one in sorted(root.iterdir()) if _says_itself(one)]
+    descriptions = [entry for entry in sorted(root.glob("*.toml")) if _has_kind(entry)]
+    themselves = [entry for entry in sorted(root.iterdir()) if _says_itself(entry)]
     for path in [*descriptions, *themselves]:
         if path in read:
             continue
         try:
-            found = check_recording(path)
+            check = check_recording(path)
         except ConfigError as error:
             refused.append(Refused(path, str(error)))
             continue
-        read.add(found.file)
-        checks.append(found)
+        read.add(check.file)
+        checks.append(check)
     if not checks and not refused:
-        kinds = ", ".join(f'"{one}"' for one in KINDS)
+        kinds = ", ".join(f'"{entry}"' for entry in KINDS)
         raise InputError(
             f"{root} holds no recording: none of its TOML files has a kind ({kinds}); write one "
             "beside each file of data"
@@ -301,7 +304,7 @@ def propose_description(path: str | Path) -> Proposal:
             'magnitude = { column = 2, unit = "ohm" }',
             'phase = { column = 3, unit = "deg" }',
         )
-        kinds = ", ".join(f'"{one}"' for one in KINDS)
+        kinds = ", ".join(f'"{known}"' for known in KINDS)
         besides = f"(kinds: {kinds}; columns of the file: {table.columns_in_words})"
         raise _undescribed(Path(path), "\n".join(lines), besides)
     return proposal
@@ -326,10 +329,12 @@ def _data_of(path: Path, said: Described) -> Path:
         return path
     if said.file:
         return path.parent / said.file
-    beside = sorted(one for one in path.parent.glob(f"{path.stem}.*") if one.suffix != ".toml")
+    beside = sorted(
+        candidate for candidate in path.parent.glob(f"{path.stem}.*") if candidate.suffix != ".toml"
+    )
     if len(beside) == 1:
         return beside[0]
-    there = ", ".join(one.name for one in beside) or "none"
+    there = ", ".join(candidate.name for candidate in beside) or "none"
     raise ConfigError(
         f"one file of data of the same name must stand beside it, and there are: {there}; name it "
         'with file = "…"',

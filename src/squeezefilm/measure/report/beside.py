@@ -132,7 +132,9 @@ def coverage_rows(compared: FolderComparison) -> list[tuple[str, ...]]:
 
 def unit_name(compared: FolderComparison, unit: str) -> str:
     """The name of the first curve of a finger or paper."""
-    return next(printable(one.curve.told.name) for one in compared.curves if one.curve.unit == unit)
+    return next(
+        printable(curve.curve.told.name) for curve in compared.curves if curve.curve.unit == unit
+    )
 
 
 def people_words(compared: PopulationComparison) -> str:
@@ -241,11 +243,13 @@ def all_curves_figure(compared: FolderComparison) -> Figure:
         5,
     )
     axes = figure.subplots()
-    for number, one in enumerate(compared.curves):
-        colour, amplitude = _COLOURS[number % len(_COLOURS)], 1e6 * one.curve.vibration_amplitude
-        name = style.plain(one.curve.told.name, 40)
-        axes.plot(amplitude, one.curve.friction / one.at_rest, "o", color=colour, ms=4, label=name)
-        axes.plot(amplitude, one.default.friction / one.at_rest, "-", color=colour, lw=1.2)
+    for number, curve in enumerate(compared.curves):
+        colour, amplitude = _COLOURS[number % len(_COLOURS)], 1e6 * curve.curve.vibration_amplitude
+        name = style.plain(curve.curve.told.name, 40)
+        axes.plot(
+            amplitude, curve.curve.friction / curve.at_rest, "o", color=colour, ms=4, label=name
+        )
+        axes.plot(amplitude, curve.default.friction / curve.at_rest, "-", color=colour, lw=1.2)
     style.friction_axes(axes, top=axes.get_ylim()[1])
     axes.set_ylabel("friction over friction at rest")
     style.legend_beside(axes)
@@ -266,8 +270,8 @@ def coverage_figure(compared: FolderComparison) -> Figure:
     axes = figure.subplots()
     for number, (unit, (inside, points)) in enumerate(compared.coverage.items()):
         share = inside / points
-        found = [binomtest(int(k), points).proportion_ci(0.95) for k in inside]
-        away = np.abs([[one.low, one.high] for one in found] - share[:, None]).T
+        intervals = [binomtest(int(k), points).proportion_ci(0.95) for k in inside]
+        away = np.abs([[interval.low, interval.high] for interval in intervals] - share[:, None]).T
         axes.errorbar(
             100 * np.array(LEVELS) + 0.6 * (number - 1),
             100 * share,

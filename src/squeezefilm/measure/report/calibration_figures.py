@@ -30,17 +30,17 @@ MOST_NEXT = 8
 """Measurements that could be made next, of which the most telling are shown."""
 
 
-def sorted_values(found: FolderCalibration) -> list[CalibratedValue]:
+def sorted_values(calibrated: FolderCalibration) -> list[CalibratedValue]:
     """The values, those that the data told most of first."""
-    return sorted(found.calibration.values, key=lambda one: one.left)
+    return sorted(calibrated.calibration.values, key=lambda value: value.left)
 
 
 @style.drawn
-def values_figure(found: FolderCalibration) -> Figure:
+def values_figure(calibrated: FolderCalibration) -> Figure:
     """Each value's interval before and after, on the scale of the one before."""
-    values = sorted_values(found)
-    told = sum(one.left <= IDENTIFIED for one in values)
-    narrowed = sum(IDENTIFIED < one.left <= NOT_TOLD for one in values)
+    values = sorted_values(calibrated)
+    told = sum(value.left <= IDENTIFIED for value in values)
+    narrowed = sum(IDENTIFIED < value.left <= NOT_TOLD for value in values)
     level = si.percent(LEVEL)
     figure = style.new_figure(
         f"{told} of {len(values)} values are identified by what was measured, {narrowed} narrowed, "
@@ -49,16 +49,16 @@ def values_figure(found: FolderCalibration) -> Figure:
         _REST + _ROW * max(len(values), 2),
     )
     axes = figure.subplots()
-    for row, one in enumerate(values):
-        low, high = one.prior
+    for row, value in enumerate(values):
+        low, high = value.prior
         scale = (high - low) or 1.0
-        ends = [(end - low) / scale for end in one.interval]
+        ends = [(end - low) / scale for end in value.interval]
         axes.plot([0, 1], [row, row], **_PRIOR, label="" if row else "before")
         axes.plot(ends, [row, row], **_POSTERIOR, label="" if row else "after")
-        axes.plot([(one.median - low) / scale], [row], **style.ESTIMATE)
-    _rows(axes, [one.path for one in values])
+        axes.plot([(value.median - low) / scale], [row], **style.ESTIMATE)
+    _rows(axes, [value.path for value in values])
     right = axes.secondary_yaxis("right")
-    right.set_yticks(range(len(values)), [si.percent(one.left) for one in values])
+    right.set_yticks(range(len(values)), [si.percent(value.left) for value in values])
     right.tick_params(length=0)
     right.spines["right"].set_visible(False)
     right.set_ylabel("spread left")
@@ -104,35 +104,37 @@ def compared_figure(found: FolderCalibration) -> Figure:
     return figure
 
 
-def _before_after(axes: Axes, row: int, one: ComparedAnswer) -> None:
-    looks = ((one.before, _PRIOR, "before"), (one.after, _POSTERIOR, "after"))
+def _before_after(axes: Axes, row: int, answer: ComparedAnswer) -> None:
+    looks = ((answer.before, _PRIOR, "before"), (answer.after, _POSTERIOR, "after"))
     for ends, look, label in looks:
         if ends:
             axes.plot([ends[0] - 1, ends[2] - 1], [row, row], **look, label="" if row else label)
 
 
-def deviation(one: ComparedAnswer) -> float:
+def deviation(answer: ComparedAnswer) -> float:
     """By how many standard errors (measurement's and model's together) what was measured lies above
     the calibrated model's median; NaN where the model has none."""
-    if not one.after:
+    if not answer.after:
         return float("nan")
     from scipy.special import ndtri
 
-    spread = (one.after[2] - one.after[0]) / (2 * float(ndtri((1 + LEVEL) / 2)))
-    return (1 - one.after[1]) / max(float(np.hypot(one.error, spread)), 1e-12)
+    spread = (answer.after[2] - answer.after[0]) / (2 * float(ndtri((1 + LEVEL) / 2)))
+    return (1 - answer.after[1]) / max(float(np.hypot(answer.error, spread)), 1e-12)
 
 
-def row_name(one: ComparedAnswer) -> str:
+def row_name(answer: ComparedAnswer) -> str:
     """An observation by its name, and its recording where it has one."""
-    return style.plain(f"{one.said} ({one.recording})" if one.recording else one.said, 90)
+    return style.plain(
+        f"{answer.said} ({answer.recording})" if answer.recording else answer.said, 90
+    )
 
 
 @style.drawn
-def friction_figure(found: FolderCalibration) -> Figure:
+def friction_figure(calibrated: FolderCalibration) -> Figure:
     """Friction's interval before and after."""
-    before, after = found.calibration.before, found.calibration.after
+    before, after = calibrated.calibration.before, calibrated.calibration.after
     pairs = (("as described", before), ("with what was measured", after))
-    known = [(name, one) for name, one in pairs if one is not None]
+    known = [(name, interval) for name, interval in pairs if interval is not None]
     if after is None:
         title = "Friction has no interval: too many draws have none"
     elif before is None:
@@ -146,20 +148,20 @@ def friction_figure(found: FolderCalibration) -> Figure:
         title, f"{si.percent(LEVEL)} intervals at the display's own voltage, force and speed", 2.5
     )
     axes = figure.subplots()
-    for row, (_, one) in enumerate(known):
-        look = _POSTERIOR if one is after else _PRIOR | {"lw": 4.5}
-        axes.plot(one.interval, [row, row], **look)
-        axes.plot([one.median], [row], **style.ESTIMATE)
-    names = [f"{name},\n{shown(one.amplitude, si.Unit('m'), 2)}" for name, one in known]
+    for row, (_, interval) in enumerate(known):
+        look = _POSTERIOR if interval is after else _PRIOR | {"lw": 4.5}
+        axes.plot(interval.interval, [row, row], **look)
+        axes.plot([interval.median], [row], **style.ESTIMATE)
+    names = [f"{name},\n{shown(interval.amplitude, si.Unit('m'), 2)}" for name, interval in known]
     _rows(axes, names)
     axes.set(xlim=(0, 1.04), xlabel="relative friction µ′/µ")
     return figure
 
 
 @style.drawn
-def next_figure(found: FolderCalibration) -> Figure:
+def next_figure(calibrated: FolderCalibration) -> Figure:
     """What each further measurement is expected to leave of friction's interval."""
-    options = found.calibration.next_measurements[:MOST_NEXT]
+    options = calibrated.calibration.next_measurements[:MOST_NEXT]
     first = options[0]
     figure = style.new_figure(
         f"Next: {first.name}, which is expected to leave {si.percent(first.left)} of the interval "
@@ -168,10 +170,10 @@ def next_figure(found: FolderCalibration) -> Figure:
         _REST + _ROW * len(options),
     )
     axes = figure.subplots()
-    for row, one in enumerate(options):
-        axes.barh([row], [100 * one.left], height=0.6, **style.BARS)
-        axes.text(100 * one.left + 1, row, si.percent(one.left), va="center", fontsize=9.5)
-    _rows(axes, [f"{one.name} (to {one.accuracy})" for one in options])
+    for row, option in enumerate(options):
+        axes.barh([row], [100 * option.left], height=0.6, **style.BARS)
+        axes.text(100 * option.left + 1, row, si.percent(option.left), va="center", fontsize=9.5)
+    _rows(axes, [f"{option.name} (to {option.accuracy})" for option in options])
     axes.set(xlim=(0, 108), xlabel="expected to be left of the interval of µ′/µ (%)")
     return figure
 

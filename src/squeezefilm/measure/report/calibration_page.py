@@ -43,15 +43,15 @@ DISPLAY_FILE, PAGE = "calibrated.toml", "calibration.html"
 VALUES_HEAD = ("value", "before", "after", "90 % interval", "spread left")
 
 
-def write_calibration(found: FolderCalibration, folder: Path) -> Path:
+def write_calibration(calibrated: FolderCalibration, folder: Path) -> Path:
     """Write calibrated.toml, calibration.json, its pictures and calibration.html into `folder`.
 
     Returns the path of the page. Raises `InputError` for a folder that cannot be written to.
     """
-    calibration = found.calibration
-    summary = found.summary() | {"stamp": stamp(calibration.described, calibration.seed)}
-    figures = drawn_figures(FIGURES, found)
-    pictures = {key: picture_sections({key: one}) for key, one in figures.items()}
+    calibration = calibrated.calibration
+    summary = calibrated.summary() | {"stamp": stamp(calibration.described, calibration.seed)}
+    figures = drawn_figures(FIGURES, calibrated)
+    pictures = {key: picture_sections({key: drawn}) for key, drawn in figures.items()}
     get = pictures.get
     body = section(
         "What was measured is explained" if calibration.fits else "The model does NOT explain it",
@@ -61,23 +61,27 @@ def write_calibration(found: FolderCalibration, folder: Path) -> Path:
     body += section("Every measured number", _compared(calibration.compared))
     body += section("How far off, by what was measured", _by_kind(calibration.compared))
     body += get("values", "")
-    body += section("Each value", text_table("Before and after", VALUES_HEAD, value_rows(found)))
+    body += section(
+        "Each value", text_table("Before and after", VALUES_HEAD, value_rows(calibrated))
+    )
     body += section("What is identified", bullets(calibration.identification.sentences))
     body += get("next", "") + section("How it was computed", _computed(calibration))
-    body += section("What it was learned from", _recordings(found))
+    body += section("What it was learned from", _recordings(calibrated))
     body += section(
-        "Left out", bullets(found.left_out, "Nothing: every recording of the folder was used.")
+        "Left out", bullets(calibrated.left_out, "Nothing: every recording of the folder was used.")
     )
     body += section("Files", f"<p>{links((DISPLAY_FILE, 'calibration.json'))}</p>")
     name = as_html(calibration.display.name)
     files: dict[str, str | bytes] = {
-        DISPLAY_FILE: calibrated_text(calibration, found.recordings),
+        DISPLAY_FILE: calibrated_text(calibration, calibrated.recordings),
         "calibration.json": json_text(summary),
         **picture_files(figures),
         PAGE: page(
             f"{name}: a calibration",
             f"{name}, calibrated",
-            as_html(found.display.calibration.sentence if found.display.calibration else ""),
+            as_html(
+                calibrated.display.calibration.sentence if calibrated.display.calibration else ""
+            ),
             body,
             stamped(summary["stamp"], "SHA-256 of the description that was calibrated"),
         ),
@@ -88,24 +92,24 @@ def write_calibration(found: FolderCalibration, folder: Path) -> Path:
 
 def _misfits(calibration: Calibration) -> list[str]:
     """The judgements, each with what it is of."""
-    of_friction = [one.worst.startswith("relative friction") for one in calibration.misfits]
+    of_friction = [misfit.worst.startswith("relative friction") for misfit in calibration.misfits]
     return [
-        f"{'Friction' if friction else 'The plate'}: {one.sentence}"
-        for one, friction in zip(calibration.misfits, of_friction, strict=True)
+        f"{'Friction' if friction else 'The plate'}: {misfit.sentence}"
+        for misfit, friction in zip(calibration.misfits, of_friction, strict=True)
     ]
 
 
-def value_rows(found: FolderCalibration) -> list[tuple[str, ...]]:
+def value_rows(calibrated: FolderCalibration) -> list[tuple[str, ...]]:
     """Each value: its interval before, its median and interval after, how much spread is left."""
     return [
         (
-            one.path,
-            " to ".join(shown(end, one.unit) for end in one.prior),
-            shown(one.median, one.unit),
-            " to ".join(shown(end, one.unit) for end in one.interval),
-            si.percent(one.left),
+            value.path,
+            " to ".join(shown(end, value.unit) for end in value.prior),
+            shown(value.median, value.unit),
+            " to ".join(shown(end, value.unit) for end in value.interval),
+            si.percent(value.left),
         )
-        for one in sorted_values(found)
+        for value in sorted_values(calibrated)
     ]
 
 
@@ -118,14 +122,14 @@ def _compared(rows: Sequence[ComparedAnswer]) -> str:
         head,
         [
             (
-                row_name(one),
-                one.measured,
-                f"± {100 * one.error:.2g} %",
-                _difference(one.before),
-                _difference(one.after),
-                _apart(deviation(one)),
+                row_name(answer),
+                answer.measured,
+                f"± {100 * answer.error:.2g} %",
+                _difference(answer.before),
+                _difference(answer.after),
+                _apart(deviation(answer)),
             )
-            for one in rows
+            for answer in rows
         ],
     )
 
@@ -133,7 +137,7 @@ def _compared(rows: Sequence[ComparedAnswer]) -> str:
 def _difference(ends: tuple[float, ...]) -> str:
     if not ends:
         return "–"
-    low, middle, high = (changed(one - 1, 2) for one in ends)
+    low, middle, high = (changed(end - 1, 2) for end in ends)
     return f"{middle} ({low} to {high})"
 
 
@@ -144,13 +148,13 @@ def _apart(off: float) -> str:
 def _by_kind(rows: Sequence[ComparedAnswer]) -> str:
     """For each kind of answer how many were measured and how far the calibrated model is off."""
     kinds: dict[str, list[ComparedAnswer]] = {}
-    for one in rows:
+    for answer in rows:
         # A friction is said with its conditions, which make no kind.
-        kind = one.said if one.relative_friction is None else "relative friction"
-        kinds.setdefault(kind, []).append(one)
+        kind = answer.said if answer.relative_friction is None else "relative friction"
+        kinds.setdefault(kind, []).append(answer)
     table = []
     for kind, members in kinds.items():
-        known = [abs(deviation(one)) for one in members if one.after]
+        known = [abs(deviation(answer)) for answer in members if answer.after]
         square = math.sqrt(sum(off**2 for off in known) / len(known)) if known else math.nan
         largest = max(known, default=math.nan)
         table.append((kind, f"{len(members)}", _apart(square), _apart(largest)))
@@ -175,41 +179,44 @@ def _computed(calibration: Calibration) -> str:
     return bullets(said)
 
 
-def _recordings(found: FolderCalibration) -> str:
+def _recordings(calibrated: FolderCalibration) -> str:
     head = ("file", "kind", "who", "when", "instrument", "from", "SHA-256")
     rows = [
         (
-            one.file,
-            one.kind,
-            *(text or "not told" for text in (one.who, one.when, one.instrument, one.origin)),
-            one.sha256,
+            recording.file,
+            recording.kind,
+            *(
+                text or "not told"
+                for text in (recording.who, recording.when, recording.instrument, recording.origin)
+            ),
+            recording.sha256,
         )
-        for one in found.recordings
+        for recording in calibrated.recordings
     ]
     return text_table("Recordings that were used", head, rows)
 
 
-def show_calibration(found: FolderCalibration) -> None:
+def show_calibration(calibrated: FolderCalibration) -> None:
     """Print what a calibration found: its sentences, each value before and after, what is left
     out."""
-    console, calibration = plain_console(), found.calibration
+    console, calibration = plain_console(), calibrated.calibration
     heading(console, f"{calibration.display.name}, calibrated")
-    table(console, VALUES_HEAD, value_rows(found), fixed=(0,))
+    table(console, VALUES_HEAD, value_rows(calibrated), fixed=(0,))
     look = "green" if calibration.fits else "bold red"
     printed_bullets(console, [("", text, look) for text in calibration.sentences[:1]])
     printed_bullets(console, [("", text, "") for text in calibration.sentences[1:]])
-    printed_bullets(console, [("left out", text, "yellow") for text in found.left_out])
+    printed_bullets(console, [("left out", text, "yellow") for text in calibrated.left_out])
 
 
-def prediction_lines(found: BlindPrediction) -> Iterator[str]:
+def prediction_lines(prediction: BlindPrediction) -> Iterator[str]:
     """Lines that tell what was predicted, in SI units, and the hash to tell somebody before
     measuring."""
-    yield f"Of {found.display}, by {found.how} (SI units):"
-    for one in found.predictions:
-        where = "".join(f", {name} {value:.4g}" for name, value in one.conditions.items())
-        low, high = one.interval
+    yield f"Of {prediction.display}, by {prediction.how} (SI units):"
+    for predicted in prediction.predictions:
+        where = "".join(f", {name} {value:.4g}" for name, value in predicted.conditions.items())
+        low, high = predicted.interval
         yield (
-            f"  {one.answer.replace('_', ' ')}{where}: {one.median:.5g} "
-            f"({low:.5g} to {high:.5g}, {100 * one.level:.0f} %)"
+            f"  {predicted.answer.replace('_', ' ')}{where}: {predicted.median:.5g} "
+            f"({low:.5g} to {high:.5g}, {100 * predicted.level:.0f} %)"
         )
-    yield f"SHA-256 {found.sha256}"
+    yield f"SHA-256 {prediction.sha256}"

@@ -63,12 +63,12 @@ def _sweeps(figure: Figure, sweeps: kinds.VoltageSweeps) -> None:
     axes = figure.subplots()
     axes.set(xlabel="frequency (kHz)", ylabel="amplitude (µm)")
     several = zip(sweeps.sweeps, sweeps.directions, strict=True)
-    for number, (one, way) in enumerate(several):
-        volts = one.voltage or 1.0
+    for number, (sweep, way) in enumerate(several):
+        volts = sweep.voltage or 1.0
         color, dashes = style.LINES[number % len(style.LINES)]
         label = f"{shown(volts, V)} {way}"
-        amplitude = 1e6 * volts * np.abs(one.displacement_per_volt)
-        axes.plot(one.frequency / 1e3, amplitude, color=color, ls=dashes, label=label)
+        amplitude = 1e6 * volts * np.abs(sweep.displacement_per_volt)
+        axes.plot(sweep.frequency / 1e3, amplitude, color=color, ls=dashes, label=label)
     style.legend_beside(axes)
 
 

@@ -59,8 +59,8 @@ def fit_figure(check: RecordingCheck, fit: Fit) -> Figure | None:
     own = _OWN.get(type(check.recording))
     if own is not None:
         return own(subject)
-    found = modelled(check, fit)
-    return None if found is None else _over_abscissa((subject, found))
+    compared = modelled(check, fit)
+    return None if compared is None else _over_abscissa((subject, compared))
 
 
 def modelled(check: RecordingCheck, fit: Fit) -> Modelled | None:
@@ -79,7 +79,7 @@ def modelled(check: RecordingCheck, fit: Fit) -> Modelled | None:
         return None
     abscissas = {name: getattr(told, name, None) for name in _OVER}
     if isinstance(recording, kinds.VoltageSweeps):
-        abscissas = {"sweeps": np.concatenate([one.frequency for one in recording.sweeps])}
+        abscissas = {"sweeps": np.concatenate([sweep.frequency for sweep in recording.sweeps])}
     for name, x in abscissas.items():
         x_label, x_scale, y_label, scale = _OVER[name]
         if isinstance(x, np.ndarray) and x.shape == model.shape:
@@ -97,27 +97,29 @@ def _admittances(sweep: kinds.ImpedanceSweep, model: si.ComplexArray) -> Modelle
 
 @style.drawn
 def _over_abscissa(drawn: tuple[_Subject, Modelled]) -> Figure:
-    (_, fit, title), found = drawn
+    (_, fit, title), compared = drawn
     figure = style.new_figure(title, fit.adequacy.sentence, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-    signed = not np.iscomplexobj(found.data) or not np.any(np.imag(found.data))
-    data, model = (np.real(one) if signed else np.abs(one) for one in (found.data, found.model))
-    upper.plot(found.x, data, ".", color=style.BLUE, ms=4, label="recorded")
+    signed = not np.iscomplexobj(compared.data) or not np.any(np.imag(compared.data))
+    data, model = (
+        np.real(part) if signed else np.abs(part) for part in (compared.data, compared.model)
+    )
+    upper.plot(compared.x, data, ".", color=style.BLUE, ms=4, label="recorded")
     # Points of several sweeps do not follow one another.
-    line = style.WANTED if np.all(np.diff(found.x) > 0) else {"color": style.ORANGE, "ls": ""}
-    upper.plot(found.x, model, **line, marker="" if line["ls"] else "_", label="fitted")
-    upper.set_ylabel(found.y_label)
+    line = style.WANTED if np.all(np.diff(compared.x) > 0) else {"color": style.ORANGE, "ls": ""}
+    upper.plot(compared.x, model, **line, marker="" if line["ls"] else "_", label="fitted")
+    upper.set_ylabel(compared.y_label)
     style.legend_beside(upper)
-    left = found.data - found.model
+    left = compared.data - compared.model
     left = np.real(left) if signed else np.abs(left)
     label = "residual" if signed else "|residual|"
-    if found.relative:
+    if compared.relative:
         upper.set_yscale("log")
         style.plain_log(upper.yaxis)
-        left, label = 100 * left / np.abs(found.data), f"{label} (%)"
-    lower.plot(found.x, left, ".", color=style.PURPLE, ms=4)
+        left, label = 100 * left / np.abs(compared.data), f"{label} (%)"
+    lower.plot(compared.x, left, ".", color=style.PURPLE, ms=4)
     lower.axhline(0, **style.ZERO)
-    lower.set(xlabel=found.x_label, ylabel=label)
+    lower.set(xlabel=compared.x_label, ylabel=label)
     return figure
 
 
@@ -162,9 +164,9 @@ def _bench(subject: _Subject) -> Figure:
     _, fit, title = subject
     figure = style.new_figure(title, fit.adequacy.sentence, 4.6)
     axes = figure.subplots()
-    for amplitude, one in zip(fit.amplitudes, fit.coefficients, strict=True):
-        axes.plot([1e6 * amplitude] * 2, one.interval, **style.INTERVAL)
-        axes.plot([1e6 * amplitude], [one.value], **style.ESTIMATE)
+    for amplitude, estimate in zip(fit.amplitudes, fit.coefficients, strict=True):
+        axes.plot([1e6 * amplitude] * 2, estimate.interval, **style.INTERVAL)
+        axes.plot([1e6 * amplitude], [estimate.value], **style.ESTIMATE)
     axes.set_ylim(0, None)
     axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="friction coefficient µ")
     return figure

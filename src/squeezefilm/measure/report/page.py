@@ -51,14 +51,16 @@ def show_check(check: RecordingCheck) -> None:
     printed_bullets(console, doubts or [("", "Nothing doubtful was found.", "")])
 
 
-def show_folder(found: FolderCheck) -> None:
+def show_folder(checked: FolderCheck) -> None:
     """Print the recordings of a folder, and what could not be read."""
-    for check in found.checks:
+    for check in checked.checks:
         show_check(check)
     console = plain_console()
-    if found.refused:
-        heading(console, f"{len(found.refused)} could not be read")
-        printed_bullets(console, [("refused", one.why, "bold red") for one in found.refused])
+    if checked.refused:
+        heading(console, f"{len(checked.refused)} could not be read")
+        printed_bullets(
+            console, [("refused", refusal.why, "bold red") for refusal in checked.refused]
+        )
 
 
 def show_fit(check: RecordingCheck, fit: Fit, response: Fit | None = None) -> None:
@@ -91,12 +93,12 @@ def estimate_rows(fit: Fit) -> list[tuple[str, ...]]:
     """The estimates of a fit: name, value, interval (with its level where that is no usual one),
     standard error; with so many digits that two of the standard error are seen."""
     rows: list[tuple[str, ...]] = []
-    for name, one in estimates(fit):
-        digits = _digits(one.value, one.standard_error)
-        low, high = (valued(value, one.unit, digits) for value in one.interval)
-        level = "" if one.level == LEVEL else f" ({si.percent(one.level)})"
-        error = valued(one.standard_error, one.unit, 2)
-        value = valued(one.value, one.unit, digits)
+    for name, estimate in estimates(fit):
+        digits = _digits(estimate.value, estimate.standard_error)
+        low, high = (valued(value, estimate.unit, digits) for value in estimate.interval)
+        level = "" if estimate.level == LEVEL else f" ({si.percent(estimate.level)})"
+        error = valued(estimate.standard_error, estimate.unit, 2)
+        value = valued(estimate.value, estimate.unit, digits)
         rows.append((name, value, f"{low} to {high}{level}", error))
     return rows
 
@@ -122,11 +124,11 @@ def estimates(node: Any, path: str = "") -> Iterator[tuple[str, Estimate]]:
                 below = f"{path} {field.name}".strip().replace("_", " ")
                 yield from estimates(getattr(node, field.name), below)
     elif isinstance(node, Mapping):
-        for key, one in node.items():
-            yield from estimates(one, f"{path} {key}")
+        for key, member in node.items():
+            yield from estimates(member, f"{path} {key}")
     elif isinstance(node, tuple):
-        for number, one in enumerate(node, 1):
-            yield from estimates(one, f"{path} {number}" if len(node) > 1 else path)
+        for number, member in enumerate(node, 1):
+            yield from estimates(member, f"{path} {number}" if len(node) > 1 else path)
 
 
 def valued(value: float, unit: str, digits: int = 4) -> str:
@@ -138,18 +140,18 @@ def valued(value: float, unit: str, digits: int = 4) -> str:
     return f"{value:.{digits}g} {unit}"
 
 
-def write_checks(found: FolderCheck, folder: Path) -> Path:
+def write_checks(checked: FolderCheck, folder: Path) -> Path:
     """Write check.json, a picture of each recording and check.html into `folder`.
 
     Returns the path of the page. Raises `InputError` for a folder that cannot be written to.
     """
-    summary = found.summary()
+    summary = checked.summary()
     stamped_with = stamp(summary)
     files: dict[str, str | bytes] = {"check.json": json_text(summary | {"stamp": stamped_with})}
     body = ""
-    if found.refused:
-        body += section("Could not be read", bullets(one.why for one in found.refused))
-    for name, check in zip(_names(found.checks), found.checks, strict=True):
+    if checked.refused:
+        body += section("Could not be read", bullets(refusal.why for refusal in checked.refused))
+    for name, check in zip(_names(checked.checks), checked.checks, strict=True):
         figure = recording_figure(check)
         files[f"{name}.png"] = style.png(figure)
         body += picture_sections({name: (check.recording.told.name, figure)})
@@ -207,14 +209,16 @@ def fit_summary(check: RecordingCheck, fit: Fit, response: Fit | None = None) ->
 
 
 def _numbers(fit: Fit) -> dict[str, Any]:
-    found: dict[str, Any] = {
-        "estimates": {name.replace(" ", "_"): to_json(one) for name, one in estimates(fit)},
+    numbers: dict[str, Any] = {
+        "estimates": {
+            name.replace(" ", "_"): to_json(estimate) for name, estimate in estimates(fit)
+        },
         "adequacy": to_json(fit.adequacy),
         "observations": to_json(fit.observations),
     }
     if isinstance(fit, CurveComparison):
-        found["comparison"] = fit.summary()
-    return found
+        numbers["comparison"] = fit.summary()
+    return numbers
 
 
 def _facts(check: RecordingCheck) -> str:

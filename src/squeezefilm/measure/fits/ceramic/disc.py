@@ -90,10 +90,12 @@ def disc_constants(
         square = math.exp(2 * p[2] - p[0] - p[3]) / VACUUM_PERMITTIVITY
         return math.sqrt(2 * square / (1 - p[1]))
 
-    found = constants_of(fit, sweep, fitted, (0, 2, 3, 4, 5, 6), "The solved disc")
-    found["adequacy"] = _doubted(found["adequacy"], float(fit.parameters[0] - prior.mean[0]))
+    constants = constants_of(fit, sweep, fitted, (0, 2, 3, 4, 5, 6), "The solved disc")
+    constants["adequacy"] = _doubted(
+        constants["adequacy"], float(fit.parameters[0] - prior.mean[0])
+    )
     return DiscConstants(
-        **found,
+        **constants,
         disc=disc,
         compliance_12=fit.estimate(lambda p: -float(p[1]) * math.exp(p[0]), "m2/N"),
         poisson_ratio=fit.estimate(lambda p: float(p[1]), "1"),
@@ -171,7 +173,7 @@ def combinations(fit: ComplexFit, prior: Prior) -> tuple[Combination, ...]:
     in units of the prior. Those that are left above 0.9 are not listed."""
     information = fit.information * np.outer(prior.spread, prior.spread)
     values, vectors = np.linalg.eigh(information)
-    found = []
+    combined = []
     for value, vector in zip(values[::-1], vectors.T[::-1], strict=True):
         left = 1 / math.sqrt(1 + max(float(value), 0.0))
         if left > 0.9:
@@ -182,8 +184,8 @@ def combinations(fit: ComplexFit, prior: Prior) -> tuple[Combination, ...]:
             for name, weight in zip(PARAMETERS, vector, strict=True)
             if abs(weight) > 0.1
         }
-        found.append(Combination(weights, left))
-    return tuple(found)
+        combined.append(Combination(weights, left))
+    return tuple(combined)
 
 
 @si.checked_numbers

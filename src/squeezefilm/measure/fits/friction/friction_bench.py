@@ -72,7 +72,7 @@ class FrictionBenchFit:
         without a level of no vibration, or where the recording does not tell the frequency."""
         if not self.relative_friction or self.recording.frequency is None:
             return None
-        values = np.array([1.0, *(one.value for one in self.relative_friction)])
+        values = np.array([1.0, *(estimate.value for estimate in self.relative_friction)])
         return FrictionCurve(
             vibration_amplitude=self.amplitudes,
             friction=values,
@@ -98,11 +98,13 @@ class FrictionBenchFit:
             *(
                 Observation(
                     "relative_friction",
-                    one.value,
-                    one.standard_error,
+                    estimate.value,
+                    estimate.standard_error,
                     at | {"vibration_amplitude": float(amplitude)},
                 )
-                for amplitude, one in zip(self.amplitudes[1:], self.relative_friction, strict=True)
+                for amplitude, estimate in zip(
+                    self.amplitudes[1:], self.relative_friction, strict=True
+                )
             ),
         )
 
@@ -126,16 +128,16 @@ def fit_friction_bench(
     si.require("drift", drift, at_least=0, at_most=MOST_DRIFT)
     strokes = sliding_strokes(recording)
     strokes, floating = _touching(strokes)
-    found = _Fitted.of(strokes, drift).read(recording, strokes)
+    fit = _Fitted.of(strokes, drift).read(recording, strokes)
     if not floating:
-        return found
-    shown = " and ".join(f"{1e6 * one:.3g} µm" for one in floating)
+        return fit
+    shown = " and ".join(f"{1e6 * amplitude:.3g} µm" for amplitude in floating)
     said = (
         f"At {shown} strokes have next to no friction; what floats has no coefficient "
         "on a logarithmic scale, and these amplitudes are left out. "
     )
-    adequacy = replace(found.adequacy, sentence=said + found.adequacy.sentence)
-    return replace(found, adequacy=adequacy)
+    adequacy = replace(fit.adequacy, sentence=said + fit.adequacy.sentence)
+    return replace(fit, adequacy=adequacy)
 
 
 def _touching(strokes: Strokes) -> tuple[Strokes, tuple[si.Metre, ...]]:
@@ -286,7 +288,7 @@ class _Fitted:
 
     def _adequacy(self, strokes: Strokes) -> Adequacy:
         friction = strokes.column("coefficient")
-        found = adequacy_of(
+        adequacy = adequacy_of(
             friction,
             friction - np.exp(self.fit.model),
             lambda i: f"at {strokes.rows[i].time:.4g} s",
@@ -295,14 +297,16 @@ class _Fitted:
         )
         confounded = self._confounded()
         if confounded is None:
-            return found
+            return adequacy
         sentence = (
             f"Amplitude and time went together: the drift of the finger makes the interval at "
             f"{1e6 * self.design.levels[confounded]:.3g} µm more than {_CONFOUNDED:g} times as "
             "wide. Repeat it with amplitudes in a mixed order. "
         )
         where = f"at {1e6 * self.design.levels[confounded]:.3g} µm"
-        return Adequacy(False, found.residual, found.noise, where, sentence + found.sentence)
+        return Adequacy(
+            False, adequacy.residual, adequacy.noise, where, sentence + adequacy.sentence
+        )
 
     def _confounded(self) -> int | None:
         """The level whose difference from the first one drift widens most, if by too much."""

@@ -77,12 +77,12 @@ class CurveComparison:
     @property
     def default(self) -> ModelScore:
         """The default model's."""
-        return next(one for one in self.models if one.model == DEFAULT_MODEL)
+        return next(score for score in self.models if score.model == DEFAULT_MODEL)
 
     @property
     def points_inside(self) -> tuple[int, int]:
         """Number of points lie in the interval, and how many could."""
-        asked = [one for one in self.inside if one is not None]
+        asked = [point for point in self.inside if point is not None]
         return sum(asked), len(asked)
 
     @property
@@ -142,14 +142,14 @@ class CurveComparison:
             },
             "models": [
                 {
-                    "model": one.model,
-                    "fitted": one.fitted,
-                    "rms_difference": one.difference,
-                    "rms_difference_in_spreads": one.in_spreads,
-                    "answered": one.answered,
-                    "friction": to_json(one.friction),
+                    "model": score.model,
+                    "fitted": score.fitted,
+                    "rms_difference": score.difference,
+                    "rms_difference_in_spreads": score.in_spreads,
+                    "answered": score.answered,
+                    "friction": to_json(score.friction),
                 }
-                for one in self.models
+                for score in self.models
             ],
             "adequacy": to_json(self.adequacy),
         }
@@ -232,9 +232,9 @@ def relative_friction(law: FrictionLaw, amplitude: si.MetreArray) -> si.Dimensio
     with contextlib.suppress(SqueezefilmError):
         return law.curve(amplitude)
     friction = np.full(amplitude.size, np.nan)
-    for k, one in enumerate(amplitude):
+    for k, size in enumerate(amplitude):
         with contextlib.suppress(SqueezefilmError):
-            friction[k] = law.at(float(one))
+            friction[k] = law.at(float(size))
     return friction
 
 

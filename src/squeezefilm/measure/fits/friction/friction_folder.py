@@ -101,15 +101,15 @@ def compare_folder(folder: str | Path, progress: SayProgress | None = None) -> F
     Recordings of other kinds are passed over. Raises `InputError` for a folder that has none, and
     for a file that cannot be read, before anything is computed.
     """
-    found = check_folder(folder)
-    if found.refused:
-        raise InputError(found.refused[0].why)
+    checked = check_folder(folder)
+    if checked.refused:
+        raise InputError(checked.refused[0].why)
     kinds = FrictionCurve | FrictionDecays | FingertipImpedances | DetectionThresholds
-    recordings = [check.recording for check in found.checks if isinstance(check.recording, kinds)]
+    recordings = [check.recording for check in checked.checks if isinstance(check.recording, kinds)]
     if not recordings:
         raise InputError(
             f"{folder} holds no friction curve, only: "
-            + ", ".join(sorted({check.kind for check in found.checks}))
+            + ", ".join(sorted({check.kind for check in checked.checks}))
             + '; write kind = "friction curve" into the description of one'
         )
     detections = tuple(

@@ -140,8 +140,10 @@ def nearest_scale(
     # Coarse first: the sum of squares is flat far from the best scale.
     logs, near = np.log(coarse), int(np.argmin([error(curve) for curve in known]))
     ends = logs[max(near - 1, 0)], logs[min(near + 1, logs.size - 1)]
-    found = minimize_scalar(lambda log: error(curve_of(np.exp(log))), bounds=ends, method="bounded")
-    return float(np.exp(found.x))
+    nearest = minimize_scalar(
+        lambda log: error(curve_of(np.exp(log))), bounds=ends, method="bounded"
+    )
+    return float(np.exp(nearest.x))
 
 
 def total_scores(

@@ -135,6 +135,6 @@ def _even_part(part: si.IntArray, amplitude: si.MetreArray, tolerated: float) ->
     own = amplitude[part]
     edges = [0, *(np.flatnonzero(np.abs(np.diff(own)) > tolerated) + 1), own.size]
     longest = int(np.argmax(np.diff(edges)))
-    found = slice(edges[longest], edges[longest + 1])
+    even = slice(edges[longest], edges[longest + 1])
     # An amplitude that creeps has no step, and is still none.
-    return part[found] if np.ptp(own[found]) <= 4 * tolerated else part[:0]
+    return part[even] if np.ptp(own[even]) <= 4 * tolerated else part[:0]

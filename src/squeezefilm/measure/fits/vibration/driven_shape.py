@@ -55,7 +55,9 @@ class DrivenShape:
 
     @cached_property
     def _splines(self) -> tuple[RectBivariateSpline, RectBivariateSpline]:
-        swing, rest = (RectBivariateSpline(self.x, self.y, one) for one in (self.swing, self.rest))
+        swing, rest = (
+            RectBivariateSpline(self.x, self.y, motion) for motion in (self.swing, self.rest)
+        )
         return swing, rest
 
     @si.checked_numbers
@@ -121,8 +123,8 @@ def line_by_shape(
 
     def rows(offset: float) -> si.Array:
         swing, rest = shape.along(x + offset)
-        found = [swing, rest] if recorded else [swing]
-        return np.stack([*found, swing * (x - x.mean()) / span] if drift else found, axis=1)
+        columns = [swing, rest] if recorded else [swing]
+        return np.stack([*columns, swing * (x - x.mean()) / span] if drift else columns, axis=1)
 
     def columns(own: si.FloatArray) -> tuple[si.Array, si.Array]:
         offset, step = float(own[0]), 1e-3 * reach
@@ -152,7 +154,7 @@ def line_by_shape(
     return LineByShape(
         amplitude=fit.estimate(lambda _, c: size * float(abs(c[0])), "m", positive=True),
         phase=fit.angle(lambda _, weights: complex(weights[0])) if recorded else None,
-        offset=fit.estimate(lambda one, _: float(one[0]), "m"),
+        offset=fit.estimate(lambda numbers, _: float(numbers[0]), "m"),
         model=fit.model * size,
         phase_reversed=reversed_,
         adequacy=adequacy,

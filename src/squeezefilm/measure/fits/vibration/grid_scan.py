@@ -135,16 +135,16 @@ def shapes_at(
     """
     for name, places, end in (("x", x, modes.plate.length), ("y", y, modes.plate.width)):
         si.require(name, places, si.Unit("m"), at_least=-1e-6, at_most=end + 1e-6)
-    found, lobe = {}, driven.lobe
+    relative, lobe = {}, driven.lobe
     for i in range(modes.count):
         spline = RectBivariateSpline(modes.x, modes.y, modes.shapes[i])
         w, largest = spline.ev(x, y), float(np.max(np.abs(modes.shapes[i])))
         there = float(spline.ev(np.array([lobe[0]]), np.array([lobe[1]]))[0])
         label = label_name(modes.labels[i])
         name = f"{label} at {si.format_quantity(modes.frequencies[i], si.Unit('Hz'))}"
-        found[name] = w / (there if abs(there) > 0.05 * largest else largest)
+        relative[name] = w / (there if abs(there) > 0.05 * largest else largest)
     _, rest = driven.at(x, y)
-    return found | {REST: rest / (float(np.max(np.abs(driven.rest))) or 1.0)}
+    return relative | {REST: rest / (float(np.max(np.abs(driven.rest))) or 1.0)}
 
 
 def _rows(
@@ -170,8 +170,8 @@ def _told_apart(
     names: list[str] = []
     alike: dict[str, str] = {}
     # A mode gives the scan its name; the rest has none.
-    for name in sorted(rows, key=lambda one: (one == REST, -likeness[one])):
-        same = [one for one in names if _likeness(rows[one], rows[name]) > _ALIKE]
+    for name in sorted(rows, key=lambda other: (other == REST, -likeness[other])):
+        same = [other for other in names if _likeness(rows[other], rows[name]) > _ALIKE]
         if same:
             alike[name] = same[0]
         else:
@@ -203,7 +203,7 @@ def _adequacy(
     """Judge whether the shapes describe the scan, and one of them is it."""
     x, y = places
     same = ", ".join(f"{name} from {other}" for name, other in alike.items())
-    found = adequacy_of(
+    adequacy = adequacy_of(
         w,
         residual,
         lambda i: f"at x = {1e3 * x[i]:.3g} mm, y = {1e3 * y[i]:.3g} mm",
@@ -211,11 +211,13 @@ def _adequacy(
         "way its axes run, or doubt the solved plate.",
         said=f"These places cannot tell {same}; the former is left out. " if same else "",
     )
-    if likeness >= SAME_SHAPE or not found.adequate:
-        return found
+    if likeness >= SAME_SHAPE or not adequacy.adequate:
+        return adequacy
     sentence = (
         f"No single shape is the scan's: it is most alike {label}, by a modal assurance criterion "
         f"of {likeness:.2f} where {SAME_SHAPE:g} would call it the same; several modes take part, "
         "or the place of the scan on the plate is not what was told. "
     )
-    return Adequacy(False, found.residual, found.noise, found.where, sentence + found.sentence)
+    return Adequacy(
+        False, adequacy.residual, adequacy.noise, adequacy.where, sentence + adequacy.sentence
+    )

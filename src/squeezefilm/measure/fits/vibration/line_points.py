@@ -56,11 +56,11 @@ class LineWaves:
             rows = [np.cos(k * (x - middle)), np.sin(k * (x - middle))]
         if self.free_ends:
             rows += [np.exp(-k * (x - self.first)), np.exp(-k * (self.last - x))]
-        found = np.stack(rows, axis=1)
+        columns = np.stack(rows, axis=1)
         if not self.drift:
-            return found
+            return columns
         rate = shape[-2] + 1j * shape[-1] if self.complex else shape[-1]
-        return np.asarray(found * (1 + rate * (x - middle) / self.length)[:, None])
+        return np.asarray(columns * (1 + rate * (x - middle) / self.length)[:, None])
 
     def columns(self, x: si.MetreArray, shape: si.FloatArray) -> tuple[si.Array, si.Array]:
         """The columns and their derivatives by central differences of them."""
@@ -121,13 +121,13 @@ class LinePoints:
     def nodes(self) -> tuple[Estimate, ...]:
         """Places where the displacement changes its sign (m)."""
         x, w = self._smooth
-        found = []
+        crossings = []
         for i in np.flatnonzero(np.signbit(w[1:]) != np.signbit(w[:-1])):
             place = float(x[i] - w[i] * (x[i + 1] - x[i]) / (w[i + 1] - w[i]))
             fit = self._around(place)
             if fit is not None:
-                found.append(self._crossing(fit, place))
-        return tuple(found)
+                crossings.append(self._crossing(fit, place))
+        return tuple(crossings)
 
     def _crossing(self, fit: SeparableFit, place: si.Metre) -> Estimate:
         """The zero of a cubic next to its middle."""

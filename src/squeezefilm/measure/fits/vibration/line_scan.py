@@ -72,12 +72,12 @@ class LineScanFit:
             return ()
         at = {"frequency": self.recording.frequency}
         half, largest, ratio = self.half_wavelength, self.antinode_amplitude, self.face_over_line
-        found = [
+        observed = [
             Observation("half_wavelength", half.value * ratio, half.standard_error * ratio, at)
         ]
         volts = self.recording.voltage
         if volts:
-            found.append(
+            observed.append(
                 Observation(
                     "amplitude_per_volt",
                     largest.value / volts,
@@ -85,7 +85,7 @@ class LineScanFit:
                     at | {"voltage": volts},
                 )
             )
-        return tuple(found)
+        return tuple(observed)
 
 
 @guarded_fit
@@ -132,25 +132,25 @@ def fit_line_scan(
         if grows
         else "",
     )
-    found = _FittedLine(recording, line, x, w, fit, size, grows, adequacy).read()
-    if shape is None or not found.by_points:
-        return found
-    return _by_shape(found, shape, w.conj() if grows else w, drift)
+    read = _FittedLine(recording, line, x, w, fit, size, grows, adequacy).read()
+    if shape is None or not read.by_points:
+        return read
+    return _by_shape(read, shape, w.conj() if grows else w, drift)
 
 
-def _by_shape(found: LineScanFit, shape: DrivenShape, w: si.Array, drift: bool) -> LineScanFit:
+def _by_shape(fit: LineScanFit, shape: DrivenShape, w: si.Array, drift: bool) -> LineScanFit:
     """What a solved shape says of a line that no even wave fits, from its displacement as it was
     recorded."""
-    reach = found.half_wavelength.value / 4
-    by = line_by_shape(shape, found.position, w, reach=reach, drift=drift)
-    swing = shape.along(found.position + by.offset.value)[0]
-    along = LinePoints(found.position, swing, found.half_wavelength.value).spacing
+    reach = fit.half_wavelength.value / 4
+    by = line_by_shape(shape, fit.position, w, reach=reach, drift=drift)
+    swing = shape.along(fit.position + by.offset.value)[0]
+    along = LinePoints(fit.position, swing, fit.half_wavelength.value).spacing
     said = (
         " Amplitude and phase are those of the shape; half wavelength (the mean distance of nodal "
         "lines) and nodal lines are those of the points around each."
     )
     return replace(
-        found,
+        fit,
         model=by.model,
         residual=(w.conj() if by.phase_reversed else w) - by.model,
         antinode=shape.antinode - by.offset.value,
@@ -207,8 +207,8 @@ def _wave_number(line: LineWaves, x: si.MetreArray, w: si.Array) -> float:
         raise InputError("the line scan is too coarse for any wave along it; scan more points")
     halves = np.linspace(_FEWEST_HALVES, most, int(min(_TRIED_NUMBERS, 4 * most + 8)))
     shape, left = np.zeros(line.count), []
-    for one in halves:
-        shape[0] = np.pi * one / line.length
+    for count in halves:
+        shape[0] = np.pi * count / line.length
         columns = line.waves(x, shape)
         basis = np.linalg.qr(columns)[0]
         rest = w - basis @ (basis.conj().T @ w)
@@ -244,13 +244,13 @@ class _FittedLine:
         nodes = _minima(dense, wave)
         lobe = _best_antinode(dense, wave, nodes)
         model = fit.model * self.size
-        found = LineScanFit(
+        line_fit = LineScanFit(
             recording=self.recording,
             position=self.x,
             model=model,
             residual=self.w - model,
             half_wavelength=fit.estimate(lambda shape, _: np.pi / shape[0], "m", positive=True),
-            nodal_lines=tuple(self._node(float(one)) for one in nodes),
+            nodal_lines=tuple(self._node(float(node)) for node in nodes),
             antinode=lobe,
             antinode_amplitude=fit.estimate(
                 lambda shape, weights: (
@@ -274,21 +274,21 @@ class _FittedLine:
             face_over_line=1.0,
             adequacy=self.adequacy,
         )
-        return found if self.adequacy.adequate else self._by_points(found)
+        return line_fit if self.adequacy.adequate else self._by_points(line_fit)
 
-    def _by_points(self, found: LineScanFit) -> LineScanFit:
+    def _by_points(self, fit: LineScanFit) -> LineScanFit:
         """What the points around each node and antinode say, in place of a wave that does not
         fit."""
-        points = LinePoints(self.x, self.w, found.half_wavelength.value)
+        points = LinePoints(self.x, self.w, fit.half_wavelength.value)
         spacing, antinode = points.spacing, points.antinode
         if spacing is None or antinode is None:
-            return found
+            return fit
         said = (
             " Half wavelength (their mean distance), nodal lines and amplitude are therefore those "
             "of the points around each; loss and ratio of waves are not given."
         )
         return replace(
-            found,
+            fit,
             half_wavelength=spacing,
             nodal_lines=points.nodes,
             antinode=antinode[0],
@@ -318,13 +318,13 @@ class _FittedLine:
             a, b = np.abs(weights[:2])
             return float((a - b) / (a + b))
 
-        found = self.fit.estimate(inverse, "1")
-        low, high = found.interval
+        inverted = self.fit.estimate(inverse, "1")
+        low, high = inverted.interval
         largest = max(abs(low), abs(high))
         smallest = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
-        value = 1 / abs(found.value) if found.value else float("inf")
+        value = 1 / abs(inverted.value) if inverted.value else float("inf")
         ends = 1 / largest, 1 / smallest if smallest else float("inf")
-        return Estimate(value, found.standard_error * value**2, ends, "1")
+        return Estimate(value, inverted.standard_error * value**2, ends, "1")
 
 
 def _minima(x: si.MetreArray, size: si.FloatArray) -> si.MetreArray:

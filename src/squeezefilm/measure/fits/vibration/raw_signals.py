@@ -80,14 +80,14 @@ def fit_raw_signals(
             f"{t.size} points; it must hold at least 32 and at most half of them",
             quantity="segment",
         )
-    found = _averaged(recording, (v, x, rate), length, band)
-    while segment is None and 4 * length <= t.size and _resolution(found) < _WELL_RESOLVED:
+    averaged = _averaged(recording, (v, x, rate), length, band)
+    while segment is None and 4 * length <= t.size and _resolution(averaged) < _WELL_RESOLVED:
         length *= 2
-        found = _averaged(recording, (v, x, rate), length, band)
+        averaged = _averaged(recording, (v, x, rate), length, band)
     if not instrument:
-        return replace(found, adequacy=_coherent(found, length / rate))
-    f = found.response.frequency
-    return _as_instrument(found, (v, x, rate), (float(f[0]), float(f[-1])))
+        return replace(averaged, adequacy=_coherent(averaged, length / rate))
+    f = averaged.response.frequency
+    return _as_instrument(averaged, (v, x, rate), (float(f[0]), float(f[-1])))
 
 
 def _averaged(
@@ -124,11 +124,11 @@ def _averaged(
     return RawSignalsFit(recording, response, error, None, None, unknown)
 
 
-def _resolution(found: RawSignalsFit) -> float:
+def _resolution(averaged: RawSignalsFit) -> float:
     """Number of frequencies lie within the half-power band of the strongest resonance; infinite
     where there is none."""
-    f = found.response.frequency
-    circle = modal_circle(f, np.asarray(found.response.displacement_per_volt))
+    f = averaged.response.frequency
+    circle = modal_circle(f, np.asarray(averaged.response.displacement_per_volt))
     if circle is None or not f[0] < circle.frequency < f[-1] or circle.roundness > 0.2:
         return float("inf")
     return circle.frequency / abs(circle.quality_factor) / float(f[1] - f[0])
@@ -136,7 +136,9 @@ def _resolution(found: RawSignalsFit) -> float:
 
 def _recorded(recording: RawSignals) -> tuple[si.SecondArray, si.VoltArray, si.MetreArray]:
     t = np.asarray(recording.time, dtype=float)
-    v, x = (np.asarray(one, dtype=float) for one in (recording.voltage, recording.displacement))
+    v, x = (
+        np.asarray(values, dtype=float) for values in (recording.voltage, recording.displacement)
+    )
     good = np.isfinite(t) & np.isfinite(v) & np.isfinite(x)
     if good.sum() < _FEWEST_POINTS:
         raise InputError(
@@ -165,9 +167,9 @@ def _recorded(recording: RawSignals) -> tuple[si.SecondArray, si.VoltArray, si.M
     return t, v, x
 
 
-def _coherent(found: RawSignalsFit, segment: si.Second) -> Adequacy:
+def _coherent(averaged: RawSignalsFit, segment: si.Second) -> Adequacy:
     """Judge whether the motion comes from the drive, and segments are long enough."""
-    f, coherence = found.response.frequency, found.response.coherence
+    f, coherence = averaged.response.frequency, averaged.response.coherence
     assert coherence is not None
     noise = float(np.sqrt(1 - np.mean(coherence)))
     where = f"at {si.format_quantity(f[int(np.argmin(coherence))], si.Unit('Hz'))}"
@@ -181,7 +183,7 @@ def _coherent(found: RawSignalsFit, segment: si.Second) -> Adequacy:
             " Most of the motion does not come from the drive: average longer, drive more, or look "
             "for hum and clipping."
         )
-    resolved = _resolution(found)
+    resolved = _resolution(averaged)
     if resolved < _RESOLVED:
         shown = si.format_quantity(segment, si.Unit("s"), 3)
         sentence += (
@@ -193,7 +195,7 @@ def _coherent(found: RawSignalsFit, segment: si.Second) -> Adequacy:
 
 
 def _as_instrument(
-    found: RawSignalsFit,
+    averaged: RawSignalsFit,
     signals: tuple[si.VoltArray, si.MetreArray, float],
     band: tuple[si.Hertz, si.Hertz],
 ) -> RawSignalsFit:
@@ -206,14 +208,14 @@ def _as_instrument(
     f = np.fft.rfftfreq(v.size, 1 / rate)
     inside = (f >= band[0]) & (f <= band[1])
     f = f[inside]
-    V, X = (np.fft.rfft(one * window)[inside] for one in (v - v.mean(), x - x.mean()))
+    V, X = (np.fft.rfft(signal * window)[inside] for signal in (v - v.mean(), x - x.mean()))
     size = float(np.max(np.abs(X)))
 
     def late(shape: si.FloatArray) -> tuple[si.ComplexArray, si.ComplexArray]:
         turned = (V * np.exp(-1j * shape[0] * f / f[-1]))[:, None]
         return turned, (-1j * (f / f[-1])[:, None] * turned)[None]
 
-    start = _first_delay(found.response) * 2 * np.pi * f[-1]
+    start = _first_delay(averaged.response) * 2 * np.pi * f[-1]
     fit = fit_separable(late, X / size, np.array([start]), real_weights=True)
     adequacy = adequacy_of(
         X,
@@ -223,7 +225,7 @@ def _as_instrument(
         "the response instead, or calibrate on a motion that follows the voltage.",
     )
     return replace(
-        found,
+        averaged,
         scale=fit.estimate(lambda _, weights: size * float(weights[0]), "m/V"),
         delay=fit.estimate(lambda shape, _: shape[0] / (2 * np.pi * f[-1]), "s"),
         adequacy=adequacy,

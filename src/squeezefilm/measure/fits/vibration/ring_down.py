@@ -69,8 +69,8 @@ class RingDownFit:
         if not self.adequacy.adequate:
             return ()
         return tuple(
-            Observation(name, one.value, one.standard_error, {})
-            for name, one in (
+            Observation(name, estimate.value, estimate.standard_error, {})
+            for name, estimate in (
                 ("resonance_frequency", self.frequency),
                 ("quality_factor", self.quality_factor),
             )
@@ -226,13 +226,13 @@ def _with_second(decay: _Decay, fit: SeparableFit) -> SeparableFit:
     f = _strongest_line(decay.t, fit.residual)
     start = np.concatenate([fit.shape, [f, fit.shape[1]]])
     reach = np.array([decay.wide, 30.0 * decay.rate] * 2)
-    found = fit_separable(decay.columns, decay.w, start, reach=reach)
-    swing = np.hypot(found.weights[0:4:2], found.weights[1:4:2])
+    pair = fit_separable(decay.columns, decay.w, start, reach=reach)
+    swing = np.hypot(pair.weights[0:4:2], pair.weights[1:4:2])
     if swing[1] > swing[0]:
         # The stronger first.
         order = np.array([2, 3, 0, 1])
-        found = fit_separable(decay.columns, decay.w, found.shape[order], reach=reach)
-    return found
+        pair = fit_separable(decay.columns, decay.w, pair.shape[order], reach=reach)
+    return pair
 
 
 @dataclass(frozen=True, eq=False)

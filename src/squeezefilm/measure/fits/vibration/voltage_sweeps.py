@@ -68,8 +68,8 @@ class VoltageSweepsFit:
         if not self.adequacy.adequate:
             return ()
         return tuple(
-            Observation(name, one.value, one.standard_error, {"voltage": 0.0})
-            for name, one in (
+            Observation(name, estimate.value, estimate.standard_error, {"voltage": 0.0})
+            for name, estimate in (
                 ("resonance_frequency", self.frequency),
                 ("quality_factor", self.quality_factor),
                 ("amplitude_per_volt", self.amplitude_per_volt),
@@ -125,7 +125,7 @@ def fit_voltage_sweeps(
     if law is not None:
         si.require_one_of("law", law, BACKBONE_LAWS)
     tried: tuple[BackboneLaw, ...] = BACKBONE_LAWS if law is None else (law,)
-    looks = [_first_look(points, one, drift) for one in tried]
+    looks = [_first_look(points, tried_law, drift) for tried_law in tried]
     return _fitted(*min(looks, key=_left)).read(recording)
 
 
@@ -158,7 +158,7 @@ class _Points:
             good = np.isfinite(f) & np.isfinite(H) & (f > 0)
             V, place = (np.full(int(good.sum()), value) for value in (sweep.voltage, number))
             rows.append((f[good], H[good] * sweep.voltage, V, place))
-        f, x, V, place = (np.concatenate(one) for one in zip(*rows, strict=True))
+        f, x, V, place = (np.concatenate(column) for column in zip(*rows, strict=True))
         if f.size < _FEWEST_POINTS:
             raise InputError(
                 f"the sweeps have {f.size} usable points; a backbone needs at least "
@@ -172,7 +172,7 @@ class _Points:
                 "voltages: sweep at two or more"
             )
         size = float(np.max(np.abs(x)))
-        found = cls(
+        points = cls(
             f,
             np.asarray(x / size, dtype=complex),
             V / V.max(),
@@ -180,10 +180,10 @@ class _Points:
             size,
             float(V.max()),
         )
-        circle = found.circle
+        circle = points.circle
         if circle is not None and circle.quality_factor < 0:
-            return replace(found, u=found.u.conj(), phase_reversed=True)
-        return found
+            return replace(points, u=points.u.conj(), phase_reversed=True)
+        return points
 
     @cached_property
     def circle(self) -> ModalCircle | None:
@@ -232,7 +232,7 @@ class _Duffing:
         D = (own * back) ** 2 * lossy - (points.f / self.own) ** 2
         slope = own**2 * (2 * back * bent * lossy + back**2 * 1j * loss * rise * a)
         x = points.u - R * points.v
-        return tuple(np.asarray(one, dtype=complex) for one in (D, slope, x, g * points.v))
+        return tuple(np.asarray(term, dtype=complex) for term in (D, slope, x, g * points.v))
 
     def steps_to_curve(self, at: si.FloatArray) -> tuple[si.ComplexArray, si.FloatArray]:
         """Distance of each point from the curve, to first order, and how far from a fold: the

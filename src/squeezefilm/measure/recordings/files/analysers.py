@@ -130,18 +130,18 @@ def _described(head: dict[str, str], names: Sequence[str]) -> tuple[Held, ...]:
     one that leaves the sign of the reactance open."""
     said = head.get("MEASURE PARAMETER", "").upper()
     words = re.findall(r"\|?[A-Z]+\|?", said)
-    found = [_SYMBOLS[word] for word in words if word in _SYMBOLS]
-    if "A real" not in names or not found:
+    known = [_SYMBOLS[word] for word in words if word in _SYMBOLS]
+    if "A real" not in names or not known:
         return ()
     if {"COMPLEX", "COMP"} & set(words):
         meant = [(part, "ohm") for part in _PARTS["ohm"]]
         return _held(meant, ("A real", "A imaginary"))
     if {"REAL", "IMAG"} <= set(words) or {"REAL", "IMAGINARY"} <= set(words):
-        meant = [(part, found[0][1]) for part in _PARTS[found[0][1]]]
+        meant = [(part, known[0][1]) for part in _PARTS[known[0][1]]]
     elif {"PHASE", "THETA"} & set(words) or "Θ" in said:
-        meant = [found[0], ("phase", "rad" if "RAD" in words else "deg")]
+        meant = [known[0], ("phase", "rad" if "RAD" in words else "deg")]
     else:
-        meant = found
+        meant = known
     if tuple(name for name, _ in meant) not in IMPEDANCES or "B real" not in names:
         return ()
     return _held(meant, ("A real", "B real"))
@@ -181,7 +181,7 @@ def _row(line: str, number: int, path: Path, cells_before: int) -> tuple[float, 
             line=number,
             column=min(len(cells), 3),
         )
-    found = []
+    numbers = []
     for column, cell in enumerate(cells, 1):
         try:
             value = float(cell)
@@ -191,5 +191,5 @@ def _row(line: str, number: int, path: Path, cells_before: int) -> tuple[float, 
             raise ConfigError(
                 f"'{cell[:40]}' is no finite number", file=path, line=number, column=column
             )
-        found.append(value)
-    return tuple(found)
+        numbers.append(value)
+    return tuple(numbers)

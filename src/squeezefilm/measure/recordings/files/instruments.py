@@ -91,26 +91,28 @@ def recognised(text: str) -> Instrument | None:
 def held_by(names: Sequence[str]) -> tuple[Held, ...]:
     """Quantities that columns with these names hold: frequency with the first pair that makes an
     impedance, or time with voltages; nothing where the names do not say."""
-    found: dict[str, list[tuple[int, str]]] = {}
+    quantities: dict[str, list[tuple[int, str]]] = {}
     for number, name in enumerate(names, 1):
         for quantity, unit in _read_name(name):
-            found.setdefault(quantity, []).append((number, unit))
-    if "frequency" in found:
-        wanted = _pair(found)
-        chosen = [("frequency", found["frequency"][0])] if wanted else []
+            quantities.setdefault(quantity, []).append((number, unit))
+    if "frequency" in quantities:
+        wanted = _pair(quantities)
+        chosen = [("frequency", quantities["frequency"][0])] if wanted else []
         # Of an analyser with two channels the second is that over the first.
-        chosen += [(name, found[name][-1 if name in ("gain", "phase") else 0]) for name in wanted]
-    elif "time" in found:
-        chosen = [("time", found["time"][0])]
-        chosen += [("voltage", one) for one in found.get("voltage", [])]
+        chosen += [
+            (name, quantities[name][-1 if name in ("gain", "phase") else 0]) for name in wanted
+        ]
+    elif "time" in quantities:
+        chosen = [("time", quantities["time"][0])]
+        chosen += [("voltage", place) for place in quantities.get("voltage", [])]
     else:
         return ()
     return tuple((name, _column(names, number), unit) for name, (number, unit) in chosen)
 
 
-def _pair(found: Mapping[str, object]) -> tuple[str, ...]:
+def _pair(quantities: Mapping[str, object]) -> tuple[str, ...]:
     for pair in IMPEDANCES:
-        if all(name in found for name in pair):
+        if all(name in quantities for name in pair):
             return pair
     return ()
 
@@ -118,7 +120,7 @@ def _pair(found: Mapping[str, object]) -> tuple[str, ...]:
 def _column(names: Sequence[str], number: int) -> str | int:
     """A column by its name where that is its own, or by its number."""
     name = names[number - 1]
-    alike = [one for one in names if one.casefold() == name.casefold()]
+    alike = [other for other in names if other.casefold() == name.casefold()]
     return name if len(alike) == 1 and '"' not in name and "\\" not in name else number
 
 
@@ -189,12 +191,12 @@ def times_of(text: str, instrument: Instrument) -> tuple[float, float] | None:
     if not instrument.step:
         return None
     head = text[:_HEAD_CHARACTERS]
-    found = [
+    matches = [
         re.search(pattern, head, re.MULTILINE | re.IGNORECASE)
         for pattern in (instrument.start, instrument.step)
     ]
     try:
-        start, step = (float(match[1]) if match else float("nan") for match in found)
+        start, step = (float(match[1]) if match else float("nan") for match in matches)
     except ValueError:
         start, step = float("nan"), float("nan")
     if not step > 0 or start != start:

@@ -62,7 +62,7 @@ def _variables(data: bytes, name: str) -> list[tuple[str, Any]]:
 
     try:
         stream: Any = io.BytesIO(data)
-        found = loadmat(stream, squeeze_me=True, struct_as_record=True)
+        loaded = loadmat(stream, squeeze_me=True, struct_as_record=True)
     except MemoryError:
         raise
     # Damaged files end in errors of any type, of zlib, of struct, of NumPy.
@@ -72,7 +72,7 @@ def _variables(data: bytes, name: str) -> list[tuple[str, Any]]:
             f"cannot be read as a MATLAB file: {why}; save it again with save('{name}', '-v7')"
         ) from error
     variables = []
-    for name, value in found.items():
+    for name, value in loaded.items():
         if name.startswith("__"):
             continue
         fields = getattr(getattr(value, "dtype", None), "names", None)
@@ -92,10 +92,10 @@ def _columns(name: str, value: Any) -> list[tuple[str, si.FloatArray]]:
         parts = [(f"{name} {k + 1}", array[:, k]) for k in range(array.shape[1])]
     else:
         parts = [(name, array)]
-    found = []
+    columns = []
     for label, part in parts:
         if np.iscomplexobj(part):
-            found += [(f"{label} real", part.real), (f"{label} imaginary", part.imag)]
+            columns += [(f"{label} real", part.real), (f"{label} imaginary", part.imag)]
         else:
-            found.append((label, part))
-    return [(label, np.asarray(part, dtype=float)) for label, part in found]
+            columns.append((label, part))
+    return [(label, np.asarray(part, dtype=float)) for label, part in columns]

@@ -62,7 +62,7 @@ class RawTable:
         if low <= frequency[0] and frequency[-1] <= high:
             return None
         swept, specified = (
-            " to ".join(si.format_quantity(float(one), si.Unit("Hz")) for one in pair)
+            " to ".join(si.format_quantity(float(end), si.Unit("Hz")) for end in pair)
             for pair in ((frequency[0], frequency[-1]), self.specified)
         )
         return f"the sweep goes from {swept}; the {self.instrument} is specified from {specified}"
@@ -73,9 +73,9 @@ class RawTable:
         if isinstance(wanted, int):
             return wanted - 1 if 1 <= wanted <= self.values.shape[1] else None
         for reading in (str, _folded, _without_unit):
-            found = [k for k, name in enumerate(self.names) if reading(name) == reading(wanted)]
-            if len(found) == 1:
-                return found[0]
+            places = [k for k, name in enumerate(self.names) if reading(name) == reading(wanted)]
+            if len(places) == 1:
+                return places[0]
         return None
 
     def unit_in_name(self, column: int) -> str | None:
@@ -107,7 +107,7 @@ class RawTable:
             raise self.error("holds no numbers; give a file with a table of them")
         bad = np.argwhere(~np.isfinite(self.values))
         if bad.size:
-            row, column = (int(one) for one in bad[0])
+            row, column = (int(index) for index in bad[0])
             value = self.values[row, column]
             raise self.error(
                 f"{value} is no finite number; leave the whole row out where nothing was measured "

@@ -166,11 +166,11 @@ def _notation(
     decimal = None if said is None else said.decimal
     wanted = DELIMITERS if delimiter is None else {delimiter: DELIMITERS[delimiter]}
     best, most = None, 0
-    for one in wanted.values():
+    for parted_by in wanted.values():
         for point in (".", ",") if decimal is None else (decimal,):
-            if one == point:
+            if parted_by == point:
                 continue
-            trial = _Notation(one, point, 0)
+            trial = _Notation(parted_by, point, 0)
             counts: Counter[int] = Counter()
             for line in sample:
                 cells = trial.split(line)
@@ -178,8 +178,8 @@ def _notation(
                     cells.pop()
                 if len(cells) >= least and all(map(trial.is_number, cells)):
                     counts[len(cells)] += 1
-            if counts and (found := counts.most_common(1)[0])[1] > most:
-                best, most = _Notation(one, point, found[0]), found[1]
+            if counts and (commonest := counts.most_common(1)[0])[1] > most:
+                best, most = _Notation(parted_by, point, commonest[0]), commonest[1]
     if best is None:
         told = "" if delimiter is None and decimal is None else " as delimiter and decimal tell"
         at = numbered[0][0] if numbered else None
@@ -193,7 +193,7 @@ def _notation(
 
 def _values(rows: Sequence[tuple[int, str]], notation: _Notation, path: Path) -> si.FloatArray:
     """The numbers of all rows, shape (rows, columns)."""
-    found = np.empty((len(rows), notation.cells))
+    values = np.empty((len(rows), notation.cells))
     for k, (number, line) in enumerate(rows):
         cells = notation.split(line)
         if len(cells) != notation.cells:
@@ -205,12 +205,12 @@ def _values(rows: Sequence[tuple[int, str]], notation: _Notation, path: Path) ->
             )
         for column, cell in enumerate(cells):
             try:
-                found[k, column] = notation.number(cell)
+                values[k, column] = notation.number(cell)
             except ValueError:
                 raise ConfigError(
                     _no_number(cell, notation), file=path, line=number, column=column + 1
                 ) from None
-    return found
+    return values
 
 
 def _miscounted(cells: Sequence[str], notation: _Notation, *, last: bool) -> str:

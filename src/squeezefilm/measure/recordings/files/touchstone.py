@@ -74,7 +74,7 @@ def read_touchstone(path: Path) -> RawTable:
         table[:, 2::2] *= scale if form == "RI" else 1.0
         table[:, 1::2] += 20 * np.log10(scale) if form == "DB" else 0.0
     instrument = recognised(text)
-    found = RawTable(
+    raw = RawTable(
         file=path,
         format=f"Touchstone file of {ports} port{'s' * (ports > 1)}, {kind} over {reference:g} ohm",
         names=tuple(names),
@@ -87,8 +87,8 @@ def read_touchstone(path: Path) -> RawTable:
         instrument="" if instrument is None else instrument.name,
         specified=None if instrument is None else instrument.range,
     )
-    found.require_finite()
-    return found
+    raw.require_finite()
+    return raw
 
 
 def _options(words: list[str], path: Path) -> tuple[str, str, str, si.Ohm]:

@@ -178,23 +178,23 @@ def _parts(name: str, values: Any) -> list[tuple[str, si.FloatArray]]:
 def _functions(functions: Sequence[_Block], path: Path) -> tuple[list[str], list[si.FloatArray]]:
     x = np.asarray(functions[0].content["x"], dtype=float)
     pairs = [("x", x)]
-    for number, one in enumerate(functions, 1):
-        other = np.asarray(one.content["x"], dtype=float)
+    for number, block in enumerate(functions, 1):
+        other = np.asarray(block.content["x"], dtype=float)
         if other.shape != x.shape or not np.allclose(other, x, rtol=1e-9, atol=0):
             raise ConfigError(
                 "the function that begins here stands over another abscissa than the first; save "
                 "functions of one abscissa in a file",
                 file=path,
-                line=one.line,
+                line=block.line,
             )
-        pairs += _parts(f"58.{number}", one.content["data"])
+        pairs += _parts(f"58.{number}", block.content["data"])
     return [name for name, _ in pairs], [column for _, column in pairs]
 
 
 def _data_at_nodes(
     block: _Block, nodes: Mapping[int, Sequence[float]], path: Path
 ) -> tuple[list[str], list[si.FloatArray]]:
-    places = _places([int(one) for one in block.content["node_nums"]], nodes, block, path)
+    places = _places([int(node) for node in block.content["node_nums"]], nodes, block, path)
     pairs = list(zip("xyz", places.T, strict=True))
     for direction in _DIRECTIONS:
         pairs += _parts(direction, block.content[direction])
@@ -205,8 +205,8 @@ def _functions_at_nodes(
     functions: Sequence[_Block], nodes: Mapping[int, Sequence[float]], at: si.Hertz, path: Path
 ) -> tuple[list[str], list[si.FloatArray]]:
     places, values = [], []
-    for one in functions:
-        x, data = np.asarray(one.content["x"]), np.asarray(one.content["data"])
+    for block in functions:
+        x, data = np.asarray(block.content["x"]), np.asarray(block.content["data"])
         nearest = int(np.argmin(np.abs(x - at)))
         if not x[0] <= at <= x[-1]:
             shown = ", ".join(
@@ -216,9 +216,9 @@ def _functions_at_nodes(
                 f"the function that begins here does not reach the frequency told (asked, first, "
                 f"last: {shown})",
                 file=path,
-                line=one.line,
+                line=block.line,
             )
-        places.append(_places([int(one.content["rsp_node"])], nodes, one, path)[0])
+        places.append(_places([int(block.content["rsp_node"])], nodes, block, path)[0])
         values.append(data[nearest])
     pairs = [*zip("xyz", np.array(places).T, strict=True), *_parts("58", np.array(values))]
     return [name for name, _ in pairs], [column for _, column in pairs]
