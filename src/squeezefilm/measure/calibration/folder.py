@@ -118,15 +118,23 @@ def score_prediction(
     progress: SayProgress | None = None,
 ) -> tuple[tuple[Score, ...], tuple[str, ...]]:
     """A prediction's file compared with a folder of recordings made since: error, inside its
-    interval or not, log score of every number; and what of the folder was left out.
+    interval or not, log score of every number; and what of the folder was not compared, and why.
 
     `display` is the one that was predicted: grid scans are fitted by its shapes. A prediction that
     was changed is refused before the data are opened. Raises `InputError` as `load_prediction` and
     `score`, and for a folder without recordings.
     """
-    load_prediction(prediction)
+    asked = {predicted.answer for predicted in load_prediction(prediction).predictions}
     seen = folder_observations(display, folder, progress or (lambda _: None))
-    return score(prediction, seen.observations), seen.left_out
+    scores = score(prediction, seen.observations)
+    compared = {id(scored.observation) for scored in scores}
+    left_out = [
+        f"{observed.recording}, its {observed.answer.replace('_', ' ')}: "
+        + ("predicted under other conditions" if observed.answer in asked else "not predicted")
+        for observed in seen.observations
+        if id(observed) not in compared
+    ]
+    return scores, (*seen.left_out, *left_out)
 
 
 def folder_observations(

@@ -113,16 +113,24 @@ def test_a_prediction_is_scored_on_a_folder_made_since(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="nothing that was measured"):
         sf.score_prediction(file, tmp_path / "later", STATOR)
     median = made.predictions[0].median
-    seen = Observation("relative_friction", median, 0.02, {"vibration_amplitude": 1e-6})
+    seen = (
+        Observation("relative_friction", median, 0.02, {"vibration_amplitude": 1e-6}, "a.csv"),
+        Observation("relative_friction", 0.4, 0.02, {"vibration_amplitude": 2e-6}, "a.csv"),
+        Observation("mass", 0.1, 1e-3, {}, "c.csv"),
+    )
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(
             calibrated_folder, "folder_observations",
-            lambda *_: SimpleNamespace(observations=(seen,), left_out=("b.csv: torn",)),
+            lambda *_: SimpleNamespace(observations=seen, left_out=("b.csv: torn",)),
         )  # fmt: skip
         (score,), left_out = sf.score_prediction(file, tmp_path, STATOR)
     assert score.inside
     assert score.error == 0
-    assert left_out == ("b.csv: torn",)
+    assert left_out == (
+        "b.csv: torn",
+        "a.csv, its relative friction: predicted under other conditions",
+        "c.csv, its mass: not predicted",
+    )
     # A prediction that was changed is refused before the data are opened.
     file.write_text(file.read_text().replace('"median": 0.', '"median": 0.1'))
     with pytest.raises(InputError, match="changed after it was written"):
