@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import squeezefilm
-from squeezefilm.core.from_text import ReadBy
+from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.quantities import unit_of
 
 HEAD = '''"""The front door for type checkers; `tools/front_door_stub.py` writes it."""

@@ -72,7 +72,7 @@ _Draw = Callable[[Any], "Figure"]
 
 @dataclass(frozen=True)
 class _Subject:
-    """What one type of result has: its figures by name, the first one shown unless another is asked
+    """A type of result: its figures by name, the first one shown unless another is asked
     for, and what writes its report into a folder."""
 
     figures: Mapping[str, _Draw]

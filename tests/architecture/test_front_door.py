@@ -14,8 +14,8 @@ import pytest
 
 import front_door_stub
 import squeezefilm as sf
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import QuantityError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.quantities import format_quantity, unit_of
 
 NAMES = (

@@ -69,7 +69,6 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "physics/plausibility/checks.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
     "instruments/bench/loop_check.py": {"read_text": "/proc/stat, of the kernel"},
     "core/config/load.py": {"tomllib.loads": TOML},
-    "core/config/written.py": {"tomllib.loads": TOML},
     "actuators/described.py": {"tomllib.loads": TOML},
     "cli/__init__.py": {"os.open": "/dev/null, to write"},
     "study/design/trials.py": {"json.loads": ROW},

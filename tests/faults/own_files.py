@@ -15,7 +15,7 @@ from tests.unit.study.scripted import gratings, run_through
 
 from squeezefilm.core import presets
 from squeezefilm.core.formats.traces import Table, csv_text, table_from_csv
-from squeezefilm.core.kept.folder import CACHE_VARIABLE
+from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.core.kept.store import Kept as KeptResults
 from squeezefilm.design.search.evolution import Proposals
 from squeezefilm.design.search.store import FILE as DESIGNS

@@ -363,6 +363,9 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "relative_friction": 0.5,
         "vibration_amplitude": 1e-6,
     },
+    "core.calibration_record.JointSpread": {"paths": ("a",), "draws": ((0.2,), (0.5,), (0.9,))},
+    "core.calibration_record.JointSpread.picked": {"paths": ("a",), "points": np.full((3, 1), 0.5)},
+    "core.calibration_record.JointSpread.moved": {"paths": ("a",), "points": np.full((3, 1), 0.5)},
     "physics.render.motion.finger_path.FingerPath": {"time": _GRID, "x": WAYS, "y": WAYS},
     "physics.render.program.inverse.FrictionInverse.from_function": _FALL,
     "physics.render.program.inverse.FrictionInverse.over_speeds": {

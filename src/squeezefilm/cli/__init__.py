@@ -14,13 +14,11 @@ import typer
 from squeezefilm.cli import describe  # noqa: F401 # isort: skip
 from squeezefilm.cli import sweep  # noqa: F401 # isort: skip
 from squeezefilm.cli import design  # noqa: F401 # isort: skip
-from squeezefilm.cli import fabrication  # noqa: F401 # isort: skip
 from squeezefilm.cli import textures  # noqa: F401 # isort: skip
 from squeezefilm.cli import claims  # noqa: F401 # isort: skip
 from squeezefilm.cli import measure  # noqa: F401 # isort: skip
 from squeezefilm.cli import calibration  # noqa: F401 # isort: skip
 from squeezefilm.cli import study  # noqa: F401 # isort: skip
-from squeezefilm.cli import felt  # noqa: F401 # isort: skip
 from squeezefilm.cli import study_file  # noqa: F401 # isort: skip
 from squeezefilm.cli import cache  # noqa: F401 # isort: skip
 from squeezefilm.cli.app import app
@@ -31,7 +29,7 @@ _INTERRUPTED = 130
 
 
 def _show_announcements() -> None:
-    """What the library has to say while it works (that it compiles, once), on standard error."""
+    """Show what the library says while it works (that it compiles, once), on standard error."""
     import logging
 
     handler = logging.StreamHandler()
@@ -42,7 +40,7 @@ def _show_announcements() -> None:
 
 
 def _say_warnings() -> None:
-    """What the library warns of as one line on standard error, without the place in the code. Of
+    """Show warnings of the library as one line on standard error, without the place in the code. Of
     other packages' warnings nothing that a person could do anything about is said; ``-W`` or
     PYTHONWARNINGS bring them back.
     """

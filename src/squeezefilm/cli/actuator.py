@@ -42,7 +42,7 @@ def analyze_actuator(asked: Any) -> None:
 
 
 def _flag(options: type, name: str) -> str:
-    """How an option is typed."""
+    """The option as it is typed."""
     for one in get_args(get_type_hints(options, include_extras=True)[name]):
         if isinstance(one, OptionInfo):
             for said in (one.default, *(one.param_decls or ())):

@@ -196,7 +196,7 @@ def _read(value: Any, name: str, marks: tuple[Any, ...]) -> Any:
 
 
 def working(quiet: bool) -> AbstractContextManager[SayProgress]:
-    """Where a verb tells its steps: at a terminal always, elsewhere unless it is to be quiet."""
+    """The listener to a verb's steps: at a terminal always, elsewhere unless it is to be quiet."""
     from squeezefilm.core.kit import terminal
 
     return terminal.progress(enabled=sys.stderr.isatty() or not quiet)

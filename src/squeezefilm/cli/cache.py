@@ -15,7 +15,7 @@ def cache(
     as_json: AsJson = False,
 ) -> None:
     """Show what is kept on disk so that it need not be computed twice, or clear it."""
-    from squeezefilm.core.kept.folder import CACHE_VARIABLE, cache_folder, clear_kept, kept_sizes
+    from squeezefilm.core.kept.store import CACHE_VARIABLE, cache_folder, clear_kept, kept_sizes
 
     folder = cache_folder()
     cleared = clear_kept() if clear else None

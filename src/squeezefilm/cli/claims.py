@@ -38,7 +38,7 @@ def reproduce(
     if data is not None:
         _measured_curves(data, out, as_json, write_docs)
         return
-    from squeezefilm.core.kit.docs import checkout
+    from squeezefilm.core.kit.folder import checkout
     from squeezefilm.validation.command import reproduce as run
     from squeezefilm.validation.explanations import prototype_study
     from squeezefilm.validation.report.page import write_reproduction, write_validation_docs
@@ -67,12 +67,12 @@ def reproduce(
 
 
 def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bool) -> None:
-    """What `reproduce --data` does."""
+    """Compare measured friction with every model: `reproduce --data`."""
     published = str(data) == "published" and not data.exists()
     if write_docs and not published:
         raise InputError("--write-docs writes a page of --data published, of no other data")
     from squeezefilm.core import presets
-    from squeezefilm.core.kit.docs import checkout
+    from squeezefilm.core.kit.folder import checkout
     from squeezefilm.measure.fits.friction.friction_folder import compare_folder
     from squeezefilm.measure.report.curves import show_comparisons, write_comparisons
 

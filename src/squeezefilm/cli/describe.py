@@ -25,7 +25,6 @@ from squeezefilm.cli.app import (
     answer,
     app,
     given,
-    print_json,
     reachable,
     read_option,
     to_be_solved,
@@ -117,7 +116,7 @@ class PointOptions:
 
 @dataclass(frozen=True)
 class AnalyzeOptions(PointOptions):
-    """What `analyze` is asked for."""
+    """Options of `analyze`."""
 
     out: Annotated[Path | None, written_to("Write result.json and report.html to this folder.")] = (
         None
@@ -172,11 +171,7 @@ def analyze(asked: AnalyzeOptions) -> None:
     )
     with one_blas_thread(), working(asked.as_json) as step:
         from squeezefilm.design.analysis.analyze import analyze as run
-        from squeezefilm.design.analysis.report.terminal import (
-            SHOWN,
-            SHOWN_WITH_ALL,
-            show_analysis,
-        )
+        from squeezefilm.design.analysis.report import terminal
         from squeezefilm.measure.fits.friction.person import with_finger
 
         display = with_finger(display, asked.finger)
@@ -185,7 +180,7 @@ def analyze(asked: AnalyzeOptions) -> None:
         result = run(display, **options, progress=step)
         written = None
         if asked.out is None and not asked.as_json:
-            shown = SHOWN_WITH_ALL if asked.whole else SHOWN
+            shown = terminal.SHOWN_WITH_ALL if asked.whole else terminal.SHOWN
             if with_shifts and "sensitivities" not in shown:
                 shown = (*shown, "sensitivities")
             result.compute(shown, step)
@@ -193,7 +188,7 @@ def analyze(asked: AnalyzeOptions) -> None:
             from squeezefilm.design.analysis.report.page import write_analysis
 
             written = write_analysis(result, asked.out, progress=step)
-    show = partial(show_analysis, whole=asked.whole, sensitivities=with_shifts)
+    show = partial(terminal.show_analysis, whole=asked.whole, sensitivities=with_shifts)
     answer(asked.as_json, result, show, report=written)
     if written is None and not asked.as_json:
         typer.echo("add --out DIR to write result.json and a report with figures")
@@ -201,7 +196,7 @@ def analyze(asked: AnalyzeOptions) -> None:
 
 @dataclass(frozen=True)
 class FrictionOptions(PointOptions):
-    """What `friction` is asked for."""
+    """Options of `friction`."""
 
     position: Annotated[
         str | None,
@@ -243,7 +238,7 @@ def friction(asked: FrictionOptions) -> None:
 
 @dataclass(frozen=True)
 class FilmOptions:
-    """What `film` is asked for."""
+    """Options of `film`."""
 
     squeeze_number: Annotated[
         str | None,
@@ -308,7 +303,7 @@ def film(asked: FilmOptions) -> None:
 
 @dataclass(frozen=True)
 class PlateOptions:
-    """What `plate` is asked for."""
+    """Options of `plate`."""
 
     target: Target
     band: Annotated[str | None, typer.Option(help='Modes in a band, like "25 kHz..45 kHz".')] = None
@@ -330,12 +325,7 @@ class PlateOptions:
 @called_with(PlateOptions)
 def plate(asked: PlateOptions) -> None:
     """Solve a plate, disc or stator in three dimensions: modes, amplitude per volt, admittance."""
-    from squeezefilm.design.plate.command import (
-        PlateAnalysis,
-        parse_band,
-        parse_mode,
-        solve_plate,
-    )
+    from squeezefilm.design.plate.command import PlateAnalysis, parse_band, parse_mode, solve_plate
     from squeezefilm.design.plate.report.terminal import show_plate
 
     display, out, vtu = to_be_solved(asked.target, quiet=asked.as_json), asked.out, asked.vtu
@@ -357,17 +347,14 @@ def plate(asked: PlateOptions) -> None:
             written += [] if out is None else [write_plate(result, out)]
             if vtu is not None and isinstance(result, PlateAnalysis):
                 written.append(write_mode(result, vtu))
-    if asked.as_json:
-        print_json(result.summary())
-        return
-    show_plate(result)
-    for path in written:
+    answer(asked.as_json, result, show_plate)
+    for path in [] if asked.as_json else written:
         typer.echo(f"wrote {path}")
 
 
 @dataclass(frozen=True)
 class ModesOptions:
-    """What `modes` is asked for."""
+    """Options of `modes`."""
 
     target: Target
     band: Annotated[

@@ -36,7 +36,7 @@ def preset_list() -> list[dict[str, Any]]:
 
 
 def _preset(described: Any, kind: str, verbs: str) -> dict[str, Any]:
-    """One entry of the list of presets."""
+    """An entry of the list of presets."""
     evidence = [item.evidence for item in described.provenance.values()]
     return {
         "name": described.name,
@@ -74,7 +74,7 @@ def display_values(target: str) -> list[dict[str, Any]]:
     """
     from squeezefilm.actuators.described import actuator_class, is_actuator
     from squeezefilm.core import presets
-    from squeezefilm.core.config.written import written_values
+    from squeezefilm.core.config.load import written_values
     from squeezefilm.core.regular_file import read_toml_text
     from squeezefilm.physics.display import Display
 

@@ -1,8 +1,8 @@
-"""The verb that searches for plates which meet requirements."""
+"""Verbs that search for plates which meet requirements, and that say how to build a display."""
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,18 +11,26 @@ from squeezefilm.cli.app import (
     Finger,
     Jobs,
     Scheduler,
+    Target,
     answer,
     app,
     print_json,
+    to_be_solved,
     working,
     written_to,
 )
 from squeezefilm.core.arguments import called_with
+from squeezefilm.core.errors import InputError
+
+if TYPE_CHECKING:
+    from squeezefilm.core.progress import SayProgress
+    from squeezefilm.design.fabrication.fabricate import Fabrication
+    from squeezefilm.physics.display import Display
 
 
 @dataclass(frozen=True)
 class DesignOptions:
-    """What `design` is asked for."""
+    """Options of `design`."""
 
     requirements: Annotated[
         str | None,
@@ -77,7 +85,6 @@ def design(asked: DesignOptions) -> None:
     import os
     from dataclasses import replace
 
-    from squeezefilm.cli.fabrication import written_for
     from squeezefilm.core import presets
     from squeezefilm.core.kit.folder import require_folder
     from squeezefilm.design.search.report.page import write_design
@@ -122,3 +129,49 @@ def design(asked: DesignOptions) -> None:
         raise typer.Exit(130 if stopped == "stopped" else 2)
     if not found.front:
         raise typer.Exit(1)
+
+
+@app.command()
+def fabricate(
+    target: Target,
+    out: Annotated[Path, written_to("Folder for drawing, bodies, tables, plan and a page.")],
+    quick: Annotated[
+        bool,
+        typer.Option(
+            "--quick", help="Without intervals: seconds in place of a minute or two of solving."
+        ),
+    ] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Write what it takes to build a display and to measure it: dimensioned drawing (DXF, PDF,
+    SVG), bodies (STL), electrodes and poling, bill of materials, drive electronics, and a test plan
+    with what is expected."""
+    from squeezefilm.actuators.described import is_actuator
+
+    if is_actuator(target):
+        raise InputError(
+            f"'{target}' describes a motor or a skin-stretch array; fabricate takes a display: "
+            "squeezefilm presets lists those that come with the package"
+        )
+    from squeezefilm.core.kit.folder import require_folder
+    from squeezefilm.design.fabrication.report.page import show_fabrication
+
+    folder = require_folder(out)
+    display = to_be_solved(target, quiet=as_json)
+    with working(as_json) as step:
+        made, written = written_for(display, folder, quick=quick, step=step)
+    answer(as_json, made, show_fabrication, page=written)
+
+
+def written_for(
+    display: "Display", folder: Path, *, quick: bool, step: "SayProgress"
+) -> "tuple[Fabrication, Path]":
+    """Write what it takes to build a display; its numbers, and the page."""
+    from squeezefilm.design.fabrication.fabricate import fabricate as run
+    from squeezefilm.design.fabrication.fabricate import sealed_already
+    from squeezefilm.design.fabrication.report.page import PREDICTION, write_fabrication
+
+    blind = None if quick else sealed_already(folder / PREDICTION, display)
+    made = run(display, intervals=not quick, blind=blind, progress=step)
+    step("drawing and files")
+    return made, write_fabrication(made, folder)

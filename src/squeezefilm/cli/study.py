@@ -165,7 +165,7 @@ def simulate(
 
 @dataclass(frozen=True)
 class PowerOptions:
-    """What `power` is asked for."""
+    """Options of `power`."""
 
     design: Design
     first: Annotated[
@@ -298,7 +298,7 @@ def rehearse(
 
 @dataclass(frozen=True)
 class RunOptions:
-    """What `run` is asked for."""
+    """Options of `run`."""
 
     design: Design
     store: NewStore

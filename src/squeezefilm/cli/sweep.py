@@ -13,7 +13,7 @@ from squeezefilm.core.errors import InputError
 
 @dataclass(frozen=True)
 class SweepOptions:
-    """What `sweep` is asked for."""
+    """Options of `sweep`."""
 
     targets: Annotated[
         list[str] | None,

@@ -31,7 +31,7 @@ from squeezefilm.core.errors import InputError
 
 @dataclass(frozen=True)
 class RenderOptions:
-    """What `render` is asked for."""
+    """Options of `render`."""
 
     texture: Texture
     display: OnDisplay
@@ -136,7 +136,7 @@ OnDrive = Annotated[
 
 @dataclass(frozen=True)
 class PlayOptions:
-    """What `play` is asked for."""
+    """Options of `play`."""
 
     texture: Texture
     display: OnDisplay
@@ -241,7 +241,7 @@ def export(
 
 @dataclass(frozen=True)
 class CheckOptions:
-    """What `check` is asked for."""
+    """Options of `check`."""
 
     drive: OnDrive = "twin"
     display: Annotated[

@@ -1,13 +1,16 @@
-"""What a calibrated display's file keeps of its calibration: when, on what, and how it went.
+"""What a calibrated display's file keeps of its calibration: how its values vary together, and when
+it was made, on what, and how it went.
 
-It is for people, and for the lab: nothing is computed from it. What is computed with stands in the
-values' own spreads and in `core.joint_spread.JointSpread`.
+`JointSpread` is computed with, as the values' own spreads are; `CalibrationRecord` is for people,
+and for the lab.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import Annotated
+
+import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
@@ -36,7 +39,7 @@ class UsedRecording:
 @si.checked_numbers
 @dataclass(frozen=True)
 class ComparedAnswer:
-    """One number that was measured beside what the model alone says of it, before and after.
+    """A number that was measured beside what the model alone says of it, before and after.
 
     `said` names the number in words, `measured` is it with its unit, `error` its standard error as
     a share of it. `before` and `after` are the model's low end, median and high end (90 %), each
@@ -82,9 +85,98 @@ class CalibrationRecord:
 
     @property
     def sentence(self) -> str:
-        """When it was calibrated, on what, and whether the model explains that."""
+        """A sentence: when it was calibrated, on what, and whether the model explains that."""
         count, files = len(self.compared), len(self.recordings)
         numbers = f"{count} measured number{'' if count == 1 else 's'}"
         of = f" of {files} recording{'' if files == 1 else 's'}" if files else ""
         how = "The model explains them" if self.fits else "The model does NOT explain them"
         return f"Calibrated on {self.when} from {numbers}{of}. {how}."
+
+
+_MOST_DRAWS = 4096
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class JointSpread:
+    """Draws of all that a calibration found uncertain, with equal weights.
+
+    A row of `draws` has a share from 0 to 1 for each of `paths`: the value (or law) that is not
+    exceeded with this probability by its own spread. `amplitude_share` is the amplitude per volt
+    relative to the solved one, `friction_offset` what is added to the law's relative friction: each
+    a middle and a standard deviation.
+
+    Raises `InputError` for rows that are not as long as paths, or shares that are none.
+    """
+
+    paths: tuple[str, ...] = ()
+    amplitude_share: Annotated[si.Dimensionless, si.Above(0)] = 1.0
+    amplitude_share_deviation: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] = 0.0
+    friction_offset: Annotated[si.Dimensionless, si.AtLeast(-1), si.AtMost(1)] = 0.0
+    friction_offset_deviation: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] = 0.0
+    draws: tuple[tuple[si.Dimensionless, ...], ...] = ()
+
+    def __post_init__(self) -> None:
+        if len(self.draws) > _MOST_DRAWS or len(self.paths) > 100:
+            raise InputError(
+                f"joint has {len(self.draws)} draws of {len(self.paths)} values; at most "
+                f"{_MOST_DRAWS} of 100 are read",
+                quantity="draws",
+            )
+        if any(len(row) != len(self.paths) for row in self.draws) or len(set(self.paths)) < len(
+            self.paths
+        ):
+            raise InputError(
+                f"every row of draws needs {len(self.paths)} numbers, one for each of paths, which "
+                "differ; take the table as a calibration wrote it",
+                quantity="draws",
+            )
+        if self.draws and not (np.min(self.draws) >= 0 and np.max(self.draws) <= 1):
+            raise InputError("a share in draws is not from 0 to 1", quantity="draws")
+
+    def _common(
+        self, paths: tuple[str, ...], points: si.FloatArray
+    ) -> tuple[list[int], si.FloatArray]:
+        """The places of those `paths` that stand here, and their columns of the draws; none without
+        draws. Raises `InputError` for points with another number of coordinates."""
+        if points.shape[1:] != (len(paths),):
+            raise InputError(
+                f"points has the shape {points.shape}; give a row of {len(paths)} shares, one for "
+                "each of paths, for each point",
+                quantity="points",
+            )
+        common = [path for path in self.paths if path in paths and self.draws]
+        table = np.array(self.draws or [()])[:, [self.paths.index(path) for path in common]]
+        return [paths.index(path) for path in common], table
+
+    @si.checked_numbers
+    def picked(self, paths: tuple[str, ...], points: si.DimensionlessArray) -> si.FloatArray:
+        """Points of the unit cube with coordinates `paths`, shape (points, paths), in which what
+        was calibrated is a row of the draws, each row as often as any other. Raises `InputError`
+        for points of another shape."""
+        columns, table = self._common(paths, points)
+        if not columns:
+            return points
+        found = np.array(points, dtype=float)
+        row = np.minimum((found[:, columns[0]] * len(table)).astype(int), len(table) - 1)
+        found[:, columns] = table[row]
+        return found
+
+    @si.checked_numbers
+    def moved(self, paths: tuple[str, ...], points: si.DimensionlessArray) -> si.FloatArray:
+        """Points of the unit cube (points, paths) moved so that their normal scores have the draws'
+        means and covariances: independent coordinates stay what they are named after, which a
+        design that changes one at a time needs. A Gaussian about the draws, so an approximation.
+        Raises `InputError` for points of another shape."""
+        from scipy.special import ndtr, ndtri
+
+        columns, table = self._common(paths, points)
+        if not columns:
+            return points
+        scores = ndtri(np.clip(table, 1e-4, 1 - 1e-4))
+        values, vectors = np.linalg.eigh(np.atleast_2d(np.cov(scores.T)))
+        root = vectors @ np.diag(np.sqrt(np.maximum(values, 0.0))) @ vectors.T
+        found = np.array(points, dtype=float)
+        own = ndtri(np.clip(found[:, columns], 1e-9, 1 - 1e-9))
+        found[:, columns] = ndtr(scores.mean(axis=0) + own @ root)
+        return found

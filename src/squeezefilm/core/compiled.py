@@ -76,7 +76,7 @@ def _cache_type() -> Any:
 
 
 def _used(function: Callable[..., Any]) -> Iterator[Any]:
-    """What a function finds by name, also in modules that it names (``layout.STEP``)."""
+    """The things that a function finds by name, also in modules that it names (``layout.STEP``)."""
     names = function.__code__.co_names
     for name in names:
         found = function.__globals__.get(name)
@@ -87,7 +87,8 @@ def _used(function: Callable[..., Any]) -> Iterator[Any]:
 
 
 def _told(one: Any) -> Any:
-    """What of a thing used changes the machine code of who uses it; None of what does not."""
+    """The part of a thing used that changes the machine code of who uses it; None of what does
+    not."""
     from numba.core.dispatcher import Dispatcher
     from numba.core.extending import _Intrinsic
 

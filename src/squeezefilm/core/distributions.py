@@ -84,7 +84,7 @@ class LogNormal:
 
     @property
     def of_logarithm(self) -> Normal:
-        """How the natural logarithm is distributed."""
+        """The distribution of the natural logarithm."""
         return Normal(math.log(self.median), self.log_deviation)
 
     @si.checked_numbers

@@ -29,7 +29,7 @@ STOP_RAMP: si.Second = 10e-3
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What a device never exceeds. All voltages are zero-to-peak amplitudes of the carrier.
+    """Limits that a device never exceeds. All voltages are zero-to-peak amplitudes of the carrier.
 
     `slew` bounds the amplitude's rate. Heat is I²t-like: a piezo's current is in proportion to
     the voltage at one frequency, so the device sums V² − continuous_voltage² over time (never

@@ -31,7 +31,7 @@ class HardLimit:
 
     @property
     def range(self) -> str:
-        """What is allowed, in words: ``"at least 1 µm and at most 10 m"``."""
+        """The allowed range in words: ``"at least 1 µm and at most 10 m"``."""
         return (
             f"at least {_shown(self.least, self.unit)} and at most {_shown(self.most, self.unit)}"
         )

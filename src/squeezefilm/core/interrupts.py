@@ -15,7 +15,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def interrupts_held() -> Iterator[None]:
-    """What this thread starts within hears no SIGINT; the thread hears it afterwards."""
+    """Hold SIGINT back: processes started within hear none, this thread hears it afterwards."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return

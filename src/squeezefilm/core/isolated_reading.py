@@ -64,7 +64,7 @@ class IsolatedReader:
         data: bytes = b"",
         file: str | Path,
     ) -> Read:
-        """What a function of a module returns for `data` and `arguments`, called in the child.
+        """The result of a function of a module for `data` and `arguments`, called in the child.
 
         `file` is what messages name. Raises `ConfigError`: what the function raises of this kind,
         and where the child crashed or reached a limit.
@@ -170,7 +170,7 @@ def _serve(requests: IO[bytes], answers: IO[bytes]) -> None:
 def _answer(
     function: Callable[..., Read], arguments: tuple[Any, ...]
 ) -> tuple[Read | None, dict[str, Any] | None]:
-    """What a function returns, or what a `ConfigError` says in its place."""
+    """The result of a function, or what a `ConfigError` says in its place."""
     try:
         facts, arrays = function(*arguments)
         return (facts, [np.asarray(array, dtype=float) for array in arrays]), None

@@ -58,7 +58,7 @@ class ElasticMaterial:
 
     @property
     def heat_per_volume(self) -> si.JoulePerCubicMetreKelvin:
-        """What a volume of it takes per kelvin."""
+        """The heat that a volume of it takes per kelvin."""
         return _heat_per_volume(self.density, self.specific_heat)
 
     @property
@@ -283,7 +283,7 @@ class Piezoceramic:
 
     @property
     def heat_per_volume(self) -> si.JoulePerCubicMetreKelvin:
-        """What a volume of it takes per kelvin."""
+        """The heat that a volume of it takes per kelvin."""
         return _heat_per_volume(self.density, self.specific_heat)
 
     @property

@@ -1,4 +1,4 @@
-"""Whether others can write in a folder.
+"""Refusal of folders in which others can write.
 
 What is read back from a cache is believed, and what numba keeps there is run. So a folder in which
 somebody else could put a file is neither read nor written, and this is said once.
@@ -18,7 +18,7 @@ _told: set[Path] = set()
 
 
 def is_shared(folder: Path, variable: str) -> bool:
-    """Whether a folder is there and somebody beside this user and root can write in it.
+    """True where a folder is there and somebody beside this user and root can write in it.
 
     If so, it is logged once, as a warning; `variable` is the environment variable that names
     another folder. Always False on Windows, where each user has folders of their own.
@@ -55,7 +55,8 @@ def _shared_by(known: os.stat_result) -> str:
 
 
 def _is_own_group(number: int) -> bool:
-    """Whether a group is the one that many systems make for each user, with nobody else in it."""
+    """True for a group that is the one that many systems make for each user, with nobody else in
+    it."""
     import grp
     import pwd
 

@@ -31,7 +31,7 @@ class Deadline:
     slowness: float = 1.0
 
     def allows(self, seconds: float) -> bool:
-        """Whether work that is expected to take so long (s) would end in time."""
+        """True where work that is expected to take so long (s) would end in time."""
         return self.clock() + self.slowness * (seconds + self.reserved) <= self.ends
 
     def earlier(self, seconds: float) -> Deadline:
@@ -45,7 +45,7 @@ class Deadline:
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """How a long solve may go: `budget` (s; None: as long as it takes) and whom it tells.
+    """The pace of a long solve: `budget` (s; None: as long as it takes) and whom it tells.
 
     The budget is a part of what is asked, since the answer depends on it; who is told is not, so
     that a cache sees one key.
@@ -56,7 +56,7 @@ class Pace:
     clock: Callable[[], float] = field(default=time.monotonic, compare=False, repr=False)
 
     def deadline(self) -> Deadline | None:
-        """When the budget, begun now, is used up."""
+        """The time at which the budget, begun now, is used up."""
         return None if self.budget is None else Deadline(self.clock() + self.budget, self.clock)
 
     def share(self, first: float, last: float) -> ShareProgress | None:
@@ -90,7 +90,7 @@ _TOO_EARLY, _TOO_SHORT = 0.05, 1.0
 
 
 def _left(passed: float, fraction: float) -> str:
-    """What is said of the time that is left: nothing while nobody knows, or before a second."""
+    """The time that is left in words: nothing while nobody knows, or before a second."""
     if not _TOO_EARLY <= fraction < 1:
         return ""
     left = passed * (1 - fraction) / fraction

@@ -69,7 +69,7 @@ def to_json(value: Any) -> Any:
 
 
 class Result:
-    """What results have in common: a short `repr`, a table for notebooks, and ways out of Python.
+    """Common abilities of results: a short `repr`, a table for notebooks, and ways out of Python.
 
     `_shown` names, between blanks, what a person looks for first (dotted: inside of it), and
     `summary` is what the command line's ``--json`` prints, where there is such a verb.
@@ -157,7 +157,7 @@ def config_hash(config: Any) -> str:
 
 
 def stamp(config: Any, seed: int | None = None) -> dict[str, Any]:
-    """What a saved result says of its origin: version, config hash, seed and UTC time."""
+    """The origin that a saved result states: version, config hash, seed and UTC time."""
     return {
         "squeezefilm_version": __version__,
         "config_sha256": config_hash(config),

@@ -11,15 +11,14 @@ from typing import Annotated, ClassVar
 
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
-from squeezefilm.core.calibration_record import CalibrationRecord
+from squeezefilm.core.arguments import ReadBy
+from squeezefilm.core.calibration_record import CalibrationRecord, JointSpread
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.config.references import References
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import ReadBy
 from squeezefilm.core.hard_limits import FREQUENCY, ROUGHNESS
-from squeezefilm.core.joint_spread import JointSpread
 from squeezefilm.core.materials import Gas
 from squeezefilm.core.results import Result, write_whole
 from squeezefilm.physics.contact.finger.fingertip import Finger

@@ -58,7 +58,8 @@ class Reproduction:
         return tuple(item for item in self.results if item.verdict != item.claim.verdict)
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints: ``claims`` (values in the SI ``unit`` each names), ``errata``."""
+        """The values that ``--json`` prints: ``claims`` (values in the SI ``unit`` each names),
+        ``errata``."""
         return {
             "claims": [
                 {

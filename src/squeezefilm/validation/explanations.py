@@ -64,7 +64,7 @@ AMPLITUDE_ACCURACY: si.Dimensionless = 0.1
 
 @dataclass(frozen=True)
 class Explanation:
-    """One set of parameters with which the mode lies at the measured frequency.
+    """A set of parameters with which the mode lies at the measured frequency.
 
     `free` names the parameter that was solved for and `value` says what came out. Ratios are of the
     neighbouring modes' frequencies (`NEIGHBOURS`) to the working mode's; `open_shift` is the
@@ -92,7 +92,7 @@ class Explanation:
 
 @dataclass(frozen=True)
 class Separation:
-    """How far two explanations stand apart in each further measurement, in units of what it could
+    """The distance of two explanations in each further measurement, in units of what it could
     resolve; above about 2 it tells them apart."""
 
     first: str

@@ -50,7 +50,7 @@ PRINTED_WIDTH: si.Metre = 50e-3  # section 3.1.1 chooses b = 50 mm, section 3.1.
 
 @dataclass(frozen=True)
 class ClaimValue:
-    """What was found for a claim, in SI: the corrected value; what the printed formula gives; the
+    """The values found for a claim, in SI: the corrected value; what the printed formula gives; the
     value under another reading of the print; a note on models and inputs."""
 
     value: tuple[float, ...]
@@ -265,7 +265,8 @@ def _() -> ClaimValue:
 
 
 def paper_design() -> Design:
-    """Where the paper's procedure (section 3.1) leads with its own laminate and finger."""
+    """The design to which the paper's procedure (section 3.1) leads with its own laminate and
+    finger."""
     gas = _stator().gas
     force, _ = _force_and_ambient()
     return design_plate(_section(), _gap(0.0), gas.viscosity, gas.ambient_pressure, force)

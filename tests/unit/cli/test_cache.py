@@ -11,8 +11,7 @@ from typer.testing import CliRunner
 
 from squeezefilm.cli import app
 from squeezefilm.core import quantities as si
-from squeezefilm.core.kept.folder import clear_kept, kept_sizes
-from squeezefilm.core.kept.store import Kept
+from squeezefilm.core.kept.store import Kept, clear_kept, kept_sizes
 
 
 def test_what_is_kept_is_shown_and_cleared_and_nothing_else(

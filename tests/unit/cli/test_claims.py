@@ -34,7 +34,7 @@ def claims(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
         asked=stands_in("validation.command:reproduce", reproduced()),
         shown=stands_in("validation.report.terminal:show_claims"),
         page=stands_in("validation.report.page:write_reproduction", tmp_path / "index.html"),
-        checkout=stands_in("core.kit.docs:checkout"),
+        checkout=stands_in("core.kit.folder:checkout"),
         docs=stands_in(
             "validation.report.page:write_validation_docs", "docs/reference/validation.md"
         ),

@@ -6,8 +6,7 @@ from dataclasses import KW_ONLY, dataclass
 
 import pytest
 
-from squeezefilm.core.arguments import called_with
-from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.arguments import called_with, reads_text
 from squeezefilm.core.quantities import Metre
 
 

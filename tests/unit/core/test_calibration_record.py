@@ -7,12 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.core.calibration_record import CalibrationRecord, ComparedAnswer, UsedRecording
-from squeezefilm.core.config.load import load_text
+from squeezefilm.core.calibration_record import (
+    CalibrationRecord,
+    ComparedAnswer,
+    JointSpread,
+    UsedRecording,
+)
+from squeezefilm.core.config.load import load_text, written_values
 from squeezefilm.core.config.write import text_of
-from squeezefilm.core.config.written import written_values
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.joint_spread import JointSpread
 from squeezefilm.design.analysis.report.described_values import display_values
 from squeezefilm.lab.designing.form import edited, form
 from squeezefilm.lab.designing.numbers import calibration_of

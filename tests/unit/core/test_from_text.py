@@ -7,8 +7,8 @@ from typing import Annotated
 import numpy as np
 import pytest
 
+from squeezefilm.core.arguments import ReadBy, reads_text
 from squeezefilm.core.errors import QuantityError
-from squeezefilm.core.from_text import ReadBy, reads_text
 from squeezefilm.core.quantities import Dimensionless, Hertz, Metre, MetreArray, Volt
 
 Named = Annotated[dict[str, str], ReadBy(lambda text: {"named": str(text)})]

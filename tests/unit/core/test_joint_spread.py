@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from squeezefilm.core.calibration_record import JointSpread
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.joint_spread import JointSpread
 
 PATHS = ("a", "b")
 _Z = np.random.default_rng(1).multivariate_normal([0.5, 0], [[1, -0.9], [-0.9, 1]], 400)

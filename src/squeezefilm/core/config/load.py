@@ -6,25 +6,27 @@ import dataclasses
 import tomllib
 import types
 import typing
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar, Union
 
 from pydantic import BaseModel, ValidationError
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.config.lines import locate
 from squeezefilm.core.config.provenance import (
+    Provenance,
     Spread,
+    described,
     distribution_of,
     read_only,
     split_provenance,
+    stated_sources,
+    tree_values,
 )
 from squeezefilm.core.config.references import COPIED_FROM, References
 from squeezefilm.core.config.scan import DEEPEST, require_quick_toml
 from squeezefilm.core.config.schema import family, model_of, reads_from_file
-from squeezefilm.core.config.stated import stated_sources
-from squeezefilm.core.config.syntax import explained
+from squeezefilm.core.config.syntax import explained, locate
 from squeezefilm.core.distributions import Distribution
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.regular_file import read_toml_text
@@ -44,7 +46,7 @@ class _Source:
     plain: Any = None
 
     def typed(self, path: Sequence[str | int]) -> Any:
-        """What stands at a path of the text, None where nothing does."""
+        """The value at a path of the text, None where nothing does."""
         found = self.plain
         for part in path:
             try:
@@ -112,7 +114,7 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
 
 
 def _original(references: References, name: str) -> Any:
-    """What a file says that it was copied from. Raises `ConfigError` with the key."""
+    """The description that a file was copied from. Raises `ConfigError` with the key."""
     try:
         return references.original(name)
     except InputError as error:
@@ -120,7 +122,8 @@ def _original(references: References, name: str) -> Any:
 
 
 def _depth(tree: Any) -> int:
-    """How deep tables and lists are nested, with no recursion that a file could exhaust."""
+    """The depth to which tables and lists are nested, with no recursion that a file could
+    exhaust."""
     deepest, todo = 0, [(tree, 1)]
     while todo:
         node, depth = todo.pop()
@@ -291,3 +294,40 @@ def _message(item: Any, path: Sequence[str | int], owner: type[Any]) -> str:
         return f"{item['input']!r} is neither true nor false; write one of them, without quotes"
     message = str(item["msg"]).removeprefix("Value error, ")
     return message if kind == "value_error" else f"{item['input']!r}: {message}"
+
+
+@dataclasses.dataclass(frozen=True)
+class WrittenValue:
+    """A value of a file: the parts of its path (members of lists from 0), its text as it was
+    typed, and where it is from (None for a word that needs no source)."""
+
+    path: tuple[str | int, ...]
+    text: str
+    provenance: Provenance | None
+
+
+class _Typed(str):
+    """A number of a TOML file as it was typed: 0.30 does not become 0.3."""
+
+    __slots__ = ()
+
+
+def written_values(
+    cls: type[Any], text: str, *, file: str | Path | None = None
+) -> tuple[WrittenValue, ...]:
+    """Every value that a text states of a dataclass with `provenance`, in the text's order, but for
+    what a program found and wrote.
+
+    Raises `ConfigError` as `load_text` does: what is shown can be built.
+    """
+    built = load_text(cls, text, file=file)
+    tree: Mapping[str, Any] = tomllib.loads(text, parse_float=_Typed)
+    references: References | None = getattr(cls, "references", None)
+    if references is not None:
+        tree, _ = references.written_out(tree)
+    plain = split_provenance(tree, of_tables=references is not None).plain
+    found: Mapping[str, Provenance] = built.provenance
+    return tuple(
+        WrittenValue(path, str(value), found.get(".".join(map(str, path))))
+        for path, value in tree_values(described(cls, plain))
+    )

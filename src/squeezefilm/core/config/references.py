@@ -20,7 +20,7 @@ MATERIAL = "material"
 
 @dataclass(frozen=True)
 class References:
-    """What the files of one kind of dataclass may name; the class has one as `references`.
+    """Names that the files of one kind of dataclass may have; the class has one as `references`.
 
     Attributes:
         original: what a file was copied from, built, by the name that ``copied_from`` gives.

@@ -76,7 +76,7 @@ def family(annotation: Any) -> tuple[type[Any], ...]:
 
 
 def reads_from_file(field: dataclasses.Field[Any]) -> bool:
-    """Whether a field is the user's to write (and not filled in by the loader)."""
+    """True for a field that is the user's to write (and not filled in by the loader)."""
     return bool(field.init and not field.metadata.get("loader", False))
 
 
@@ -140,7 +140,7 @@ def _build_model(cls: type[Any]) -> type[BaseModel]:
 
 
 class Leaf(NamedTuple):
-    """One value of a description: where it stands, its annotation, its field."""
+    """A value of a description: where it stands, its annotation, its field."""
 
     path: tuple[str | int, ...]
     value: Any

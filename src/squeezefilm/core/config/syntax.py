@@ -7,6 +7,7 @@ is looked at for the slips that people make.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,7 +28,7 @@ _LONGEST_SHOWN = 80
 
 @dataclass(frozen=True)
 class _Line:
-    """One line of a file, and what it seems to say."""
+    """A line of a file, and what it seems to say."""
 
     number: int
     text: str
@@ -41,7 +42,7 @@ class _Line:
 
     @property
     def value(self) -> str:
-        """What stands after the sign of equality, without a comment."""
+        """The text after the sign of equality, without a comment."""
         _, _, after = self.text.partition("=")
         return re.sub(r"""^((?:"[^"]*"|'[^']*'|[^"'#])*)#.*$""", r"\1", after).strip()
 
@@ -191,3 +192,49 @@ def _of_a_table(value: str, key: str) -> str | None:
         ):
             return _of_a_bare_value(inner.strip(), name.strip())
     return None
+
+
+_HEADER = re.compile(r"\s*(\[\[?)([^\]]+)\]")
+_ASSIGNED = re.compile(
+    r"\s*((?:[A-Za-z0-9_-]+|\"[^\"]*\"|'[^']*')(?:\s*\.\s*[A-Za-z0-9_\"'-]+)*)\s*="
+)
+
+
+def _split(dotted: str) -> list[str]:
+    return [part.strip().strip("\"'") for part in dotted.split(".")]
+
+
+def locate(text: str, path: Sequence[str | int]) -> int | None:
+    """The 1-based line of the key at `path` (e.g. ``("actuator", "patches", 3, "x")``), or of its
+    nearest ancestor that stands on a line of its own; None where none does."""
+    wanted = [str(part) for part in path]
+    table: list[str] = []
+    counts: dict[str, int] = {}
+    best, best_depth = None, 0
+    for number, line in enumerate(text.splitlines(), 1):
+        if header := _HEADER.match(line):
+            table = _split(header.group(2))
+            if header.group(1) == "[[":
+                name = ".".join(table)
+                counts[name] = counts.get(name, -1) + 1
+                table = [*table, str(counts[name])]
+            else:
+                table = _with_indices(table, counts)
+            here = table
+        elif key := _ASSIGNED.match(line):
+            here = [*table, *_split(key.group(1))]
+        else:
+            continue
+        depth = len(here)
+        if depth > best_depth and here == wanted[:depth]:
+            best, best_depth = number, depth
+    return best
+
+
+def _with_indices(table: list[str], counts: dict[str, int]) -> list[str]:
+    """[a.b.c] below the last [[a.b]] belongs to that element."""
+    for cut in range(len(table), 0, -1):
+        name = ".".join(table[:cut])
+        if name in counts:
+            return [*table[:cut], str(counts[name]), *table[cut:]]
+    return table

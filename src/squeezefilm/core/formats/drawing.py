@@ -17,7 +17,7 @@ Place = tuple[float, float]
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Layer:
-    """How a layer is drawn: colour (AutoCAD index), type of its lines, their width on paper (m),
+    """The look of a layer: colour (AutoCAD index), type of its lines, their width on paper (m),
     and with what closed shapes on it are filled where the format fills: nothing, the layer's own
     colour, or the paper's."""
 
@@ -59,7 +59,7 @@ class Arc:
 
     @property
     def is_circle(self) -> bool:
-        """Whether it goes all round."""
+        """True where it goes all round."""
         return self.end - self.start > 6.2831853
 
 
@@ -112,15 +112,15 @@ class Dimension:
 
     @property
     def said(self) -> str:
-        """What stands on the paper, in millimetres."""
+        """The text on the paper, in millimetres."""
         return f"{self.prefix}{millimetres(self.measured)}{self.suffix}"
 
 
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Ordinate:
-    """How far a place is from an origin along x (or, `upright`, along y), at the end of a leader
-    that runs square to that direction to `end` (a y, or where it is upright an x) (m)."""
+    """The distance of a place from an origin along x (or, `upright`, along y), at the end of a
+    leader that runs square to that direction to `end` (a y, or where it is upright an x) (m)."""
 
     x: si.Metre
     y: si.Metre
@@ -138,7 +138,7 @@ class Ordinate:
 
     @property
     def said(self) -> str:
-        """What stands on the paper, in millimetres."""
+        """The text on the paper, in millimetres."""
         return millimetres(self.measured)
 
 
@@ -148,10 +148,11 @@ Item = Polyline | Arc | Text | Dimension | Ordinate
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Drawing:
-    """What a drawing shows. The paper's lower left corner lies at `corner` (x, y in m), its `paper`
-    is width and height (m), and `scale` is paper over thing; the order of the items is that in
-    which they are drawn. `views` is the part of the paper without tables and title (left, bottom,
-    right, top in m of paper), `notes` what is written beside it: for pages that show only these.
+    """A drawing and its paper. The paper's lower left corner lies at `corner` (x, y in m), its
+    `paper` is width and height (m), and `scale` is paper over thing; the order of the items is that
+    in which they are drawn. `views` is the part of the paper without tables and title (left,
+    bottom, right, top in m of paper), `notes` what is written beside it: for pages that show only
+    these.
     """
 
     layers: Mapping[str, Layer]
@@ -171,5 +172,5 @@ def millimetres(length: si.Metre) -> str:
 
 @si.checked_numbers
 def arrows_outside(extent: si.Metre, height: si.Metre) -> bool:
-    """Whether a dimension so long, with a number so high (m), has no room for its arrows."""
+    """True where a dimension so long, with a number so high (m), has no room for its arrows."""
     return extent < 3.2 * height

@@ -32,7 +32,7 @@ _WIDTH = {"float32": 4, "int16": 2, "int24": 3}
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class Waveform:
-    """One channel of samples of a physical quantity.
+    """A channel of samples of a physical quantity.
 
     Attributes:
         samples: in `unit`, shape (n,).

@@ -52,7 +52,7 @@ class _Writer:
         self._known = {id(record): (number, record) for number, record in enumerate(given)}
 
     def plain(self, value: Any) -> Any:
-        """What JSON says of a value; arrays go to `arrays`."""
+        """A value as JSON has it; arrays go to `arrays`."""
         if value is None or isinstance(value, bool | int | float | str):
             return value
         if isinstance(value, np.ndarray):
@@ -91,7 +91,7 @@ class _Reader:
         self._known = list(given)
 
     def value(self, told: Any, kind: Any) -> Any:
-        """What JSON says, as a value of a type."""
+        """A value of a type from what JSON has."""
         origin, args = get_origin(kind), get_args(kind)
         if origin in (Union, UnionType):
             if told is None and NoneType in args:

@@ -1,4 +1,5 @@
-"""A report's files, put into its folder together: all of them, or what was there before."""
+"""A report's files, put into its folder together: all of them, or what was there before; and pages
+of the documentation that the program writes."""
 
 from __future__ import annotations
 
@@ -72,3 +73,24 @@ def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:
             else:
                 write_whole(file, old)
         raise
+
+
+def checkout(root: Path | None = None) -> Path:
+    """The checkout that this package runs from, or `root`. Raises `InputError` if it is none."""
+    top = root or Path(__file__).parents[4]
+    if not (top / "docs").is_dir() or not (top / "pyproject.toml").is_file():
+        raise InputError(
+            "write_docs needs a checkout of the source, and this is an installed package; "
+            "clone the repository and run it there"
+        )
+    return top
+
+
+def markdown_table(table: tuple[Sequence[str], Sequence[Sequence[str]]]) -> list[str]:
+    """A table as lines of Markdown."""
+    head, rows = table
+    return [
+        "| " + " | ".join(head) + " |",
+        "|" + "---|" * len(head),
+        *("| " + " | ".join(row) + " |" for row in rows),
+    ]

@@ -8,7 +8,7 @@ from squeezefilm.core.kit import style
 
 
 class Look(NamedTuple):
-    """How a model is drawn and called."""
+    """The line and the name of a model."""
 
     color: str
     dashes: str | tuple[int, tuple[float, ...]]

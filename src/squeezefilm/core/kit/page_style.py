@@ -117,7 +117,7 @@ def page(
 
 
 def stamped(stamp: Mapping[str, Any], digest: str, made: str = "made") -> str:
-    """Which version made a page's numbers and when, and the digest of what, `digest` in words."""
+    """The version that made a page's numbers, when, and the digest of what, `digest` in words."""
     version, when, code = (
         escape(str(stamp.get(key, "")))
         for key in ("squeezefilm_version", "created_utc", "config_sha256")

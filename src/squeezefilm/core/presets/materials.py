@@ -24,7 +24,7 @@ _FILE = Path(__file__).with_suffix(".toml")
 
 @dataclass(frozen=True)
 class Material:
-    """One material of the library: what it is for, what else it is called, how far it spreads.
+    """A material of the library: what it is for, what else it is called, how far it spreads.
 
     `values` is its table as a file may have it: texts with units, each with its source.
     """

@@ -3,6 +3,5 @@
 from squeezefilm.core.quantities.bounds import *  # noqa: F403
 from squeezefilm.core.quantities.checks import *  # noqa: F403
 from squeezefilm.core.quantities.require import *  # noqa: F403
-from squeezefilm.core.quantities.typed import *  # noqa: F403
 from squeezefilm.core.quantities.units import *  # noqa: F403
 from squeezefilm.core.quantities.vocabulary import *  # noqa: F403

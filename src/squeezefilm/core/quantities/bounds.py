@@ -57,7 +57,7 @@ def bounds_of(hint: Any) -> tuple[dict[str, Any], tuple[Limit, ...]]:
 
 
 def _beside(hint: Any) -> Iterator[Any]:
-    """What stands in an annotation beside its type, and beside those of a row's numbers."""
+    """The marks in an annotation beside its type, and beside those of a row's numbers."""
     if typing.get_origin(hint) is typing.Annotated:
         yield from hint.__metadata__
         yield from _beside(hint.__origin__)

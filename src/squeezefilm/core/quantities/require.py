@@ -3,23 +3,34 @@
 from __future__ import annotations
 
 import operator
+import re
 from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.quantities.units import FloatArray, Unit, did_you_mean, format_quantity
+from squeezefilm.core.quantities.bounds import bounds_of
+from squeezefilm.core.quantities.units import (
+    FloatArray,
+    Unit,
+    did_you_mean,
+    format_quantity,
+    parse_quantity,
+    unit_of,
+)
 
 __all__ = [
     "real_numbers",
     "require",
     "require_alike",
     "require_one_of",
+    "require_typed",
     "returned",
 ]
 
 _PURE = Unit("1")
+_TYPED = re.compile(r"\s*(?P<number>[-+\d.eE]+)\s*(?P<unit>\S.*?)\s*")
 
 HOLDS: dict[str, Callable[[Any, Any], Any]] = {
     "above": operator.gt,
@@ -46,7 +57,7 @@ def real_numbers(name: str, value: Any) -> FloatArray:
 
 
 def is_whole(value: Any) -> bool:
-    """Whether a value is a whole number, and no truth value."""
+    """True for a whole number, and no truth value."""
     return isinstance(value, int | np.integer) and not isinstance(value, bool)
 
 
@@ -97,7 +108,7 @@ def require(
 
 
 def _as_percentage(value: float, unit: Unit, bounds: dict[str, float]) -> str:
-    """What to write where a number of percent probably stands for a share; empty for any other."""
+    """Advice where a number of percent probably stands for a share; empty for any other."""
     most = min((bounds[word] for word in ("below", "at_most") if word in bounds), default=np.inf)
     share = value / 100
     held = all(HOLDS[word](share, bound) for word, bound in bounds.items())
@@ -133,7 +144,7 @@ def require_one_of(name: str, value: Any, allowed: Iterable[Any]) -> None:
 
 
 def returned(name: str, values: Any, given: Any, what: str) -> FloatArray:
-    """What a callable `name` returned where an array was `given`, as floats.
+    """The floats that a callable `name` returned where an array was `given`.
 
     Raises `InputError` unless it has the shape of that array: `what` says what must be returned.
     """
@@ -144,3 +155,28 @@ def returned(name: str, values: Any, given: Any, what: str) -> FloatArray:
             f"return {what}"
         )
     return array
+
+
+def require_typed(name: str, text: str, hint: Any) -> None:
+    """Refuse a quantity text that is not within the bounds of an annotation, in the text's unit:
+    degC, deg or %, where K, rad or a number would be another person's words.
+
+    Nothing is refused where that is the annotation's own unit or a multiple of it with a prefix,
+    which `require` says as well. Raises `InputError` that names the quantity, what was typed and
+    the bounds, and `QuantityError` for a text that is no such quantity.
+    """
+    unit, (bounds, _) = unit_of(hint), bounds_of(hint)
+    match = _TYPED.fullmatch(text)
+    if unit is None or match is None or match["unit"].endswith(unit.symbol):
+        return
+    value, symbol = parse_quantity(text, unit), match["unit"]
+    if all(HOLDS[word](value, bound) for word, bound in bounds.items()):
+        return
+    # A unit may have a zero of its own, as degC has.
+    place = parse_quantity(f"100 {symbol}", unit)
+    step = (parse_quantity(f"200 {symbol}", unit) - place) / 100
+    wanted = " and ".join(
+        f"{word.replace('_', ' ')} {100 + (bound - place) / step:.4g} {symbol}"
+        for word, bound in bounds.items()
+    )
+    raise InputError(f"{name} = {text} cannot be used: it must be {wanted}", quantity=name)

@@ -80,7 +80,7 @@ def _number(text: str, factor: str = "1") -> str:
 
 
 def probably_meant(text: str, wanted: str, allowed: tuple[str, ...]) -> Iterator[Meant]:
-    """What may have been meant by `text` where a quantity in `wanted` (a unit's symbol) stands.
+    """Guesses at what was meant by `text` where a quantity in `wanted` (a unit's symbol) stands.
 
     `allowed` are the units that are offered there. The most probable comes first; whoever asks
     leaves out what is no quantity of the wanted dimension.

@@ -143,7 +143,7 @@ class Unit:
 
     @property
     def suffix(self) -> str:
-        """What a JSON key or a CSV column ends with, e.g. ``_N_per_m``; empty if dimensionless."""
+        """The end of a JSON key or a CSV column, e.g. ``_N_per_m``; empty if dimensionless."""
         if self.symbol == "1":
             return ""
         return "_" + self.symbol.replace("*", "_").replace("/", "_per_").replace("^", "")
@@ -222,7 +222,8 @@ def parse_quantity(text: str, unit: Unit) -> float:
 
 
 def _meant(text: str, unit: Unit) -> str | None:
-    """Why it was refused and what to write, the first that can be read; None where none can."""
+    """The reason why it was refused and what to write, the first that can be read; None where none
+    can."""
     units = allowed_units(unit)
     for why, candidates in probably_meant(text, unit.symbol, tuple(units.split(", "))):
         try:

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, get_args, get_type_hints
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import Deadline, Pace, SayProgress, said_with_time_left
 from squeezefilm.core.results import Result, stamp, to_json

@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.config.stated import source_doubt
+from squeezefilm.core.config.provenance import source_doubt
 from squeezefilm.design.analysis.area_odds import JudgedArea
 from squeezefilm.design.analysis.curves import (
     COMPARED,

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError, SqueezefilmError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.design.fabrication.bill import BillRow, bill_of

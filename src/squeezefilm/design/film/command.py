@@ -10,8 +10,8 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.hard_limits import ASPECT
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.physics.film.gas import FilmGas

@@ -11,9 +11,9 @@ from typing import Annotated, Literal
 from squeezefilm.core import hard_limits as hard
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.core.from_text import ReadBy
 from squeezefilm.design.search.shapes import AnyShape, shape_called
 from squeezefilm.design.search.space import VOLTAGE, Space, number
 from squeezefilm.design.search.stock import OWN, Body, Room

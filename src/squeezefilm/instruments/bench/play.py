@@ -16,10 +16,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with
+from squeezefilm.core.arguments import called_with, reads_text
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp
 from squeezefilm.instruments.bench.check import DeviceCheck, check_device

@@ -15,9 +15,8 @@ from tomlkit.exceptions import TOMLKitError
 
 from squeezefilm.core import config, presets
 from squeezefilm.core import quantities as si
-from squeezefilm.core.config.provenance import UNSTATED
+from squeezefilm.core.config.provenance import UNSTATED, changed_from
 from squeezefilm.core.config.schema import leaves
-from squeezefilm.core.config.stated import changed_from
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import Actuator, RectangularPlate

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.regular_file import read_json, read_regular_text

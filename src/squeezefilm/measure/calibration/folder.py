@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.calibration_record import UsedRecording
 from squeezefilm.core.distributions import Distribution
 from squeezefilm.core.errors import InputError, SqueezefilmError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.hard_limits import RECORDING_BYTES
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.regular_file import read_regular

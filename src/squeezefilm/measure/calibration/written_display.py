@@ -2,8 +2,8 @@
 
 Every value that the data told something of is written as measured, with the posterior's spread.
 The rest stays as it was described. What the spreads of single values do not say is in the file's
-`joint` (`core.joint_spread.JointSpread`), which draws of friction's interval use; what was measured
-stands in its `calibration` (`core.calibration_record.CalibrationRecord`).
+`joint` (`core.calibration_record.JointSpread`), which draws of friction's interval use; what was
+measured stands in its `calibration` (`core.calibration_record.CalibrationRecord`).
 """
 
 from __future__ import annotations
@@ -17,11 +17,10 @@ import numpy as np
 
 from squeezefilm import __version__
 from squeezefilm.core import quantities as si
-from squeezefilm.core.calibration_record import CalibrationRecord, UsedRecording
+from squeezefilm.core.calibration_record import CalibrationRecord, JointSpread, UsedRecording
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.distributions import Distribution, Normal, Uniform
-from squeezefilm.core.joint_spread import JointSpread
 from squeezefilm.core.results import write_whole
 from squeezefilm.measure.calibration.calibration import CalibratedValue, Calibration, Joint
 from squeezefilm.measure.calibration.friction_posterior import finger_mixture

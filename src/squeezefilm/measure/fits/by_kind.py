@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 from typing import Annotated, Any, Protocol
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import ReadBy, reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import ReadBy, reads_text
 from squeezefilm.measure.fits.ceramic.bar import bar_constants
 from squeezefilm.measure.fits.ceramic.disc import disc_constants
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance

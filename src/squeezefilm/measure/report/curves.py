@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from squeezefilm.core.kit import style
-from squeezefilm.core.kit.docs import checkout, markdown_table
-from squeezefilm.core.kit.folder import json_text, write_folder
+from squeezefilm.core.kit.folder import checkout, json_text, markdown_table, write_folder
 from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.kit.page_style import (
     bullets,

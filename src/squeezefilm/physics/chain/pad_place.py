@@ -9,8 +9,8 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.errors import GeometryError, QuantityError
-from squeezefilm.core.from_text import ReadBy
 from squeezefilm.physics.contact.finger.fingertip import Finger
 from squeezefilm.physics.contact.sharing.pad import PadPoints, pad_points
 from squeezefilm.physics.plate.layout import Actuator

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError, OutOfRangeError, OutOfRangeWarning
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.progress import NO_HURRY, Pace
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.physics.chain.area_map import at_best_place

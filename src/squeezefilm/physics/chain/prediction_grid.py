@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError, optional
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.results import stamp
 from squeezefilm.physics.chain.friction_models import FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace, read_place

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Annotated
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE
 from squeezefilm.core.errors import UnreachableError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.physics.chain.area_map import at_best_place
 from squeezefilm.physics.chain.chosen_mode import chosen_mode
 from squeezefilm.physics.chain.free_vibration import amplitude_per_volt

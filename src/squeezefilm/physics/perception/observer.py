@@ -15,9 +15,9 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import ReadBy
 from squeezefilm.physics.contact.finger.fingertip import Moisture
 
 TUNED_AT: si.MetrePerSecond = 0.05

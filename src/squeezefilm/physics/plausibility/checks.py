@@ -18,7 +18,7 @@ from types import MappingProxyType
 from typing import Any
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.config.lines import locate
+from squeezefilm.core.config.syntax import locate
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plausibility.ratios import Path, Ratio, ratios

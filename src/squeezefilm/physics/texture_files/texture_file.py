@@ -25,11 +25,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from squeezefilm.core.arguments import ReadBy
+
 # Read for their classes: what a file may name is what is below Composable, Pattern, Coordinate.
 from squeezefilm.core.config.load import load, load_text
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.core.from_text import ReadBy
 from squeezefilm.core.results import write_whole
 from squeezefilm.physics.render.texture import gates as pattern_gates
 from squeezefilm.physics.render.texture import image as pattern_image

@@ -20,9 +20,9 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.formats.traces import Table, table_from_csv, text_of_file
-from squeezefilm.core.from_text import ReadBy
 from squeezefilm.core.hard_limits import FINGER_SPEED
 from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke

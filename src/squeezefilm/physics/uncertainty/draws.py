@@ -17,7 +17,6 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.errors import OutOfRangeWarning, SqueezefilmError
-from squeezefilm.core.quantities.outermost import outermost_checked
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
 from squeezefilm.physics.chain.prediction import Prediction
@@ -55,7 +54,7 @@ Input = Parameter | Choice
 def as_drawn() -> Iterator[None]:
     """Within it a draw beyond the range of its law counts as it is, without a warning for each, and
     what is made of a draw is checked once."""
-    with warnings.catch_warnings(), outermost_checked():
+    with warnings.catch_warnings(), si.outermost_checked():
         warnings.simplefilter("ignore", OutOfRangeWarning)
         yield
 

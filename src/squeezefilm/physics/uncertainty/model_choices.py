@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.calibration_record import JointSpread
 from squeezefilm.core.distributions import Normal
-from squeezefilm.core.joint_spread import JointSpread
 from squeezefilm.physics.contact.asperities import AsperityLaw
 from squeezefilm.physics.contact.rough_contact import LEAST_GAP, ContactLaw, RoughContact
 from squeezefilm.physics.display import Display

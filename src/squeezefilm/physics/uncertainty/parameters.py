@@ -12,9 +12,9 @@ from typing import Any, Literal, NamedTuple, TypeVar
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.distributions import Distribution, LogNormal, Uniform
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.materials import Piezoceramic
 from squeezefilm.physics.contact.finger.people import DECAY_LENGTH_SPREAD
 from squeezefilm.physics.display import DECAY_LENGTH, Display, NamedDisplay

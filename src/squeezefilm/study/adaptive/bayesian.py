@@ -15,8 +15,8 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.study.adaptive.kernel import EXACT, information
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import (

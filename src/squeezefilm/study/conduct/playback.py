@@ -16,9 +16,8 @@ from types import TracebackType
 from typing import Annotated, Literal, Self
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with
+from squeezefilm.core.arguments import ReadBy, called_with, reads_text
 from squeezefilm.core.errors import DeviceError, InputError
-from squeezefilm.core.from_text import ReadBy, reads_text
 from squeezefilm.instruments.bench.markers import Markers, markers_if
 from squeezefilm.instruments.twin.hand import EXPLORING
 from squeezefilm.physics.perception.stimuli import Stimulus

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.from_text import reads_text
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.hard_limits import PLANNED_TRIALS, require_within
 from squeezefilm.core.results import Result
 from squeezefilm.physics.perception.observer import NamedObserver, load_observer

@@ -23,9 +23,9 @@ from pathlib import Path
 from typing import Annotated, Literal
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.core.from_text import ReadBy
 from squeezefilm.core.hard_limits import PARTICIPANT_TRIALS, require_within
 from squeezefilm.core.results import config_hash
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus, Varied

@@ -15,8 +15,8 @@ import numpy as np
 from scipy.special import betainc, betaincinv, betaln, ndtri
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.study.psychometric import kernel
 
 Shape = Literal[

@@ -8,9 +8,8 @@ from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with
+from squeezefilm.core.arguments import called_with, reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.instruments.bench.markers import markers_if
 from squeezefilm.study.conduct.terminal_run import Desk, Examiner, open_study, run_session
 from squeezefilm.study.record.store import utc_now

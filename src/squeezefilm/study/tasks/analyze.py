@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import ConvergenceError, InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.identification.analysis import (
     IdentificationAnalysis,

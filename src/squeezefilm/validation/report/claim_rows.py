@@ -40,7 +40,7 @@ def show_values(values: Sequence[float] | None, unit: str) -> str:
 
 
 def show_printed(item: ClaimResult) -> str:
-    """What was printed, with the sign of a bound; words where nothing was compared."""
+    """The printed value with the sign of a bound; words where nothing was compared."""
     if not item.claim.printed:
         return "not compared"
     return _SIGNS[item.claim.relation] + show_values(item.claim.printed, item.claim.unit)

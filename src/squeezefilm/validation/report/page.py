@@ -7,8 +7,7 @@ from html import escape
 from pathlib import Path
 
 from squeezefilm.core.kit import style
-from squeezefilm.core.kit.docs import checkout, markdown_table
-from squeezefilm.core.kit.folder import json_text, write_folder
+from squeezefilm.core.kit.folder import checkout, json_text, markdown_table, write_folder
 from squeezefilm.core.kit.page_style import bullets, page_head
 from squeezefilm.core.results import write_whole
 from squeezefilm.design.analysis.paper_procedure import Design
@@ -116,7 +115,7 @@ def _direction_lines(result: Reproduction) -> list[str]:
 
 
 def design_sentences(design: Design) -> list[str]:
-    """What the procedure of section 3.1 yields step by step, then its contradictions."""
+    """The steps of the procedure of section 3.1, then its contradictions."""
     kilohertz, area = design.lowest_frequency / 1e3, design.area * 1e4
     size = f"{design.length * 1e3:.3g} × {design.width * 1e3:.3g} mm"
     return [
@@ -137,7 +136,7 @@ def _cell(text: str) -> str:
 
 
 def _found(item: ClaimResult) -> tuple[str, str, str]:
-    """What was printed, what the printed formula gives, what was recomputed."""
+    """The printed value, what the printed formula gives, what was recomputed."""
     return show_printed(item), _formula(item), show_values(item.value, item.claim.unit)
 
 

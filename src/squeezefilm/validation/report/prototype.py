@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.core.kit import style
-from squeezefilm.core.kit.docs import markdown_table
+from squeezefilm.core.kit.folder import markdown_table
 from squeezefilm.core.kit.numbers import changed
 from squeezefilm.validation.explanations import (
     AMPLITUDE_ACCURACY,
@@ -105,7 +105,7 @@ def explanation_table(study: PrototypeStudy) -> Table:
 
 
 def separation_table(study: PrototypeStudy) -> Table:
-    """How far each two explanations stand apart, in units of what could be measured."""
+    """The distance of each two explanations, in units of what could be measured."""
     rows = []
     for one in study.separations:
         told = [m for m, a in zip(one.measurements, one.apart, strict=True) if a > _TOLD_APART]
@@ -120,7 +120,7 @@ def separation_table(study: PrototypeStudy) -> Table:
 
 
 def sentences(study: PrototypeStudy) -> list[str]:
-    """What follows, in words; every number computed."""
+    """The conclusions in words; every number computed."""
     ours = study.from_d31
     missing = MEASURED_FREQUENCY / ours.frequency - 1
     alone = [r for r in study.sensitivities.rows if r.frequency_shift <= 0.9 * missing]
@@ -178,7 +178,7 @@ def prototype_markdown(study: PrototypeStudy) -> list[str]:
 
 @style.drawn
 def identifiability(study: PrototypeStudy) -> Figure:
-    """What each explanation of 30.5 kHz predicts for every further measurement."""
+    """Draw what each explanation of 30.5 kHz predicts for every further measurement."""
     figure = style.new_figure(
         f"{len(study.explanations)} explanations of 30.5 kHz, and what would tell them apart",
         "piezoelectric_solid_3d, each explanation solved for its free parameter; bars are what a "

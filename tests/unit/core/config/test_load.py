@@ -6,7 +6,7 @@ import pytest
 
 from squeezefilm.core import presets
 from squeezefilm.core.config import load, load_text
-from squeezefilm.core.config.lines import locate
+from squeezefilm.core.config.syntax import locate
 from squeezefilm.core.distributions import Normal, Uniform
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.results import config_hash

@@ -8,8 +8,13 @@ import pytest
 
 from squeezefilm.core import presets
 from squeezefilm.core.config import Provenance, load_text
-from squeezefilm.core.config.provenance import UNSTATED
-from squeezefilm.core.config.stated import changed_from, source_doubt, stated_sources, unstated
+from squeezefilm.core.config.provenance import (
+    UNSTATED,
+    changed_from,
+    source_doubt,
+    stated_sources,
+    unstated,
+)
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.physics.display import Display, load_display, new_display_file
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.core.kept.folder import CACHE_VARIABLE, cache_folder
+from squeezefilm.core.kept.store import CACHE_VARIABLE, cache_folder
 
 
 @pytest.mark.parametrize(

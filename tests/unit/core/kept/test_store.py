@@ -11,8 +11,7 @@ import pytest
 from squeezefilm.core import quantities as si
 from squeezefilm.core.hard_limits import HardLimit
 from squeezefilm.core.kept import store
-from squeezefilm.core.kept.folder import CACHE_VARIABLE
-from squeezefilm.core.kept.store import Kept, in_passing
+from squeezefilm.core.kept.store import CACHE_VARIABLE, Kept, in_passing
 
 VALUES = np.array([0.1, -3.0, 1e300, np.nextafter(1.0, 2.0)])
 

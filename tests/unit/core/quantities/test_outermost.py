@@ -9,7 +9,7 @@ import pytest
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.core.quantities.outermost import WITHIN, outermost_checked
+from squeezefilm.core.quantities.checks import _WITHIN, outermost_checked
 
 
 @si.checked_numbers
@@ -47,7 +47,7 @@ def test_the_outermost_answers_for_arithmetic_within_it() -> None:
         with pytest.raises(OutOfRangeError, match="outer leaves the range of a float"):
             outer(2.0)
         # Not left behind by what was refused.
-        assert not WITHIN.get()
+        assert not _WITHIN.get()
         assert outer(3.0) == 1.0
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.kept.folder import CACHE_VARIABLE
+from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.core.results import to_json
 from squeezefilm.design.analysis.analyze import KEPT, Analysis, analyze
 from squeezefilm.design.analysis.curves import pressure_profiles

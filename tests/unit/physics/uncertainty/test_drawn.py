@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.core.kept.folder import CACHE_VARIABLE
+from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.design.analysis import area_odds, felt
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from squeezefilm.core.joint_spread import JointSpread
+from squeezefilm.core.calibration_record import JointSpread
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.uncertainty.drawn import evaluate

@@ -13,7 +13,7 @@ import pytest
 
 from squeezefilm.core import second_process
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.kept.folder import CACHE_VARIABLE
+from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.physics.perception.senses import line_amplitudes, line_periods
 from squeezefilm.study.design.study_design import StudyDesign, load_design

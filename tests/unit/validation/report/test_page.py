@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.kit.docs import checkout
+from squeezefilm.core.kit.folder import checkout
 from squeezefilm.core.kit.page_style import bullets
 from squeezefilm.design.analysis.paper_procedure import Design
 from squeezefilm.design.analysis.published_claims import Claim, Erratum

@@ -11,10 +11,10 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.distributions import LogNormal
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.measure.fits.friction.friction_scores import nearest_scale
 from squeezefilm.measure.recordings.kinds import FrictionCurve
 from squeezefilm.measure.recordings.read import read_recording

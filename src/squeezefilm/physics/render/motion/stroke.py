@@ -9,8 +9,8 @@ from typing import Annotated, Protocol
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.hard_limits import (
     FINGER_SPEED,
     MOTION_SAMPLES,

@@ -31,8 +31,8 @@ from typing import Annotated, Any, ClassVar, Literal, Protocol
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.physics.render.opcodes import ADD, CROSS, FADE, MULTIPLY, WEIGH, Assembler
 from squeezefilm.physics.render.texture.coordinate import (
     X_AXIS,

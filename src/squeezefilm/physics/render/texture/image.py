@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.core.hard_limits import PIXELS
 from squeezefilm.physics.render.opcodes import IMAGE, Assembler
 from squeezefilm.physics.render.texture.coordinate import Finger, Place

@@ -19,8 +19,8 @@ from typing import Annotated, ClassVar, Literal, TypeVar, dataclass_transform
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.physics.render.opcodes import (
     COMPLEMENT,
     ENTER_SCALE,

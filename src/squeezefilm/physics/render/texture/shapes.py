@@ -9,8 +9,8 @@ from typing import Annotated, Literal
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.from_text import reads_text
 from squeezefilm.physics.render.opcodes import (
     BAND,
     BUMP,

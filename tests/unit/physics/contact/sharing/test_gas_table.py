@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.core.kept.folder import CACHE_VARIABLE
+from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.core.materials import Gas
 from squeezefilm.physics.contact.sharing import film_panels
 from squeezefilm.physics.contact.sharing.film_panels import (

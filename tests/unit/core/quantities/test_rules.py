@@ -12,15 +12,13 @@ from hypothesis import strategies as st
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.quantities.plain_values import (
-    never_plain,
-    or_none,
-    plainly_array,
-    plainly_complex,
-    plainly_either,
-    plainly_number,
-    plainly_one_of,
-)
+from squeezefilm.core.quantities.rules import Kind, Rule
+
+
+def rule(kind: Kind, least: float = -1, most: float = 2, *, is_optional: bool = False) -> Rule:
+    bounds = {"at_least": least, "at_most": most}
+    return Rule(kind, is_optional=is_optional, bounds=bounds, words=("own",))
+
 
 NUMBERS = st.one_of(
     st.floats(allow_nan=True, allow_infinity=True), st.integers(-3, 3), st.booleans(), st.none()
@@ -30,8 +28,8 @@ NUMBERS = st.one_of(
 @given(value=NUMBERS)
 def test_one_number_is_plain_where_it_is_a_float_within_its_bounds(value: object) -> None:
     wanted = type(value) is float and -1 <= value <= 2
-    assert plainly_number(-1, 2)(value) == wanted
-    assert or_none(plainly_number(-1, 2))(value) == (wanted or value is None)
+    assert rule("number").is_plain(value) == wanted
+    assert rule("number", is_optional=True).is_plain(value) == (wanted or value is None)
 
 
 @given(
@@ -42,8 +40,8 @@ def test_an_array_is_plain_where_all_of_it_is(values: list[float], rows: bool) -
     array = np.array(values)
     array = array[None, :] if rows else array
     wanted = bool(values) and all(-1 <= one <= 2 for one in values)
-    assert plainly_array(-1, 2)(array) == wanted
-    assert plainly_either(-1, 2)(array) == wanted
+    assert rule("array").is_plain(array) == wanted
+    assert rule("either").is_plain(array) == wanted
 
 
 @pytest.mark.parametrize("size", [3, 200])
@@ -51,24 +49,24 @@ def test_an_array_is_plain_where_all_of_it_is(values: list[float], rows: bool) -
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 def test_what_is_not_finite_is_never_plain(size: int, at: int, bad: float) -> None:
     array = np.linspace(0.0, 1.0, size)
-    assert plainly_array(-1e300, 1e300)(array)
+    assert rule("array", -1e300, 1e300).is_plain(array)
     array[at] = bad
-    assert not plainly_array(-1e300, 1e300)(array)
+    assert not rule("array", -1e300, 1e300).is_plain(array)
 
 
 def test_other_arrays_are_looked_at_in_full() -> None:
-    look = plainly_array(-1, 2)
+    look = rule("array").is_plain
     for other in (np.zeros(3, dtype=int), np.zeros(3, dtype=np.float32), np.float64(1), [0.0], 0.0):
         assert not look(other)
 
 
 def test_words_and_complex_numbers() -> None:
-    assert plainly_one_of(("own",))("own")
-    assert not plainly_one_of(("own",))("other")
-    assert plainly_complex(1 + 2j)
-    assert not plainly_complex(complex(math.nan, 0))
-    assert not plainly_complex(1.0)
-    assert not never_plain(1.0)
+    assert rule("word").is_plain("own")
+    assert not rule("word").is_plain("other")
+    assert rule("complex").is_plain(1 + 2j)
+    assert not rule("complex").is_plain(complex(math.nan, 0))
+    assert not rule("complex").is_plain(1.0)
+    assert not rule("count").is_plain(1)
 
 
 @si.checked_numbers
