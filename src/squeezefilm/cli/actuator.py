@@ -43,9 +43,9 @@ def analyze_actuator(asked: Any) -> None:
 
 def _flag(options: type, name: str) -> str:
     """The option as it is typed."""
-    for one in get_args(get_type_hints(options, include_extras=True)[name]):
-        if isinstance(one, OptionInfo):
-            for said in (one.default, *(one.param_decls or ())):
+    for get_argument in get_args(get_type_hints(options, include_extras=True)[name]):
+        if isinstance(get_argument, OptionInfo):
+            for said in (get_argument.default, *(get_argument.param_decls or ())):
                 if isinstance(said, str) and said.startswith("--"):
                     return said
     return f"--{name.replace('_', '-')}"

@@ -84,12 +84,14 @@ def display_values(target: str) -> list[dict[str, Any]]:
     described = actuator_class(text, file) if other else Display
     return [
         {
-            "path": dotted(one.path),
-            "text": one.text,
-            "source": (one.provenance and one.provenance.source) or None,
-            "evidence": None if one.provenance is None else one.provenance.evidence,
+            "path": dotted(written_value.path),
+            "text": written_value.text,
+            "source": (written_value.provenance and written_value.provenance.source) or None,
+            "evidence": None
+            if written_value.provenance is None
+            else written_value.provenance.evidence,
         }
-        for one in written_values(described, text, file=file)
+        for written_value in written_values(described, text, file=file)
     ]
 
 

@@ -231,7 +231,7 @@ def power(asked: PowerOptions) -> None:
             here = options.pop("display") or design.displays[0]
             found = planned_contrast(design, people, here, asked.against, **options, progress=step)
         elif asked.first is None or asked.second is None:
-            names = ", ".join(f'"{one.name}"' for one in design.stimuli)
+            names = ", ".join(f'"{stimulus.name}"' for stimulus in design.stimuli)
             raise InputError(
                 f"name two stimuli of '{design.name}' to be told apart ({names}), or give "
                 "--precision 20%, or --against with another display"

@@ -68,7 +68,7 @@ def felt(asked: FeltOptions) -> None:
         if asked.path is not None:
             design = load_design(asked.target)
             if asked.stimulus is None:
-                names = ", ".join(f'"{one.name}"' for one in design.stimuli)
+                names = ", ".join(f'"{stimulus.name}"' for stimulus in design.stimuli)
                 raise InputError(f"say by --stimulus which surface the path explores: {names}")
             only = felt_on_path(
                 design,
@@ -252,7 +252,7 @@ def analyze(
 
             page = write_overview(analyses, out, step)
     if as_json:
-        print_json({display: one.summary() for display, one in analyses.items()})
+        print_json({display: analysis.summary() for display, analysis in analyses.items()})
         return
     show_analyses(analyses)
     if page is not None:

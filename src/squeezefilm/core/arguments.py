@@ -33,7 +33,7 @@ def called_with(
 
         fields, back = inspect.signature(record), function.__annotations__["return"]
         called.__annotations__ = {
-            **{name: one.annotation for name, one in fields.parameters.items()},
+            **{name: parameter.annotation for name, parameter in fields.parameters.items()},
             "return": back,
         }
         vars(called)["__signature__"] = fields.replace(return_annotation=back)

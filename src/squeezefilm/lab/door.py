@@ -154,8 +154,8 @@ class Door:
     def _end_stranger(self, strangers: list[Connection]) -> bool:
         if not strangers:
             return False
-        [(crowded, _)] = Counter(one.address for one in strangers).most_common(1)
-        oldest = next(one for one in strangers if one.address == crowded)
+        [(crowded, _)] = Counter(stranger.address for stranger in strangers).most_common(1)
+        oldest = next(stranger for stranger in strangers if stranger.address == crowded)
         self._forget(oldest)
         oldest.cut_off()
         self._refuse(f"{crowded} has {len(strangers)} connections that say nothing")

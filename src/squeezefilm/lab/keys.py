@@ -152,7 +152,7 @@ class Keys:
     def _keep(self) -> None:
         if self.file is None:
             return
-        text = json.dumps([asdict(one) for one in self._sessions.values()])
+        text = json.dumps([asdict(session) for session in self._sessions.values()])
         # The file only lets pages go on after a crash: on a full disk nobody is turned away.
         with contextlib.suppress(OSError):
             write_secret(self.file, text.encode())

@@ -78,7 +78,7 @@ def glimpse(requirements: Requirements, seen: Glimpse) -> dict[str, Any]:
         "screened": seen.screened,
         "solved": seen.solved,
         "screened_front": _thinned(seen.screened_front),
-        "front": [plate(requirements, one) for one in seen.front],
+        "front": [plate(requirements, design) for design in seen.front],
         "reference": reference(requirements, seen.reference),
     }
 
@@ -108,13 +108,15 @@ def result(found: DesignSearch) -> dict[str, Any]:
     return {
         "screened": len(found.screened),
         "solved": found.plates_solved,
-        "front": [plate(asked, one.evaluated, one.made) for one in found.front],
+        "front": [plate(asked, design.evaluated, design.made) for design in found.front],
         "reference": reference(asked, found.reference),
         "chosen": None if chosen is None else chosen.name,
         "beats": [one.name for one in found.beats_reference],
         "plates_better": found.plates_better,
-        "limits": [limit_in_words(one, len(found.screened)) for one in found.limits if one.broken],
-        "corners": [corner_in_words(one) for one in found.corners[:_ALL_WORDS]],
+        "limits": [
+            limit_in_words(limit, len(found.screened)) for limit in found.limits if limit.broken
+        ],
+        "corners": [corner_in_words(corner) for corner in found.corners[:_ALL_WORDS]],
         "hypervolume": found.hypervolume,
         "ranks": {criterion_of(key).said: value for key, value in found.ranks.items()},
         "assumed": list(asked.assumed),

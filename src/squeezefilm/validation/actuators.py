@@ -71,7 +71,7 @@ def _() -> ClaimValue:
 @value_of("motor-tangential")
 def _() -> ClaimValue:
     motor = assembled(load_actuator("biet2008-motor").motor)  # type: ignore[union-attr]
-    small, large = (Working(amplitude=one) for one in _AMPLITUDES)
+    small, large = (Working(amplitude=amplitude) for amplitude in _AMPLITUDES)
     faster = no_load_speed(motor, large) - no_load_speed(motor, small)
     # Where feet hardly leave the slider, they drag it back after they pushed it.
     slow = no_load_speed(motor, small)

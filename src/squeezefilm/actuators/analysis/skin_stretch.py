@@ -249,8 +249,8 @@ def _wave(array: SkinStretchArray, voltage: si.Volt) -> ShownWave:
     x, y, per_force = array.strain_per_force()
     # What slides at first settles by a fourth with each period: the last of six is shown.
     pulls = array.answers(np.tile(driven, (_SETTLED + 1, 1)))[-_FRAMES:]
-    strain = np.moveaxis(per_force[0] @ np.array([one.forces for one in pulls]).T, -1, 0)
-    moved, slips = np.array([one.displacements for one in pulls]), [one.slips for one in pulls]
+    strain = np.moveaxis(per_force[0] @ np.array([pull.forces for pull in pulls]).T, -1, 0)
+    moved, slips = np.array([pull.displacements for pull in pulls]), [pull.slips for pull in pulls]
     return ShownWave(period, _SHOWN_SPEED, times, x, y, strain, moved, np.array(slips), pulls[0])
 
 

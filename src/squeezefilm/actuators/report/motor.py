@@ -279,8 +279,8 @@ def tuning_figure(found: MotorAnalysis) -> Figure:
         4.0,
     )
     left, right = figure.subplots(1, 2)
-    at = [1e-3 * (one.working.frequency or resonance) for one in motors]
-    left.plot(at, [one.force for one in motors], color=style.BLUE)
+    at = [1e-3 * (motor.working.frequency or resonance) for motor in motors]
+    left.plot(at, [motor.force for motor in motors], color=style.BLUE)
     left.axvline(1e-3 * resonance, color=style.ORANGE, lw=1, label="resonance without a slider")
     left.set(xlabel="frequency (kHz)", ylabel="force at rest (N)")
     style.legend_below(left)

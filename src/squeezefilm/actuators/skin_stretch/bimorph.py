@@ -228,7 +228,7 @@ def _boxes(actuator: Bimorph, more: int) -> BoxModel:
         y,
         z,
         (piezoceramic_solid(actuator.ceramic, 0.0), isotropic_solid(actuator.shim, 0.0)),
-        np.broadcast_to(np.array([1 if one < 0 else 0 for one in numbers]), shape).copy(),
+        np.broadcast_to(np.array([1 if number < 0 else 0 for number in numbers]), shape).copy(),
         np.broadcast_to(np.array(numbers), shape).copy(),
         (Electrode(0, inner[0]), Electrode(z.nodes.size - 1, inner[1])),
         ("clamped", "free", "symmetric", "free"),

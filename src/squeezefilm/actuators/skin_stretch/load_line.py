@@ -82,7 +82,7 @@ def loaded_tip(bender: Bender, load: FingerpadDynamics, voltage: si.Volt) -> Loa
         root = middle**2 - 4 * rest
         if root >= 0:
             crossings += [(-middle - math.sqrt(root)) / 2, (-middle + math.sqrt(root)) / 2]
-    first = min((one for one in crossings if one > 0), default=math.nan)
+    first = min((crossing for crossing in crossings if crossing > 0), default=math.nan)
     return LoadedTip(
         x,
         load.stiffness * x,

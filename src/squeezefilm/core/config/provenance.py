@@ -169,7 +169,7 @@ def stated_sources(built: Any, split: Split, original: Any = None) -> dict[str, 
 def described(cls: type[Any], tree: Mapping[str, Any]) -> dict[str, Any]:
     """The part of a file's tree that somebody describes a thing by: all but what a program found
     and wrote, fields with ``metadata={"found": True}``, whose numbers need no source."""
-    found = {one.name for one in dataclasses.fields(cls) if one.metadata.get("found")}
+    found = {field.name for field in dataclasses.fields(cls) if field.metadata.get("found")}
     return {key: item for key, item in tree.items() if key not in found}
 
 

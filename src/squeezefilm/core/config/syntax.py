@@ -97,7 +97,7 @@ def _of_repetition(line: _Line, said: str, text: str) -> str | None:
 def _lines(text: str, pattern: str, before: int) -> list[int]:
     """The lines that a pattern begins, before a line."""
     lines = text.split("\n")[: before - 1]
-    return [n for n, one in enumerate(lines, 1) if re.match(pattern, one)]
+    return [n for n, line in enumerate(lines, 1) if re.match(pattern, line)]
 
 
 def _of_characters(line: _Line) -> str | None:

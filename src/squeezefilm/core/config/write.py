@@ -55,7 +55,7 @@ def _table(
     if 2 * len(path) + 4 > DEEPEST:
         raise InputError(f"it is nested {len(path)} tables deep, too deep to be read; nest less")
     tables: list[tuple[str, Any]] = []
-    stated = {one.removeprefix(at) for one in sources if one.startswith(at)}
+    stated = {source.removeprefix(at) for source in sources if source.startswith(at)}
     for name, item, hint in _written(value, stated):
         if _holds_tables(item) and not _fits_a_line(item):
             tables.append((name, item))
@@ -127,7 +127,7 @@ def _fits_a_line(item: Any) -> bool:
         return False
     values = [getattr(item, field.name) for field in dataclasses.fields(item)]
     return len(values) <= 3 and not any(
-        isinstance(one, tuple) or _holds_tables(one) for one in values
+        isinstance(value, tuple) or _holds_tables(value) for value in values
     )
 
 

@@ -44,8 +44,8 @@ def dxf_text(drawing: Drawing) -> str:
         if name not in drawing.layers:
             found.layers.add(name, color=colour)
     space = found.modelspace()
-    for one in drawing.items:
-        _draw(space, one)
+    for item in drawing.items:
+        _draw(space, item)
     audit = found.audit()
     if audit.has_errors:
         raise InputError(f"the drawing is not sound: {audit.errors[0].message}")

@@ -79,7 +79,7 @@ class _Writer:
             if type(record) is type(value) and record == value:
                 return self._known[id(record)][0]
         if id(value) not in self._known:
-            told = [self.plain(getattr(value, one.name)) for one in fields(value)]
+            told = [self.plain(getattr(value, field.name)) for field in fields(value)]
             self._known[id(value)] = len(self._known), value
             return told
         return self._known[id(value)][0]
@@ -96,7 +96,7 @@ class _Reader:
         if origin in (Union, UnionType):
             if told is None and NoneType in args:
                 return None
-            (kind,) = (one for one in args if one is not NoneType)
+            (kind,) = (argument for argument in args if argument is not NoneType)
             return self.value(told, kind)
         if origin is Literal and told in args:
             return told
@@ -105,7 +105,9 @@ class _Reader:
         if origin in (tuple, list) and isinstance(told, list):
             if origin is list or args[1:] == (...,):
                 args = (args[0],) * len(told)
-            return origin(self.value(part, one) for part, one in zip(told, args, strict=True))
+            return origin(
+                self.value(part, argument) for part, argument in zip(told, args, strict=True)
+            )
         if origin in (dict, Counter) and isinstance(told, dict):
             inner = args[1] if origin is dict else int
             return origin({key: self.value(part, inner) for key, part in told.items()})
@@ -145,4 +147,4 @@ class _Reader:
 def _fields(kind: type) -> dict[str, Any]:
     """The types of a dataclass's fields by name, in order."""
     hints = get_type_hints(kind)
-    return {one.name: hints[one.name] for one in fields(kind)}
+    return {field.name: hints[field.name] for field in fields(kind)}

@@ -184,9 +184,9 @@ def drawn_figures(
 ) -> dict[str, tuple[str, Figure]]:
     """The figures that a result has by the name of their file: heading and drawing."""
     return {
-        prefix + (one.file or one.key): (one.heading, one.draw(result))
-        for one in figures
-        if one.has(result)
+        prefix + (figure.file or figure.key): (figure.heading, figure.draw(result))
+        for figure in figures
+        if figure.has(result)
     }
 
 

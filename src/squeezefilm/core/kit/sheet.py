@@ -57,17 +57,24 @@ def _figure(shown: tuple[Drawing, tuple[float, float, float, float]]) -> Figure:
     axes.set_axis_off()
     (x, y), scale = drawing.corner, drawing.scale
     axes.set(xlim=(x + left / scale, x + right / scale), ylim=(y + bottom / scale, y + top / scale))
-    for order, one in enumerate(drawing.items):
-        if isinstance(one, Polyline):
-            _polyline(axes, one, drawing.layers[one.layer], order)
-        elif isinstance(one, Arc):
-            _arc(axes, one, drawing.layers[one.layer], order)
-        elif isinstance(one, Text):
-            _text(axes, one.text, (one.x, one.y), one.height * drawing.scale, one.angle, one.align)
-        elif isinstance(one, Dimension):
-            _dimension(axes, one, drawing.scale)
+    for order, item in enumerate(drawing.items):
+        if isinstance(item, Polyline):
+            _polyline(axes, item, drawing.layers[item.layer], order)
+        elif isinstance(item, Arc):
+            _arc(axes, item, drawing.layers[item.layer], order)
+        elif isinstance(item, Text):
+            _text(
+                axes,
+                item.text,
+                (item.x, item.y),
+                item.height * drawing.scale,
+                item.angle,
+                item.align,
+            )
+        elif isinstance(item, Dimension):
+            _dimension(axes, item, drawing.scale)
         else:
-            _ordinate(axes, one, drawing.scale)
+            _ordinate(axes, item, drawing.scale)
     return figure
 
 

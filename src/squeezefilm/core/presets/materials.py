@@ -66,16 +66,20 @@ def named(name: str, kind: Kind | None = None) -> Material:
     """
     wanted = _plain(name)
     found = next(
-        (one for one in materials() if wanted in {_plain(word) for word in (one.name, *one.also)}),
+        (
+            material
+            for material in materials()
+            if wanted in {_plain(word) for word in (material.name, *material.also)}
+        ),
         None,
     )
-    of_kind = ", ".join(one.name for one in materials() if kind in (None, one.kind))
+    of_kind = ", ".join(material.name for material in materials() if kind in (None, material.kind))
     known = f"The library has{'' if kind is None else f', as {kind}'}: {of_kind}"
     if found is None:
-        words = [word for one in materials() for word in (one.name, *one.also)]
+        words = [word for material in materials() for word in (material.name, *material.also)]
         hint = si.did_you_mean(name, words) or si.did_you_mean(name.lower(), words)
         # "aluminium" or "PZT" is part of several names: to propose one of them would be chance.
-        if wanted and sum(wanted in _plain(one.name) for one in materials()) > 1:
+        if wanted and sum(wanted in _plain(material.name) for material in materials()) > 1:
             hint = " Several names contain it: write one of them."
         raise InputError(f"there is no material '{name[:100]}'.{hint} {known}")
     if kind not in (None, found.kind):

@@ -135,7 +135,8 @@ class Analysis(Result):
         if self.prediction.model == "paper2008":
             return self.own_curves
         papers = (
-            friction_curve(self.prediction, one, "paper2008") for one in self.display.surfaces
+            friction_curve(self.prediction, surface, "paper2008")
+            for surface in self.display.surfaces
         )
         return (*papers, *self.own_curves)
 

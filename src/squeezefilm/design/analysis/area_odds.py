@@ -56,10 +56,10 @@ class AreaOdds:
     def summary(self) -> dict[str, Any]:
         """What JSON has under `active_area`."""
         return {
-            f"probability_below_{one:.2f}": dict(
-                zip(WHERE, self.probabilities_below(one), strict=True)
+            f"probability_below_{criterion:.2f}": dict(
+                zip(WHERE, self.probabilities_below(criterion), strict=True)
             )
-            for one in CRITERIA
+            for criterion in CRITERIA
         } | {"worst_interval": list(self.worst_interval), "draws": len(self.samples)}
 
 

@@ -68,7 +68,9 @@ class EarExposure:
     @property
     def standing(self) -> str:
         """Beside the limit for the public: "below", "above", "open", or "" where there is none."""
-        return next((one.standing for one in self.limits if one.guidance.audience == "public"), "")
+        return next(
+            (limit.standing for limit in self.limits if limit.guidance.audience == "public"), ""
+        )
 
     @property
     def sentence(self) -> str:
@@ -87,10 +89,10 @@ class EarExposure:
         if not self.limits:
             return f"{said} No guidance was found for this frequency."
         each = [
-            f"{_STANDING[one.standing]} {one.guidance.level_dB:.0f} dB recommended for "
-            f"{'the public' if one.guidance.audience == 'public' else 'workers'} "
-            f"({one.guidance.name})"
-            for one in self.limits
+            f"{_STANDING[limit.standing]} {limit.guidance.level_dB:.0f} dB recommended for "
+            f"{'the public' if limit.guidance.audience == 'public' else 'workers'} "
+            f"({limit.guidance.name})"
+            for limit in self.limits
         ]
         return (
             f"{said} That is {', and '.join(each)}. These limits were read as quotations only, and "
@@ -100,7 +102,7 @@ class EarExposure:
     @property
     def short(self) -> str:
         """The level beside the guidance for the public, in a few words; empty without one."""
-        public = next((one for one in self.limits if one.guidance.audience == "public"), None)
+        public = next((limit for limit in self.limits if limit.guidance.audience == "public"), None)
         if public is None or self.frequency < AUDIBLE:
             return ""
         return (
@@ -132,7 +134,7 @@ def ear_exposure(
     low = high = 0.0
     if unsure is not None and unsure.amplitude_interval is not None and p.vibration_amplitude > 0:
         ends = np.maximum(unsure.amplitude_interval, 1e-3 * p.vibration_amplitude)
-        low, high = (20 * math.log10(float(one) / p.vibration_amplitude) for one in ends)
+        low, high = (20 * math.log10(float(end) / p.vibration_amplitude) for end in ends)
     low, high = level + low - MODEL_ERROR_dB, level + high + MODEL_ERROR_dB
     duty = display.drive.duty
     found = [exposure_guidance(p.frequency, one) for one in ("public", "occupational")]

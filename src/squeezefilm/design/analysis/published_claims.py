@@ -132,17 +132,17 @@ class ClaimFile:
             *self.claims,
             *(
                 Claim(
-                    id=one.id,
-                    where=one.where,
-                    statement=one.statement,
-                    printed=one.printed,
-                    unit=one.unit,
-                    relation=one.relation,
-                    says=one.says if one.measured else "",
+                    id=direction.id,
+                    where=direction.where,
+                    statement=direction.statement,
+                    printed=direction.printed,
+                    unit=direction.unit,
+                    relation=direction.relation,
+                    says=direction.says if direction.measured else "",
                     **vars(asked),
                 )
-                for one in self.directions
-                for asked in one.by
+                for direction in self.directions
+                for asked in direction.by
             ),
         )
 
@@ -154,10 +154,10 @@ def read_claims() -> ClaimFile:
     return replace(
         file,
         claims=tuple(
-            replace(one, printed=(measured_of_preset(*one.measured_of),))
-            if one.measured_of
-            else one
-            for one in file.claims
+            replace(claim, printed=(measured_of_preset(*claim.measured_of),))
+            if claim.measured_of
+            else claim
+            for claim in file.claims
         ),
     )
 
@@ -170,7 +170,11 @@ def measured_of_preset(preset: str, quantity: str) -> float:
 def missed_by(model: str) -> tuple[Claim, ...] | None:
     """The measured directions that a friction model misses, by the verdicts on record; None for a
     model that they were not asked of."""
-    asked = [one for one in read_claims().all_claims if one.model and one.model == model]
+    asked = [
+        all_claim
+        for all_claim in read_claims().all_claims
+        if all_claim.model and all_claim.model == model
+    ]
     if not asked:
         return None
     return tuple(one for one in asked if one.says and one.verdict == "does not hold")

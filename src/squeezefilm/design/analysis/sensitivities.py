@@ -123,7 +123,7 @@ class DisplaySensitivities:
             "relative_friction": self.relative_friction,
             "effort": self.effort,
             "plate_model": self.plate_model,
-            "rows": [dataclasses.asdict(one) for one in self.rows],
+            "rows": [dataclasses.asdict(row) for row in self.rows],
         }
 
 

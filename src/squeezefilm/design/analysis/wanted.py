@@ -216,7 +216,7 @@ def uncertain_voltage(
     refused = tally.found(len(points))
     if refused.share > MOST_REFUSED:
         raise OutOfRangeError(refusal_words(refused))
-    low, middle, high = (one if np.isfinite(one) else None for one in ends(volts))
+    low, middle, high = (end if np.isfinite(end) else None for end in ends(volts))
     limit = display.drive.voltage
     known = volts[~np.isnan(volts)]
     return VoltageInterval(

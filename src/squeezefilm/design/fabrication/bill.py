@@ -39,7 +39,7 @@ def bill_of(
     The rows that are `in_mass` add up to the mass of all `parts`. What of a substrate stands on it
     (teeth) is machined from the same piece and is in its row.
     """
-    substrate = [one for one in parts if one.kind == "substrate"]
+    substrate = [part for part in parts if part.kind == "substrate"]
     base, teeth = substrate[0], substrate[1:]
     remark = base.assumed
     if teeth:
@@ -65,10 +65,12 @@ def bill_of(
         if len(lead.electrodes) > 8:
             joined = f"{len(lead.electrodes)} electrodes to {lead.to}"
         rows.append(BillRow(f"Lead {lead.name}", 1, "wire", "", "", None, False, joined))
-    for one in electrodes:
-        if one.shunt_resistance is not None:
-            size = si.format_quantity(one.shunt_resistance, si.Unit("ohm"))
-            rows.append(BillRow("Shunt resistor", 1, "", size, "", None, False, f"at {one.name}"))
+    for electrode in electrodes:
+        if electrode.shunt_resistance is not None:
+            size = si.format_quantity(electrode.shunt_resistance, si.Unit("ohm"))
+            rows.append(
+                BillRow("Shunt resistor", 1, "", size, "", None, False, f"at {electrode.name}")
+            )
     return tuple(rows)
 
 
@@ -86,10 +88,10 @@ def _size(part: Part) -> str:
 
 def _ceramics(parts: Sequence[Part]) -> list[BillRow]:
     """The pieces of ceramic, those of one size in one row."""
-    pieces = [one for one in parts if one.kind == "ceramic"]
+    pieces = [part for part in parts if part.kind == "ceramic"]
     by: dict[tuple[str, str], list[Part]] = {}
-    for one in pieces:
-        by.setdefault((one.material, _size(one)), []).append(one)
+    for piece in pieces:
+        by.setdefault((piece.material, _size(piece)), []).append(piece)
     return [
         BillRow(
             "Ceramic",
@@ -106,11 +108,11 @@ def _ceramics(parts: Sequence[Part]) -> list[BillRow]:
 
 
 def _glue(parts: Sequence[Part]) -> list[BillRow]:
-    layers = [one for one in parts if one.kind == "glue"]
+    layers = [part for part in parts if part.kind == "glue"]
     if not layers:
         return []
-    area = math.fsum(one.footprint.area for one in layers)
-    thick = sorted({millimetres(one.thickness) for one in layers})
+    area = math.fsum(layer.footprint.area for layer in layers)
+    thick = sorted({millimetres(layer.thickness) for layer in layers})
     return [
         BillRow(
             "Glue",
@@ -118,9 +120,9 @@ def _glue(parts: Sequence[Part]) -> list[BillRow]:
             layers[0].material,
             f"{1e6 * area:.4g} mm² × {' or '.join(thick)} mm",
             "",
-            math.fsum(one.mass for one in layers),
+            math.fsum(layer.mass for layer in layers),
             True,
-            f"{1e9 * math.fsum(one.volume for one in layers):.3g} µl cured, between "
+            f"{1e9 * math.fsum(layer.volume for layer in layers):.3g} µl cured, between "
             "each ceramic and the substrate",
         )
     ]
@@ -130,8 +132,8 @@ def _foam(actuator: Actuator) -> list[BillRow]:
     if not isinstance(actuator, RectangularPlate):
         return []
     sizes = Counter(
-        f"{millimetres(one.length)} × {millimetres(one.width)} × {millimetres(one.thickness)} mm"
-        for one in actuator.supports
+        " × ".join(map(millimetres, (support.length, support.width, support.thickness))) + " mm"
+        for support in actuator.supports
     )
     return [
         BillRow(

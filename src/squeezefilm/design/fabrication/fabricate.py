@@ -85,7 +85,7 @@ class Fabrication(Result):
     @property
     def mass(self) -> float:
         """Of all bodies together (kg)."""
-        return math.fsum(one.mass for one in self.parts)
+        return math.fsum(part.mass for part in self.parts)
 
     @property
     def expected(self) -> tuple[Predicted, ...]:
@@ -152,7 +152,7 @@ def fabricate(
     nodal = nodal_lines_of(display.actuator, prediction.mode)
     p = prediction
     load = load_of_mode(display.actuator, p.mode, p.voltage, p.frequency)
-    mass = math.fsum(one.mass for one in parts)
+    mass = math.fsum(part.mass for part in parts)
     known = Known(
         prediction,
         () if blind is None else blind.predictions,

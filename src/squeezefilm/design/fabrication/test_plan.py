@@ -90,7 +90,7 @@ def test_plan(known: Known) -> tuple[TestStep, ...]:
         _voltages(known),
         _strokes(known),
     ]
-    return tuple(one for one in steps if one is not None)
+    return tuple(step for step in steps if step is not None)
 
 
 test_plan.__test__ = False  # type: ignore[attr-defined] # pytest collects by name
@@ -154,7 +154,7 @@ def _impedance(known: Known) -> TestStep:
         f"{_band(known)}, without a finger and held as in operation.",
         "impedance",
         "impedance.csv",
-        tuple(one for one in checks if one.value is not None),
+        tuple(check for check in checks if check.value is not None),
     )
 
 
@@ -333,4 +333,4 @@ def _strokes(known: Known) -> TestStep:
 
 def ticked(steps: Sequence[TestStep]) -> int:
     """How many numbers a plan has to tick."""
-    return sum(len(one.checks) for one in steps)
+    return sum(len(step.checks) for step in steps)

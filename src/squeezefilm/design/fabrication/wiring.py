@@ -98,27 +98,30 @@ class Lead:
 def leads_of(electrodes: Sequence[Electrode]) -> tuple[Lead, ...]:
     """One lead for each connection, and one of the bonded sides, which are ground."""
     by: dict[str, list[str]] = {}
-    for one in electrodes:
-        if one.connection != OPEN:
-            by.setdefault(one.connection, []).append(one.name)
+    for electrode in electrodes:
+        if electrode.connection != OPEN:
+            by.setdefault(electrode.connection, []).append(electrode.name)
     ends = {
         IN_PHASE: "amplifier output A, +V",
         ANTIPHASE: "amplifier output B, −V: the same voltage, its sign reversed",
         GROUND: "ground",
     }
     shunts = {
-        one.connection: "ground through "
-        + si.format_quantity(one.shunt_resistance or 0.0, si.Unit("ohm"))
-        for one in electrodes
-        if one.shunt_resistance is not None
+        electrode.connection: "ground through "
+        + si.format_quantity(electrode.shunt_resistance or 0.0, si.Unit("ohm"))
+        for electrode in electrodes
+        if electrode.shunt_resistance is not None
     }
     found = [Lead(name, tuple(names), (ends | shunts)[name]) for name, names in sorted(by.items())]
-    return (*found, Lead("bonded sides", tuple(one.name for one in electrodes), "ground"))
+    return (
+        *found,
+        Lead("bonded sides", tuple(electrode.name for electrode in electrodes), "ground"),
+    )
 
 
 def wiring_said(electrodes: Sequence[Electrode]) -> tuple[str, ...]:
     """How the electrodes are driven, in sentences."""
-    groups = {one.connection for one in electrodes}
+    groups = {electrode.connection for electrode in electrodes}
     said = [
         "The bonded side of every ceramic is ground. On a substrate that does not conduct, order "
         "ceramics whose electrode wraps around, or bond a foil under each."
@@ -129,7 +132,10 @@ def wiring_said(electrodes: Sequence[Electrode]) -> tuple[str, ...]:
             "outputs, or a transformer. One output does for both where the ceramics of group B are "
             "bonded with their poling the other way round; the layout above is not drawn so."
         )
-    if any(isinstance(one.footprint, Sector) and not one.footprint.is_whole for one in electrodes):
+    if any(
+        isinstance(electrode.footprint, Sector) and not electrode.footprint.is_whole
+        for electrode in electrodes
+    ):
         said.append(
             "The sectors are poled in turn and joined to one output. Sectors that are all poled "
             "alike do the same where neighbours are driven with opposite signs."

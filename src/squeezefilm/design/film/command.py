@@ -74,9 +74,9 @@ class FilmAnswer(Result):
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints."""
         values = {
-            one.name: to_json(getattr(self, one.name))
-            for one in dataclasses.fields(self)
-            if one.name != "film"
+            field.name: to_json(getattr(self, field.name))
+            for field in dataclasses.fields(self)
+            if field.name != "film"
         }
         return {**values, "provenance": stamp(self.request)}
 

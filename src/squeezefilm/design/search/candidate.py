@@ -72,7 +72,7 @@ class Design:
     @property
     def plate(self) -> Design:
         """What is built and solved, whatever voltage drives it: the design without its voltage."""
-        return Design(self.shape, tuple(one for one in self.values if one[0] != VOLTAGE))
+        return Design(self.shape, tuple(value for value in self.values if value[0] != VOLTAGE))
 
     def at_voltage(self, voltage: si.Volt) -> Design:
         """The same plate driven with another voltage (V)."""
@@ -83,9 +83,9 @@ def plates_of(designs: Iterable[Design]) -> dict[Design, tuple[Design, ...]]:
     """The plates of designs, each with its designs in their order: whoever solves a plate has it
     for all its voltages."""
     found: dict[Design, tuple[Design, ...]] = {}
-    for one in designs:
-        plate = one.plate
-        found[plate] = (*found.get(plate, ()), one)
+    for design in designs:
+        plate = design.plate
+        found[plate] = (*found.get(plate, ()), design)
     return found
 
 
@@ -194,7 +194,7 @@ def at_other_voltages(requirements: Requirements, design: Design) -> list[Design
     if volts.is_fixed:
         return []
     shares = np.linspace(0, 1, _VOLTAGES[requirements.limits.confidence]).tolist()
-    return [design.at_voltage(float(volts.at(one, {}))) for one in shares]
+    return [design.at_voltage(float(volts.at(share, {}))) for share in shares]
 
 
 def screened(requirements: Requirements, display: Display, design: Design) -> dict[str, float]:

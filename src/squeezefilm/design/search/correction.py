@@ -54,10 +54,10 @@ class Correction:
 
     def of_all(self, screened: Sequence[Evaluated]) -> list[dict[str, float]]:
         """The numbers of screened designs, corrected (SI)."""
-        found = [dict(one.numbers) for one in screened]
+        found = [dict(candidate.numbers) for candidate in screened]
         if not found or not self.fits:
             return found
-        places = np.array([_features(self.space, one) for one in screened])
+        places = np.array([_features(self.space, candidate) for candidate in screened])
         for key, fit in self.fits.items():
             moved = np.clip(fit(places), -np.log(_MOST), np.log(_MOST))
             for numbers, by in zip(found, moved, strict=True):
@@ -76,9 +76,11 @@ def learned(
 ) -> Correction | None:
     """The correction that solved designs of one space tell; None where there are too few."""
     pairs = [
-        (screened[one.design], one)
-        for one in solved
-        if not one.reason and one.design in screened and not screened[one.design].reason
+        (screened[solution.design], solution)
+        for solution in solved
+        if not solution.reason
+        and solution.design in screened
+        and not screened[solution.design].reason
     ]
     if len(pairs) < LEAST_PAIRS:
         return None

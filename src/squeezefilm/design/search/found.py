@@ -67,7 +67,7 @@ class DesignSearch(Result):
     @functools.cached_property
     def objectives(self) -> si.FloatArray:
         """The objectives of the front (SI), shape (members of the front, objectives)."""
-        return objectives_of(self.requirements, [one.evaluated for one in self.front])
+        return objectives_of(self.requirements, [design.evaluated for design in self.front])
 
     @property
     def chosen(self) -> FrontMember | None:
@@ -88,12 +88,12 @@ class DesignSearch(Result):
     @functools.cached_property
     def plates_feasible(self) -> int:
         """How many of the solved plates keep all limits at one voltage or more."""
-        return _plates(one for one in self.solved if one.is_feasible)
+        return _plates(solution for solution in self.solved if solution.is_feasible)
 
     @functools.cached_property
     def plates_on_front(self) -> int:
         """How many plates the front has, each at one voltage or more."""
-        return _plates(one.evaluated for one in self.front)
+        return _plates(design.evaluated for design in self.front)
 
     @property
     def plates_better(self) -> int:
@@ -118,17 +118,21 @@ class DesignSearch(Result):
             return ()
         own = np.array(self.reference.objectives(self.requirements.objectives))
         return tuple(
-            one for one, row in zip(self.front, self.objectives, strict=True) if dominates(row, own)
+            design
+            for design, row in zip(self.front, self.objectives, strict=True)
+            if dominates(row, own)
         )
 
     @functools.cached_property
     def screened_and_solved(self) -> tuple[tuple[Evaluated, Evaluated], ...]:
         """The designs that were solved, each as it was screened and as solved."""
-        before = {one.design: one for one in self.screened if not one.reason}
+        before = {
+            candidate.design: candidate for candidate in self.screened if not candidate.reason
+        }
         return tuple(
-            (before[one.design], one)
-            for one in self.solved
-            if not one.reason and one.design in before
+            (before[solution.design], solution)
+            for solution in self.solved
+            if not solution.reason and solution.design in before
         )
 
     @functools.cached_property
@@ -148,10 +152,10 @@ class DesignSearch(Result):
     def member(self, name: str) -> FrontMember:
         """The plate of the front with a short name, or with the beginning of one. Raises
         `InputError` for a name that none has, or several."""
-        found = [one for one in self.front if one.name.startswith(name)] if name else []
+        found = [design for design in self.front if design.name.startswith(name)] if name else []
         if len(found) == 1:
             return found[0]
-        known = ", ".join(one.name for one in self.front) or "none"
+        known = ", ".join(design.name for design in self.front) or "none"
         raise InputError(
             f"the front has {'several plates' if found else 'no plate'} '{name}'. It has: {known}"
         )
@@ -172,11 +176,11 @@ class DesignSearch(Result):
             "title": self.requirements.title,
             "objectives": list(self.requirements.objectives),
             "screened": len(self.screened),
-            "screened_feasible": sum(one.is_feasible for one in self.screened),
+            "screened_feasible": sum(candidate.is_feasible for candidate in self.screened),
             "plates_solved": self.plates_solved,
             "plates_feasible": self.plates_feasible,
             "plates_on_front": self.plates_on_front,
-            "front": [_row(self.requirements, one) for one in self.front],
+            "front": [_row(self.requirements, design) for design in self.front],
             "chosen": None if chosen is None else chosen.name,
             "reference": None
             if self.reference is None
@@ -194,9 +198,15 @@ class DesignSearch(Result):
             "screening_ranks": self.ranks,
             "screening_errors": {
                 space.shape: None
-                if one is None
-                else {"plates": one.plates, "raw": dict(one.raw), "corrected": dict(one.errors)}
-                for space, one in zip(self.requirements.spaces, self.corrections, strict=True)
+                if correction is None
+                else {
+                    "plates": correction.plates,
+                    "raw": dict(correction.raw),
+                    "corrected": dict(correction.errors),
+                }
+                for space, correction in zip(
+                    self.requirements.spaces, self.corrections, strict=True
+                )
             },
             "assumed": list(self.requirements.assumed),
             "answers_computed": self.computed,
@@ -207,7 +217,7 @@ class DesignSearch(Result):
         }
 
     def _table(self) -> Any:
-        return [_row(self.requirements, one) for one in self.front]
+        return [_row(self.requirements, design) for design in self.front]
 
 
 @dataclass(frozen=True)
@@ -240,7 +250,7 @@ def glimpse_of(
 
 
 def _plates(designs: Iterable[Evaluated]) -> int:
-    return len(plates_of(one.design for one in designs))
+    return len(plates_of(design.design for design in designs))
 
 
 def _numbers(one: Evaluated) -> dict[str, Any]:

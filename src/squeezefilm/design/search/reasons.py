@@ -51,9 +51,13 @@ def limit_reasons(
 ) -> tuple[LimitReason, ...]:
     """What every limit does to the screened designs, the one that is broken most first."""
     found = []
-    best = _best(requirements, [one for one in screened if one.is_feasible])
+    best = _best(requirements, [candidate for candidate in screened if candidate.is_feasible])
     for criterion, bound in bounded(requirements.limits):
-        broken = [one for one in screened if any(b.key == criterion.key for b in one.broken)]
+        broken = [
+            candidate
+            for candidate in screened
+            if any(b.key == criterion.key for b in candidate.broken)
+        ]
         alone = [one for one in broken if len(one.broken) == 1]
         without = _best(requirements, alone)
         gained = {
@@ -66,7 +70,7 @@ def limit_reasons(
 
 
 def _best(requirements: Requirements, designs: Sequence[Evaluated]) -> dict[str, float]:
-    rows = [one.objectives(requirements.objectives) for one in designs]
+    rows = [design.objectives(requirements.objectives) for design in designs]
     if not rows:
         return {}
     return dict(zip(requirements.objectives, np.min(rows, axis=0).tolist(), strict=True))
@@ -78,7 +82,7 @@ def empty_corners(
     """The parts of each variable's range in which no screened design is feasible, with why."""
     found: list[EmptyCorner] = []
     for number, space in enumerate(requirements.spaces):
-        here = [one for one in screened if one.design.shape == number]
+        here = [candidate for candidate in screened if candidate.design.shape == number]
         for variable in space.free:
             parts: dict[str, list[Evaluated]] = {}
             for one in here:
@@ -130,7 +134,11 @@ def nearest_of(screened: Sequence[Evaluated]) -> Evaluated | None:
 def conflict_of(screened: Sequence[Evaluated]) -> tuple[str, str, si.Dimensionless] | None:
     """The two limits (keys of criteria) that screened designs are farthest from keeping both, and
     by what share of its limit the best of them misses one; None where each pair is kept by one."""
-    excess = [{b.key: b.excess for b in one.broken} for one in screened if not one.reason]
+    excess = [
+        {b.key: b.excess for b in candidate.broken}
+        for candidate in screened
+        if not candidate.reason
+    ]
     keys = sorted({key for broken in excess for key in broken})
     alone = {key: min(broken.get(key, 0.0) for broken in excess) for key in keys}
     pairs = {

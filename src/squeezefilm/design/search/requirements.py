@@ -236,7 +236,7 @@ class Requirements:
         area_at = finger.contact_area_force or finger.normal_force
         finger = replace(finger, normal_force=force, speed=touch.speed, contact_area_force=area_at)
         first = display.surface(touch.surface)
-        others = tuple(one for one in display.surfaces if one is not first)
+        others = tuple(surface for surface in display.surfaces if surface is not first)
         return replace(
             display,
             finger=finger,

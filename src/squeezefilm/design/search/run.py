@@ -152,7 +152,7 @@ class SearchRun:
             # Only now: what is proposed and solved here depends on the seed alone.
             for shape in range(len(self.requirements.spaces)):
                 others = self._store.of_others(shape, "solved")
-                self._seen["solved"].update((one.design, one) for one in others)
+                self._seen["solved"].update((other.design, other) for other in others)
             self._make(pool)
         self._done = True
 
@@ -229,7 +229,7 @@ class SearchRun:
         draw = np.random.default_rng([self._asked.seed, self._asked.member, len(solved)])
         for _ in range(_GENERATIONS):
             plates = plates_of(front[k].design for k in draw.permutation(len(front)))
-            known = [one[-1] for one in plates.values()][:_FROM]
+            known = [plate[-1] for plate in plates.values()][:_FROM]
             expected = worth_solving(self.requirements, self._seen, self._corrections, _FROM)
             self._screen_near(
                 pool,
@@ -245,16 +245,16 @@ class SearchRun:
     ) -> None:
         """Screen what lies near designs, by places that their space gives."""
         found, solved = list[Design](), self._plates_solved()
-        for one in designs:
-            space = self.requirements.spaces[one.shape]
-            places = near(space, space.places(one.settings))
-            found += [design_of(one.shape, space.at(there)) for there in places]
+        for design in designs:
+            space = self.requirements.spaces[design.shape]
+            places = near(space, space.places(design.settings))
+            found += [design_of(design.shape, space.at(there)) for there in places]
         self._evaluated(pool, [one for one in found if one.plate not in solved], "screened")
 
     def _learn(self) -> None:
         solved = list(self._seen["solved"].values())
         for shape, space in enumerate(self.requirements.spaces):
-            here = [one for one in solved if one.design.shape == shape]
+            here = [solution for solution in solved if solution.design.shape == shape]
             self._corrections[shape] = learned(space, self._seen["screened"], here)
 
     def _propose(self, pool: Workers) -> None:
@@ -265,7 +265,9 @@ class SearchRun:
         studies = {}
         for shape in shapes:
             studies[shape] = self._proposals(shape, "solved")
-            studies[shape].known([one for one in solved.values() if one.design.shape == shape])
+            studies[shape].known(
+                [solution for solution in solved.values() if solution.design.shape == shape]
+            )
         while shapes and (before := len(self._plates_solved())) < self._asked.solved:
             for shape in shapes:
                 left = self._asked.solved - len(self._plates_solved())
@@ -293,7 +295,7 @@ class SearchRun:
             took = sum(one.seconds for one in self._seen["solved"].values()) / solved
             rest = (self._asked.solved - solved) * took / self._asked.jobs
             left = f", {about(rest)} left at most"
-        on_front = len(plates_of(one.design for one in self._front()))
+        on_front = len(plates_of(design.design for design in self._front()))
         self._tell(
             f"solving {what}: {solved} of at most {self._asked.solved} plates, "
             f"{on_front} on the front{left}"
@@ -340,7 +342,7 @@ class SearchRun:
                         for one in parts[number]
                     ]
                 self._store.add(answers)
-                found.update((one.design, one) for one in answers)
+                found.update((answer.design, answer) for answer in answers)
                 self._show_meanwhile(level, found)
         finally:
             # What came before Ctrl-C is shown, too.
@@ -384,7 +386,9 @@ class SearchRun:
             seed=self._asked.seed,
             screened=screened,
             solved=tuple(self._seen["solved"].values()),
-            front=tuple(FrontMember(one, self._made.get(one.design)) for one in self._front()),
+            front=tuple(
+                FrontMember(design, self._made.get(design.design)) for design in self._front()
+            ),
             reference=self._reference,
             limits=limit_reasons(requirements, screened),
             corners=empty_corners(requirements, screened),

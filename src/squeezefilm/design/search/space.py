@@ -130,7 +130,7 @@ class Space:
     @functools.cached_property
     def free(self) -> tuple[Variable, ...]:
         """The variables with something to choose."""
-        return tuple(one for one in self.variables if not one.is_fixed)
+        return tuple(variable for variable in self.variables if not variable.is_fixed)
 
     def variable(self, name: str) -> Variable:
         """The variable of a name, which there is."""

@@ -158,8 +158,8 @@ class Shape:
 
     def stock(self) -> tuple[Variable, ...]:
         """Material and thickness of the sheet and of the ceramic."""
-        sheets = {one.material: one.thicknesses for one in self.sheets}
-        ceramics = {one.material: one.thicknesses for one in self.ceramics}
+        sheets = {sheet.material: sheet.thicknesses for sheet in self.sheets}
+        ceramics = {ceramic.material: ceramic.thicknesses for ceramic in self.ceramics}
         return (
             Choice("substrate", tuple(sheets)),
             step("thickness", sheets, "m", "substrate"),
@@ -173,7 +173,7 @@ class Shape:
 
         Raises `InputError` where some have lengths and others have none.
         """
-        lengths = {one.material: one.lengths for one in self.ceramics}
+        lengths = {ceramic.material: ceramic.lengths for ceramic in self.ceramics}
         if not any(lengths.values()):
             return None
         if not all(lengths.values()):

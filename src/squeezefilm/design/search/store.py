@@ -50,7 +50,9 @@ def asked_hash(requirements: Requirements, level: Level) -> str:
 
 def requirements_hash(requirements: Requirements) -> str:
     """A hash of all that requirements say, limits and objectives, too."""
-    return config_hash({one.name: getattr(requirements, one.name) for one in fields(requirements)})
+    return config_hash(
+        {field.name: getattr(requirements, field.name) for field in fields(requirements)}
+    )
 
 
 def _made_hash(requirements: Requirements) -> str:
@@ -74,7 +76,9 @@ class DesignStore:
 
     def __init__(self, requirements: Requirements, folder: Path | None, member: int = 0) -> None:
         self._requirements, self._member = requirements, member
-        self._hashes = {one: asked_hash(requirements, one) for one in get_args(Level)}
+        self._hashes = {
+            get_argument: asked_hash(requirements, get_argument) for get_argument in get_args(Level)
+        }
         self._lines = None if folder is None else Lines(folder / FILE)
         self._known: dict[tuple[Design, Level], Evaluated] = {}
         self._made: dict[Design, Made] = {}
@@ -161,7 +165,9 @@ class DesignStore:
     def _evaluated(self, read: Mapping[str, Any]) -> Evaluated | None:
         if read["asked"] != self._hashes[read["level"]]:
             return None
-        names = {one.name for one in self._requirements.spaces[int(read["shape"])].variables}
+        names = {
+            variable.name for variable in self._requirements.spaces[int(read["shape"])].variables
+        }
         if set(read["values"]) != names:
             return None
         numbers = {str(key): float(value) for key, value in read["numbers"].items()}

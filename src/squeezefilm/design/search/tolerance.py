@@ -30,7 +30,7 @@ from squeezefilm.physics.plausibility.checks import checked_before
 log = logging.getLogger(__name__)
 
 DRAWS = 64
-_NAMES = tuple(one.name for one in fields(Tolerances))
+_NAMES = tuple(field.name for field in fields(Tolerances))
 
 
 @dataclass(frozen=True)
@@ -185,15 +185,16 @@ def _plate_resized(body: RectangularPlate, off: Mapping[str, float]) -> Rectangu
         length=plate.length * longer,
         patches=tuple(
             replace(
-                one,
-                x=one.x * longer,
-                length=one.length * longer,
-                thickness=one.thickness + off["ceramic_thickness"],
+                patch,
+                x=patch.x * longer,
+                length=patch.length * longer,
+                thickness=patch.thickness + off["ceramic_thickness"],
             )
-            for one in plate.patches
+            for patch in plate.patches
         ),
         supports=tuple(
-            replace(one, x=one.x * longer, length=one.length * longer) for one in plate.supports
+            replace(support, x=support.x * longer, length=support.length * longer)
+            for support in plate.supports
         ),
     )
     return turned(made) if turn else made

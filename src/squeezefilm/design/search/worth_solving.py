@@ -31,7 +31,7 @@ Seen = Mapping[Level, Mapping[Design, Evaluated]]
 def objectives_of(requirements: Requirements, designs: Sequence[Evaluated]) -> si.FloatArray:
     """The objectives of designs (SI), shape (designs, objectives)."""
     names = requirements.objectives
-    return np.array([one.objectives(names) for one in designs]).reshape(-1, len(names))
+    return np.array([design.objectives(names) for design in designs]).reshape(-1, len(names))
 
 
 def worth_solving(
@@ -85,7 +85,7 @@ def worst_corner(requirements: Requirements, rows: si.FloatArray) -> si.FloatArr
 def _numbered(plates: Sequence[Design]) -> si.IntArray:
     """A number for each plate, equal for equal ones."""
     numbers: dict[Design, int] = {}
-    return np.array([numbers.setdefault(one, len(numbers)) for one in plates], dtype=np.intp)
+    return np.array([numbers.setdefault(plate, len(numbers)) for plate in plates], dtype=np.intp)
 
 
 def _one_each(plates: si.IntArray, shares: si.FloatArray) -> si.IntArray:
@@ -114,7 +114,7 @@ def _adding_most(
     free = np.ones(_POINTS, dtype=bool)
     for one in known:
         free &= ~np.all(one <= points, axis=1)
-    reached = np.array([np.all(one <= points, axis=1) for one in rows])
+    reached = np.array([np.all(row <= points, axis=1) for row in rows])
     together = np.zeros((plates.max() + 1, _POINTS), dtype=bool)
     np.logical_or.at(together, plates, reached)
     chosen: list[int] = []
@@ -154,9 +154,9 @@ def _expected(
 def _error(requirements: Requirements, corrections: Sequence[Correction | None]) -> float:
     """By what share a corrected objective may be off."""
     errors = [
-        one.errors.get(name, 0.0)
-        for one in corrections
-        if one is not None
+        correction.errors.get(name, 0.0)
+        for correction in corrections
+        if correction is not None
         for name in requirements.objectives
     ]
     return min(max(errors, default=_ERROR), _MOST_ERROR)

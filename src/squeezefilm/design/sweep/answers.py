@@ -61,7 +61,7 @@ _DRAWN = re.compile(
 def _units() -> dict[str, si.Unit]:
     """The units of the house by the suffix that a key has for them, and two beside SI."""
     marks = (si.unit_of(value) for value in vars(si).values() if typing.get_args(value))
-    units = [one for one in marks if one is not None and one.suffix]
+    units = [mark for mark in marks if mark is not None and mark.suffix]
     others = {"_per_m": si.Unit("1/m")}
     return others | {one.suffix: one for one in (*units, si.Unit("dB"), si.Unit("VA"))}
 

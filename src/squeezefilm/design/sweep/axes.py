@@ -104,7 +104,7 @@ def axis_of(name: str, values: Any, display: Display) -> Axis:
     elif np.ndim(values) == 0:
         found = [_value(name, values, option, unit)]
     else:
-        found = [_value(name, one, option, unit) for one in values]
+        found = [_value(name, value, option, unit) for value in values]
     require_within(SWEEP_STEPS, len(found), f"steps of {name}")
     if whole:
         found = [_whole(name, one) for one in found]
@@ -135,10 +135,10 @@ def axis_of_file(path: str | Path, display: Display) -> Axis:
     for number, (name, symbol) in enumerate(heads):
         cells = [(line, f"{row[number].strip()} {symbol}".strip()) for line, row in rows[1:]]
         columns.append(_column(name, cells, display, path))
-    steps = zip(*(one.steps for one in columns), strict=True)
+    steps = zip(*(column.steps for column in columns), strict=True)
     return Axis(
         tuple(name for name, _ in heads),
-        tuple(one.units[0] for one in columns),
+        tuple(column.units[0] for column in columns),
         tuple(tuple(value for (value,) in row) for row in steps),
     )
 

@@ -135,7 +135,7 @@ class Cluster:
         except Exception as error:
             raise _gone(self._address) from error
         self._admit(threads, sorted(set(threads) - set(self._admitted)))
-        self._admitted = [one for one in threads if one in self._admitted]
+        self._admitted = [thread for thread in threads if thread in self._admitted]
         if self._admitted:
             self._seen = now
         elif now - self._seen > _PATIENCE:

@@ -145,14 +145,14 @@ def followed_modes(
     first = summaries[begin]
     if first is None:
         return ()
-    motions = [None if one is None else unpacked(one["motions"]) for one in summaries]
+    motions = [None if summary is None else unpacked(summary["motions"]) for summary in summaries]
     origin = motions[begin]
     assert origin is not None
     count = len(origin)
     numbers: list[list[int | None]] = [[None] * count for _ in summaries]
     alike = np.full((len(summaries), count), np.nan)
     numbers[begin], alike[begin] = list(range(count)), 1.0
-    for before, after in _neighbours(shape, begin, [one is not None for one in motions]):
+    for before, after in _neighbours(shape, begin, [motion is not None for motion in motions]):
         there, here = motions[before], motions[after]
         assert there is not None
         assert here is not None

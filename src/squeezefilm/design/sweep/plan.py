@@ -61,7 +61,7 @@ def plan_of(
 
 def told_apart(displays: Sequence[Display]) -> list[str]:
     """The names of displays, numbered where two have the same."""
-    names = [one.name for one in displays]
+    names = [display.name for display in displays]
     return [
         name if names.count(name) == 1 else f"{name} ({number})"
         for number, name in enumerate(names, 1)

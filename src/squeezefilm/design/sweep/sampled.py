@@ -58,8 +58,8 @@ class _Range:
             found = low + shares * (high - low)
         values = [float(f"{one:.12g}") for one in found.tolist()]
         if self.whole:
-            return [int(one) for one in values]
-        return values if self.option is None else [self.option.number(one) for one in values]
+            return [int(value) for value in values]
+        return values if self.option is None else [self.option.number(value) for value in values]
 
 
 def axes_of_ranges(

@@ -193,7 +193,7 @@ class Run:
     def _warnings(self) -> tuple[tuple[str, int], ...]:
         """What was warned of, texts that differ in their numbers only told once."""
         answers = self._found.values()
-        return counted(text for one in answers for text in dict.fromkeys(one.warnings))
+        return counted(text for answer in answers for text in dict.fromkeys(answer.warnings))
 
 
 def sweep_until_stopped(asked: SweepRequest) -> tuple[Sweep, str]:

@@ -160,8 +160,8 @@ class Sweep(Result):
             "title": self.title,
             "verbs": list(self.verbs),
             "axes": [
-                {"names": list(one.columns), "steps": [list(step) for step in one.steps]}
-                for one in self.axes
+                {"names": list(axis.columns), "steps": [list(step) for step in axis.steps]}
+                for axis in self.axes
             ],
             "asked": list(self.names),
             "rows": [
@@ -169,8 +169,12 @@ class Sweep(Result):
             ],
             "warnings": [{"text": text, "points": points} for text, points in self.warnings],
             "followed": [
-                {"mode": one.label, "driven": one.driven, "likeness": one.likeness.tolist()}
-                for one in self.follows
+                {
+                    "mode": follow.label,
+                    "driven": follow.driven,
+                    "likeness": follow.likeness.tolist(),
+                }
+                for follow in self.follows
             ],
             "answers_computed": self.computed,
             "answers_kept": self.kept,

@@ -105,7 +105,7 @@ class Shares(Generic[K]):
     has begun; then half of what another worker has most left of, which solves that plate twice."""
 
     def __init__(self, groups: Sequence[Sequence[K]]) -> None:
-        self._waiting = collections.deque(collections.deque(one) for one in groups)
+        self._waiting = collections.deque(collections.deque(group) for group in groups)
         self._own: dict[Hashable, collections.deque[K]] = {}
 
     def next(self, worker: Hashable) -> K | None:

@@ -51,8 +51,8 @@ class Processes:
         self._before = set(multiprocessing.active_children())
         if self._first is not None:
             self._executors = [_executor() for _ in range(self._jobs)]
-            for one in self._executors:
-                _submitted(one, callable, self._first)
+            for executor in self._executors:
+                _submitted(executor, callable, self._first)
         return self
 
     def __exit__(

@@ -129,7 +129,7 @@ class PlayedSession(Result):
             "lag": to_json(self.lag),
             "position_error_m": self.position_error,
             "flags": dict(self.flags),
-            "device": [dict(one) for one in self.device_events],
+            "device": [dict(device_event) for device_event in self.device_events],
             "by_record": _judged_json(self.by_record),
             "by_truth": None if self.by_truth is None else _judged_json(self.by_truth),
             "damage": list(self.trace.damage.sentences),

@@ -130,7 +130,7 @@ def peak(x: si.FloatArray, y: si.FloatArray) -> tuple[float, float]:
 
 def _wait_for_lifting(host: DeviceHost, wait: Callable[[si.Second], None]) -> None:
     end = host.link.clock() + LIFT_LIMIT
-    while any(one.touching for one in _readings(host, 1, wait)):
+    while any(reading.touching for reading in _readings(host, 1, wait)):
         if host.link.clock() > end:
             raise DeviceError(
                 f"a finger was on the plate for {LIFT_LIMIT:g} s, and the resonance is measured "

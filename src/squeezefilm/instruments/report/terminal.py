@@ -42,8 +42,8 @@ def show_check(check: DeviceCheck) -> None:
     console = plain_console()
     heading(console, f"Device on {check.drive}")
     rows = [
-        ("pass" if one.passed else "FAIL", one.name, one.measured, one.allowed)
-        for one in check.results
+        ("pass" if result.passed else "FAIL", result.name, result.measured, result.allowed)
+        for result in check.results
     ]
     table(
         console,
@@ -52,7 +52,7 @@ def show_check(check: DeviceCheck) -> None:
         fixed=(0,),
         styles=lambda row: "green" if row[0] == "pass" else "bold red",
     )
-    bad = [one for one in check.results if not one.passed]
+    bad = [result for result in check.results if not result.passed]
     for one in bad:
         console.print(f"! {one.name}: {one.advice}")
     count = len(check.results)

@@ -84,8 +84,11 @@ class DeviceArea:
         from serial.tools import list_ports
 
         ports = [
-            {"drive": f"serial:{one.device}", "text": f"{one.device}: {one.description}"}
-            for one in list_ports.comports()
+            {
+                "drive": f"serial:{comport.device}",
+                "text": f"{comport.device}: {comport.description}",
+            }
+            for comport in list_ports.comports()
         ]
         return {"type": "drives", "ports": ports}
 

@@ -32,7 +32,7 @@ def allowed(text: str, path: str) -> str:
     """
     display = display_of(text)
     found = next(
-        (one for one in leaves(display) if ".".join(map(str, one[0])) == path),
+        (leaf for leaf in leaves(display) if ".".join(map(str, leaf[0])) == path),
         None,
     )
     if found is None:
@@ -63,7 +63,7 @@ _End = tuple[float, bool]  # the last value, and whether it fits itself
 def _stated_ends(annotation: Any) -> tuple[_End | None, _End | None]:
     """The least and the most that an annotation allows."""
     bounds, limits = si.bounds_of(annotation)
-    hard = [one for one in limits if isinstance(one, HardLimit)]
+    hard = [limit for limit in limits if isinstance(limit, HardLimit)]
     low = [(bounds[name], name == "at_least") for name in ("above", "at_least") if name in bounds]
     high = [(bounds[name], name == "at_most") for name in ("below", "at_most") if name in bounds]
     low += [(one.least, True) for one in hard]

@@ -87,7 +87,9 @@ def _material_rows(text: str, display: Display) -> list[dict[str, Any]]:
         here = actuator.get(kind)
         name = here.get("material") if isinstance(here, dict) else here
         name = name.get("value") if isinstance(name, dict) else name
-        known = [one.name for one in presets.materials.materials() if one.kind == kind]
+        known = [
+            material.name for material in presets.materials.materials() if material.kind == kind
+        ]
         chosen = OWN_VALUES if name is None else presets.materials.named(name, kind).name
         rows.append(
             {
@@ -244,14 +246,16 @@ def _text(value: Any, unit: si.Unit | None) -> str:
 def stated(hint: Any) -> Any:
     """What a value may be where it is stated: `X` of ``X | None``; a quantity knows itself."""
     if typing.get_origin(hint) in (Union, types.UnionType) and si.unit_of(hint) is None:
-        return next(one for one in typing.get_args(hint) if one is not type(None))
+        return next(
+            get_argument for get_argument in typing.get_args(hint) if get_argument is not type(None)
+        )
     return hint
 
 
 def choices(hint: Any) -> list[str] | None:
     """The words that a value may be, where it is one of a few."""
     if typing.get_origin(hint) is Literal:
-        return [str(one) for one in typing.get_args(hint)]
+        return [str(get_argument) for get_argument in typing.get_args(hint)]
     if hint is bool:
         return ["true", "false"]
     return None

@@ -109,7 +109,7 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
         "quality": quality,
         "name": display.name,
         "title": display.title,
-        "surfaces": [one.name for one in display.surfaces],
+        "surfaces": [surface.name for surface in display.surfaces],
         "free_amplitude_m": p.touch.free_amplitude,
         "vibration_model": p.amplitude_model,
         "friction_model": p.model,

@@ -21,7 +21,7 @@ def analysis_of(path: Path) -> dict[str, Any]:
     from squeezefilm.study.report.words import key_rows, read_first
 
     with StudyStore.open(path) as store:
-        answers = sum(one["answered"] for one in store.participants())
+        answers = sum(participant["answered"] for participant in store.participants())
         found = analyze_study(store)
     return {
         "answers": answers,

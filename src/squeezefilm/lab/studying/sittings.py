@@ -74,7 +74,7 @@ def conditions_of(
     Raises `InputError` for a field that there is not, and for a value outside its range, in the
     unit that was typed.
     """
-    known = {one.name for one in dataclasses.fields(SessionConditions)}
+    known = {field.name for field in dataclasses.fields(SessionConditions)}
     odd = set(given) - (known - {"consent", "consent_form"})
     if odd:
         raise InputError(f"conditions have no field '{sorted(odd)[0][:60]}'")
@@ -123,7 +123,7 @@ def described(design: StudyDesign) -> dict[str, Any]:
         "title": design.title,
         "task": design.task,
         "displays": list(design.displays),
-        "stimuli": [one.name for one in design.stimuli],
+        "stimuli": [stimulus.name for stimulus in design.stimuli],
         "answers": list(design.answers),
         "question": design.spoken_question,
         "note": design.note,

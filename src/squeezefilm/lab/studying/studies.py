@@ -109,12 +109,12 @@ class Studies:
             "consent": CONSENT.format(minutes=round(expected_duration(design) / 60)),
             "participants": [
                 {
-                    "pseudonym": one["uuid"],
-                    "planned": one["planned"],
-                    "answered": one["answered"],
-                    "display": display_wanted(store, one["uuid"]),
+                    "pseudonym": participant["uuid"],
+                    "planned": participant["planned"],
+                    "answered": participant["answered"],
+                    "display": display_wanted(store, participant["uuid"]),
                 }
-                for one in store.participants()
+                for participant in store.participants()
             ],
             "sittings": [
                 {
@@ -385,4 +385,4 @@ def devices() -> list[str]:
     """What may present a sitting's surfaces beside nothing: the twin, and the ports there are."""
     from serial.tools import list_ports
 
-    return ["twin", *sorted(f"serial:{one.device}" for one in list_ports.comports())]
+    return ["twin", *sorted(f"serial:{comport.device}" for comport in list_ports.comports())]

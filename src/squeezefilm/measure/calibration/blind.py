@@ -232,7 +232,7 @@ def _of_plate(
     asked = tuple(dict.fromkeys(asked_by(one) for one in wanted))
     scores = NormalScores(calibration_parameters(display))
     rows = scores.values(prior_scores(len(scores.parameters), _SOLVED, seed))
-    paths = [one.path for one in scores.parameters]
+    paths = [parameter.path for parameter in scores.parameters]
     drawn = []
     for number, row in enumerate(rows, 1):
         tell(f"plate {number} of {len(rows)}")

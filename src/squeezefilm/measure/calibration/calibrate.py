@@ -344,7 +344,7 @@ def _next(
     """Candidates that were not measured yet, ranked."""
     from scipy.special import ndtr
 
-    done = {one.answer for one in observations}
+    done = {observation.answer for observation in observations}
     drawn = {
         one.name: joint.answers[:, k]
         for k, one in enumerate(joint.asked)

@@ -206,9 +206,11 @@ class NormalScores:
 
     def __init__(self, parameters: tuple[Parameter, ...]) -> None:
         self.parameters = parameters
-        ends = np.log(np.abs([one.distribution.support for one in parameters])).reshape(-1, 2)
+        ends = np.log(np.abs([parameter.distribution.support for parameter in parameters])).reshape(
+            -1, 2
+        )
         self._middle, self._half = ends.mean(axis=1), np.diff(ends, axis=1)[:, 0] / 2
-        paths = [one.path for one in parameters]
+        paths = [parameter.path for parameter in parameters]
         pair = [f"actuator.glue.{name}" for name in ("thickness", "young_modulus")]
         self._glue = [paths.index(one) for one in pair] if set(pair) <= set(paths) else None
 

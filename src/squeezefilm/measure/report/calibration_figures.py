@@ -95,7 +95,7 @@ def compared_figure(found: FolderCalibration) -> Figure:
     axes.axvline(0, **style.ZERO)
     axes.set_xscale("symlog", linthresh=_FINE, linscale=0.6)
     axes.set_xticks(
-        _TICKS, [f"{'−+'[one > 0]}{100 * abs(one):g} %" if one else "0" for one in _TICKS]
+        _TICKS, [f"{'−+'[tick > 0]}{100 * abs(tick):g} %" if tick else "0" for tick in _TICKS]
     )
     axes.minorticks_off()
     axes.set_xlim(-0.95, 2)

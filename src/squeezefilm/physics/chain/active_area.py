@@ -174,7 +174,9 @@ class ActiveArea:
                 "best_place_m": list(self.best_place),
                 "worst_place_m": list(self.worst_place),
             },
-            "share_below": {f"{one:.2f}": self.share_below(one) for one in CRITERIA},
+            "share_below": {
+                f"{criterion:.2f}": self.share_below(criterion) for criterion in CRITERIA
+            },
             "uniformity": self.uniformity,
             "uniformity_is": "least friction reduction over greatest",
             "shape_model": self.shape_model,

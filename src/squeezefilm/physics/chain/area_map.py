@@ -173,7 +173,7 @@ def _met(
         weights = points.shares[order] * covered
         return found, weights / np.sum(weights, axis=1, keepdims=True)
     parts = np.array_split(at, -(-at.shape[0] * dx.size // _AT_A_TIME))
-    met = [met_by_pads(shape, x[one[:, 0]], y[one[:, 1]], points) for one in parts]
+    met = [met_by_pads(shape, x[part[:, 0]], y[part[:, 1]], points) for part in parts]
     return (
         np.concatenate([swings for swings, _ in met]),
         np.concatenate([shares for _, shares in met]),

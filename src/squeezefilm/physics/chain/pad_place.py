@@ -73,7 +73,7 @@ class PadPlace:
 
     def __post_init__(self) -> None:
         if not self.shape.on_face(np.array([self.x]), np.array([self.y]))[0]:
-            left, right, front, back = (1e3 * one for one in self.shape.bounds)
+            left, right, front, back = (1e3 * bound for bound in self.shape.bounds)
             raise GeometryError(
                 f"place = {place_words((self.x, self.y))} is not on the face; it goes from x "
                 f"{left:.4g} mm to {right:.4g} mm and from y {front:.4g} mm to {back:.4g} mm"

@@ -188,9 +188,9 @@ def _images(value: Any) -> Iterator[Image]:
         for one in value:
             yield from _images(one)
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
-        for one in dataclasses.fields(value):
-            if not one.name.startswith("_"):
-                yield from _images(getattr(value, one.name))
+        for field in dataclasses.fields(value):
+            if not field.name.startswith("_"):
+                yield from _images(getattr(value, field.name))
 
 
 def require_on_display(actuator: Actuator, motion: FingerMotion) -> None:

@@ -122,8 +122,8 @@ def touched_amplitudes(
     knots = low + (high - low) * np.linspace(0, 1, _KNOTS if high > low else 1) ** 2
     over = dataclasses.replace(law, place=None, position=0.0)
     left = [
-        _touched(mode, _Pad.at(over, float(one)), free_amplitude, TOLERANCE).amplitude
-        for one in knots
+        _touched(mode, _Pad.at(over, float(knot)), free_amplitude, TOLERANCE).amplitude
+        for knot in knots
     ]
     if high == low:
         return np.full(mean_square.shape, left[0])

@@ -193,28 +193,28 @@ def _runs_of(played: RenderAnalysis, path: FingerPath) -> list[_OneRun]:
 def _felt(observer: Observer, runs: list[_OneRun]) -> RunPercept | None:
     if not runs:
         return None
-    longest = max(one.length for one in runs)
-    runs = [one for one in runs if one.length >= longest / 2]
-    share = np.array([one.stretch.size for one in runs], dtype=float)
+    longest = max(run.length for run in runs)
+    runs = [run for run in runs if run.length >= longest / 2]
+    share = np.array([run.stretch.size for run in runs], dtype=float)
     power, weight = np.zeros(line_periods().size), np.zeros(line_periods().size)
-    for one, size in zip(runs, share, strict=True):
-        holds = 2.0 * line_periods() <= one.length + _ROUNDING
-        power += size * holds * line_amplitudes(one.stretch[None, :]) ** 2
+    for run, size in zip(runs, share, strict=True):
+        holds = 2.0 * line_periods() <= run.length + _ROUNDING
+        power += size * holds * line_amplitudes(run.stretch[None, :]) ** 2
         weight += size * holds
     amplitude = np.sqrt(power / np.maximum(weight, 1.0))
     way, speed, asked, felt = (
-        np.concatenate([getattr(one, name) for one in runs])
+        np.concatenate([getattr(run, name) for run in runs])
         for name in ("stretch", "speed", "asked", "felt")
     )
     mean = abs(float(np.mean(way)))
     found = evidence(observer, amplitude, channel_gains(observer, speed), mean)
-    lengths = np.array([one.length for one in runs])
+    lengths = np.array([run.length for run in runs])
     rhythms = candidates(observer, found, float(share @ lengths / share.sum()))
     return RunPercept(
         percept=Percept(found, rhythms, mean),
         runs=len(runs),
         way=float(lengths.sum()),
-        mean_speed=float(lengths.sum() / sum(one.duration for one in runs)),
+        mean_speed=float(lengths.sum() / sum(run.duration for run in runs)),
         asked_swing=float(np.std(asked)),
         felt_swing=float(np.std(felt)),
     )

@@ -156,7 +156,9 @@ def electrical_load(
         channels=channels,
         current_per_channel=current / channels,
         capacitance_per_channel=None if capacitance is None else capacitance / channels,
-        amplifiers=tuple(amplifier_check(one, voltage, current, slew) for one in AMPLIFIERS),
+        amplifiers=tuple(
+            amplifier_check(amplifier, voltage, current, slew) for amplifier in AMPLIFIERS
+        ),
     )
 
 

@@ -157,14 +157,14 @@ class SolvedSurface(SurfaceShape):
     def _between(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
         # Splines ask for places in order.
         row, column = np.argsort(x), np.argsort(y)
-        real, imaginary = (one(x[row], y[column]) for one in self._splines)
+        real, imaginary = (spline(x[row], y[column]) for spline in self._splines)
         found = np.empty((x.size, y.size))
         found[np.ix_(row, column)] = np.hypot(real, imaginary)
         return found
 
     def __getstate__(self) -> dict[str, object]:
         """Without its splines, which are made anew where they are asked for."""
-        return {name: one for name, one in vars(self).items() if name != "_splines"}
+        return {name: var for name, var in vars(self).items() if name != "_splines"}
 
 
 @dataclass(frozen=True, eq=False)

@@ -130,7 +130,7 @@ class Assembler:
         count, popped, pushed = SHAPES[opcode]
         if len(operands) != count or popped > self.depth:
             raise AssertionError(f"opcode {opcode} was emitted with {operands} at {self.depth}")
-        self.code += [float(opcode), *(float(one) for one in operands)]
+        self.code += [float(opcode), *(float(operand) for operand in operands)]
         self.depth += pushed - popped
         self.deepest = max(self.deepest, self.depth)
         if self.deepest > DEEPEST_STACK or len(self.code) > LONGEST_CODE:

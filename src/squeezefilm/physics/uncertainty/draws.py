@@ -177,7 +177,9 @@ class Mixture:
         if lifted:
             choices += (LIFTS,)
         parameters = tuple(
-            one for one in parameters if not any(part in one.path for part in without)
+            parameter
+            for parameter in parameters
+            if not any(part in parameter.path for part in without)
         )
         self.inputs: tuple[Input, ...] = calibrated_inputs(
             parameters + choices, display.joint, driven=driven

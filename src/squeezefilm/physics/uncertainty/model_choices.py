@@ -76,14 +76,14 @@ class Choice:
     @si.checked_numbers
     def drawn(self, share: si.DimensionlessArray) -> list[str]:
         """The options that shares of the probability (0 to 1) fall to."""
-        ends = np.cumsum([one.weight for one in self.options])
+        ends = np.cumsum([option.weight for option in self.options])
         at = np.searchsorted(ends, np.asarray(share) * ends[-1], side="right")
         return [self.options[k].name for k in np.minimum(at, len(self.options) - 1).tolist()]
 
     @property
     def spread(self) -> tuple[str, ...]:
         """Its options with their weights, in words."""
-        return tuple(f"{one.name} {si.percent(one.weight)}" for one in self.options)
+        return tuple(f"{option.name} {si.percent(option.weight)}" for option in self.options)
 
 
 _HEIGHTS = Choice(

@@ -189,7 +189,7 @@ def _has(display: Display, path: str) -> bool:
             path not in (_CHARGE, _STRESS) or path == believed[ceramic.data_set]
         )
     law = display.finger.asperities
-    return part != "asperities" or name in {one.name for one in dataclasses.fields(law)}
+    return part != "asperities" or name in {field.name for field in dataclasses.fields(law)}
 
 
 def _matters(path: str, surface: int, driven: bool) -> bool:
@@ -251,7 +251,7 @@ def _inside(owner: Any, part: str, path: str) -> Any:
     known = (
         [str(number) for number in range(len(owner))]
         if isinstance(owner, tuple)
-        else [one.name for one in dataclasses.fields(owner)]
+        else [field.name for field in dataclasses.fields(owner)]
         if dataclasses.is_dataclass(owner)
         else []
     )

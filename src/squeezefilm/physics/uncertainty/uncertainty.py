@@ -117,13 +117,13 @@ class UncertainFriction:
             "refused_why": dict(self.refused.reasons),
             "seed": self.seed,
             "groups": {
-                one.knowledge: {
-                    "first_order": one.alone,
-                    "first_order_error": one.alone_error,
-                    "total_order": one.total,
-                    "total_order_error": one.error,
+                group.knowledge: {
+                    "first_order": group.alone,
+                    "first_order_error": group.alone_error,
+                    "total_order": group.total,
+                    "total_order_error": group.error,
                 }
-                for one in self.groups
+                for group in self.groups
             },
             "measure_next": [
                 {
@@ -174,7 +174,7 @@ def uncertain_friction(
         raise OutOfRangeError(refusal_words(refused))
     friction = drawn.friction
     known = np.isfinite(friction)
-    low, middle, high = (float(one) for one in quantiles(friction))
+    low, middle, high = (float(quantile) for quantile in quantiles(friction))
     driven = prediction.voltage is not None
     power = mixture.power(mixture.prediction.touch)
     return UncertainFriction(

@@ -70,7 +70,7 @@ def rerun_intervals(
     likelihood, best = likelihood_of(fit)
     axis = fit.function.axis
     random = np.random.default_rng(seed)
-    among = [random.random((replicates, one.most_trials)) for one in procedures]
+    among = [random.random((replicates, procedure.most_trials)) for procedure in procedures]
     again = _Again(likelihood.code, axis, tuple(procedures), among)
     found = confidence_intervals(likelihood, best, again, wanted, level, axis)
     return {name: opened(fit.function, name, ends) for name, ends in found.items()}
@@ -79,8 +79,10 @@ def rerun_intervals(
 def _require_trials(fit: PsychometricFit, procedures: Sequence[Procedure]) -> None:
     if not procedures:
         raise InputError("no procedure chose the stimuli; give the rule or design of each run")
-    trials, most = int(fit.trials.sum()), sum(one.most_trials for one in procedures)
-    fixed = sum(one.most_trials for one in procedures if isinstance(one, AdaptiveDesign))
+    trials, most = int(fit.trials.sum()), sum(procedure.most_trials for procedure in procedures)
+    fixed = sum(
+        procedure.most_trials for procedure in procedures if isinstance(procedure, AdaptiveDesign)
+    )
     if not fixed <= trials <= most:
         raise InputError(
             f"the fit has {trials} answers, and the procedures ask for {fixed} to {most}; give the "
@@ -149,12 +151,12 @@ class _Again:
     @property
     def dear(self) -> bool:
         """Bayesian choices take longer than fits."""
-        return any(isinstance(one, AdaptiveDesign) for one in self.procedures)
+        return any(isinstance(procedure, AdaptiveDesign) for procedure in self.procedures)
 
     def __call__(self, theta: si.FloatArray) -> Simulated:
         runs = [
-            simulate_runs(one, self.shape, self.axis, theta, among)
-            for one, among in zip(self.procedures, self.among, strict=True)
+            simulate_runs(procedure, self.shape, self.axis, theta, among)
+            for procedure, among in zip(self.procedures, self.among, strict=True)
         ]
         x, y = (np.concatenate(columns, axis=1) for columns in zip(*runs, strict=True))
         k, n = np.zeros_like(x), np.zeros_like(x)

@@ -128,7 +128,7 @@ def adaptive_method(
         choices = np.geomspace(series.lowest, series.highest, _CHOICES)
         method = BayesianAdaptive(
             AdaptiveDesign(
-                stimuli=tuple(float(one) for one in choices),
+                stimuli=tuple(float(choice) for choice in choices),
                 prior=PsychometricPrior.for_stimuli(choices, "log"),
                 axis="log",
                 guess_rate=0.5,

@@ -114,7 +114,7 @@ def _responses(study: SimulatedStudy | SimulatedAnswers, person: int) -> dict[in
     """What a person answers, by the number of the trial."""
     answers = answers_of(study) if isinstance(study, SimulatedStudy) else study.answers
     names, mine = answers.design.answers, answers.participant == person
-    asked = [one.number for one in trials(answers.design, person, study.seed) if one.asks]
+    asked = [trial.number for trial in trials(answers.design, person, study.seed) if trial.asks]
     # A simulated match-to-sample study counts the trials that ask.
     counted = isinstance(study, SimulatedStudy)
     found = {}

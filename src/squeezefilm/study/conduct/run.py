@@ -300,7 +300,7 @@ class StudyRun:
         design = self._store.design
         trial = Trial.of_row(row)
         if trial.phase == "familiarisation" and design.alternatives:
-            gratings = {one.name: one for one in design.alternatives}
+            gratings = {alternative.name: alternative for alternative in design.alternatives}
             return trial, tuple(gratings[name] for name in trial.stimuli), None
         if not trial.adaptive:
             return trial, tuple(design.stimulus(name) for name in trial.stimuli), None
@@ -336,7 +336,7 @@ class StudyRun:
         return {
             "trial": planned["uuid"],
             "session": self._session["uuid"],
-            "stimuli": json.dumps([one.name for one in surfaces]),
+            "stimuli": json.dumps([surface.name for surface in surfaces]),
             "intensity": intensity,
             "correct": correct,
             **answered,
@@ -356,10 +356,15 @@ def spoiled_by(design: StudyDesign, response: Response) -> str:
     one of the design's rules that is broken; empty where it counts, and where nothing was recorded
     of it."""
     rules = design.rules or TrialRules()
-    for one in response.explorations:
-        if one.unusable:
-            return f"the surface was not played as planned: {one.unusable}"
-        broken = rules.broken(one.path_length, one.mean_speed, one.mean_normal_force, one.touch)
+    for exploration in response.explorations:
+        if exploration.unusable:
+            return f"the surface was not played as planned: {exploration.unusable}"
+        broken = rules.broken(
+            exploration.path_length,
+            exploration.mean_speed,
+            exploration.mean_normal_force,
+            exploration.touch,
+        )
         if broken:
             return broken
     return ""

@@ -78,4 +78,4 @@ def boards(design: StudyDesign) -> tuple[Board, ...]:
             f"'{design.name}' is a study of {design.task} and compares with no real gratings, so "
             "that there are no boards to make; take a match-to-sample design"
         )
-    return tuple(board_of(one) for one in design.alternatives)
+    return tuple(board_of(alternative) for alternative in design.alternatives)

@@ -42,12 +42,12 @@ def _of_range(design: StudyDesign, observer: Observer) -> list[str]:
     if not design.compares or not design.on_a_scale or fraction is None:
         return []
     if design.adaptive:
-        ends = [x for one in design.adaptive for x in (one.lowest, one.highest)]
+        ends = [x for series in design.adaptive for x in (series.lowest, series.highest)]
     else:
         here = design.judged_value(design.stimulus(design.reference))
-        others = [one for one in design.stimuli if one.name != design.reference]
-        logs = [abs(math.log(design.judged_value(one) / here)) for one in others]
-        ends = [math.expm1(one) for one in logs]
+        others = [stimulus for stimulus in design.stimuli if stimulus.name != design.reference]
+        logs = [abs(math.log(design.judged_value(other) / here)) for other in others]
+        ends = [math.expm1(log) for log in logs]
     threshold = f"the predicted threshold of {_percent(fraction)} ('{observer.name}')"
     if min(ends) > fraction:
         return [
@@ -84,5 +84,5 @@ def _percent(share: si.Dimensionless) -> str:
 
 def _presented(design: StudyDesign) -> list[Stimulus]:
     """Every surface that may be presented, a series' farthest comparison too."""
-    chosen = [design.comparison(one, one.highest) for one in design.adaptive]
-    return [*design.stimuli, *(one.stimulus for one in design.catch), *chosen]
+    chosen = [design.comparison(series, series.highest) for series in design.adaptive]
+    return [*design.stimuli, *(trial.stimulus for trial in design.catch), *chosen]

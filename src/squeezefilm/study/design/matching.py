@@ -61,11 +61,11 @@ def require_amounts(
     shape has no period. Raises `InputError`."""
     if task in ("match-to-sample", "same-different"):
         return
-    for one, amount in zip(stimuli, amounts, strict=True):
+    for stimulus, amount in zip(stimuli, amounts, strict=True):
         if math.isnan(amount):
             raise InputError(
-                f"stimulus '{one.name}' ({one.kind}) has no {judged}, which {task} asks about; "
-                'judge another, like judged = "friction_depth", or take same-different or '
+                f"stimulus '{stimulus.name}' ({stimulus.kind}) has no {judged}, which {task} asks "
+                'about; judge another, like judged = "friction_depth", or take same-different or '
                 "match-to-sample",
                 quantity="judged",
             )

@@ -63,23 +63,23 @@ class StudyPlan(Result):
             "matched_with": design.matched_with,
             "stimuli": [
                 {
-                    **_grooves(one),
-                    "second_period_m": _known(one.second_period),
-                    "surface": one.kind,
-                    "surface_sha256": one.surface_sha256,
-                    "waveform": one.waveform,
-                    "friction_depth": one.friction_depth,
-                    "right_answer": design.answer_to(one) if not design.compares else "",
+                    **_grooves(stimulus),
+                    "second_period_m": _known(stimulus.second_period),
+                    "surface": stimulus.kind,
+                    "surface_sha256": stimulus.surface_sha256,
+                    "waveform": stimulus.waveform,
+                    "friction_depth": stimulus.friction_depth,
+                    "right_answer": design.answer_to(stimulus) if not design.compares else "",
                 }
-                for one in design.stimuli
+                for stimulus in design.stimuli
             ],
             "alternatives": [
                 {
-                    **_grooves(one),
-                    "ridge_height_m": one.ridge_height,
-                    "material": one.material,
+                    **_grooves(alternative),
+                    "ridge_height_m": alternative.ridge_height,
+                    "material": alternative.material,
                 }
-                for one in design.alternatives
+                for alternative in design.alternatives
             ],
             "order": design.order,
             "participants": self.participants,
@@ -90,8 +90,8 @@ class StudyPlan(Result):
             "duration_s": self.duration * self.participants,
             "seed": self.seed,
             "first_trials": [
-                [" / ".join(trial.stimuli) for trial in one if trial.phase == "main"][:10]
-                for one in self.schedules
+                [" / ".join(trial.stimuli) for trial in schedule if trial.phase == "main"][:10]
+                for schedule in self.schedules
             ],
             "doubts": list(self.doubts),
             "assumed": list(self.assumed),
@@ -132,9 +132,9 @@ def plan_study(
     """
     si.require("participants", participants, at_least=1, at_most=1000)
     si.require("seed", seed, at_least=0)
-    for one in design.stimuli:
+    for stimulus in design.stimuli:
         # A texture's file or picture that is not there is told before anybody is planned.
-        one.surface()
+        stimulus.surface()
     most = int(PLANNED_TRIALS.most // design.most_trials)
     enough = f"of {design.most_trials} trials each, at most {most} participants are planned at once"
     require_within(PLANNED_TRIALS, participants * design.most_trials, enough=enough)

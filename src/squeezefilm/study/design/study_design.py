@@ -133,12 +133,14 @@ class StudyDesign:
         require_different("displays", list(self.displays))
         if not self.stimuli:
             raise InputError("stimuli is empty; give at least one", quantity="stimuli")
-        presented = [one.name for one in self.stimuli] + [one.stimulus.name for one in self.catch]
+        presented = [stimulus.name for stimulus in self.stimuli] + [
+            trial.stimulus.name for trial in self.catch
+        ]
         require_different("stimuli", presented)
-        require_different("alternatives", [one.name for one in self.alternatives])
-        require_different("adaptive", [one.name for one in self.adaptive])
-        if self.reference and self.reference not in [one.name for one in self.stimuli]:
-            known = [one.name for one in self.stimuli]
+        require_different("alternatives", [alternative.name for alternative in self.alternatives])
+        require_different("adaptive", [series.name for series in self.adaptive])
+        if self.reference and self.reference not in [stimulus.name for stimulus in self.stimuli]:
+            known = [stimulus.name for stimulus in self.stimuli]
             raise InputError(
                 f"reference = '{self.reference}' is no stimulus."
                 f"{si.did_you_mean(self.reference, known)} Stimuli: {', '.join(known)}",
@@ -166,14 +168,14 @@ class StudyDesign:
     def most_trials(self) -> int:
         """At least as many trials as a participant has, without making them."""
         felt = self.familiarisation * max(len(self.stimuli), len(self.alternatives))
-        caught = sum(one.count for one in self.catch)
+        caught = sum(trial.count for trial in self.catch)
         return len(self.displays) * (self.most_main_trials + felt + caught + self.practice)
 
     @property
     def most_main_trials(self) -> int:
         """At least as many main trials as a participant has on a display."""
         if self.adaptive:
-            return sum(one.count for one in self.adaptive)
+            return sum(series.count for series in self.adaptive)
         conditions = len(self.stimuli) * self.described.most_per_stimulus
         return self.blocks * self.repetitions * conditions
 
@@ -200,7 +202,7 @@ class StudyDesign:
 
     def stimulus(self, name: str) -> Stimulus:
         """The stimulus of that name, catch trials' too. Raises `InputError` if there is none."""
-        every = [*self.stimuli, *(one.stimulus for one in self.catch)]
+        every = [*self.stimuli, *(trial.stimulus for trial in self.catch)]
         for one in every:
             if one.name == name:
                 return one
@@ -223,7 +225,11 @@ class StudyDesign:
         if self.task == "match-to-sample":
             if first.matches or first.waveform == "constant":
                 return first.matches
-            near = [one for one in self.alternatives if abs(one.period - first.period) < 1e-9]
+            near = [
+                alternative
+                for alternative in self.alternatives
+                if abs(alternative.period - first.period) < 1e-9
+            ]
             return near[0].name if len(near) == 1 else ""
         if len(surfaces) < self.described.surfaces:
             return ""
@@ -291,7 +297,7 @@ class StudyDesign:
                 "answers; give practice = 8 or so, or leave it out (numbers are never right)",
                 quantity="practice_criterion",
             )
-        amounts = [self.judged_value(one) for one in self.stimuli]
+        amounts = [self.judged_value(stimulus) for stimulus in self.stimuli]
         require_amounts(self.task, self.judged, self.stimuli, amounts)
         for series in self.adaptive:
             self._require_series(series)
@@ -305,7 +311,7 @@ class StudyDesign:
     def on_a_scale(self) -> bool:
         """Whether the surfaces have each another amount of what is judged, so that differences
         between them are told along it; those of adaptive series always have."""
-        amounts = [self.judged_value(one) for one in self.stimuli]
+        amounts = [self.judged_value(stimulus) for stimulus in self.stimuli]
         distinct = all(map(math.isfinite, amounts)) and len(set(amounts)) == len(amounts)
         return bool(self.adaptive) or distinct
 
@@ -342,11 +348,12 @@ class StudyDesign:
 
     def _require_answers(self) -> None:
         names = self.answers
-        for one in self.stimuli:
-            if one.matches and one.matches not in names:
+        for stimulus in self.stimuli:
+            if stimulus.matches and stimulus.matches not in names:
                 raise InputError(
-                    f"stimulus '{one.name}' matches '{one.matches}', which is no alternative."
-                    f"{si.did_you_mean(one.matches, names)} Alternatives: {', '.join(names)}",
+                    f"stimulus '{stimulus.name}' matches '{stimulus.matches}', which is no "
+                    f"alternative.{si.did_you_mean(stimulus.matches, names)} "
+                    f"Alternatives: {', '.join(names)}",
                     quantity="stimuli",
                 )
         for trial in self.catch:
@@ -358,10 +365,10 @@ class StudyDesign:
             self.catch_condition(trial)
         if self.task == "two-interval":
             here = self.stimulus(self.reference)
-            for one in self.stimuli:
-                if one.name != self.reference and not self.answer_to(here, one):
+            for stimulus in self.stimuli:
+                if stimulus.name != self.reference and not self.answer_to(here, stimulus):
                     raise InputError(
-                        f"stimulus '{one.name}' has the same {self.judged} as the reference: "
+                        f"stimulus '{stimulus.name}' has the same {self.judged} as the reference: "
                         "no answer would be right; change it, or `judged`",
                         quantity="stimuli",
                     )

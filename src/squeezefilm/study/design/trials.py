@@ -80,7 +80,7 @@ class Trial:
         values = {**row, "pause": row["pause_s"], "reference_first": bool(row["reference_first"])}
         for name in _LISTS:
             values[name] = tuple(json.loads(row[name]))
-        return cls(**{one.name: values[one.name] for one in fields(cls)})
+        return cls(**{field.name: values[field.name] for field in fields(cls)})
 
 
 def latin_square(size: int) -> tuple[tuple[int, ...], ...]:
@@ -139,7 +139,7 @@ def conditions(design: StudyDesign) -> tuple[Condition, ...]:
     orders, and for same-different as often (the same, the same), half with each of the two.
     """
     compares, here = design.compares, design.reference
-    names = [one.name for one in design.stimuli if not compares or one.name != here]
+    names = [stimulus.name for stimulus in design.stimuli if not compares or stimulus.name != here]
     return design.described.conditions(here, names)
 
 
@@ -211,7 +211,11 @@ def _display_trials(
         )
 
     pause = design.break_between_blocks if place else 0.0
-    felt = names if design.task == "match-to-sample" else [one.name for one in design.stimuli]
+    felt = (
+        names
+        if design.task == "match-to-sample"
+        else [stimulus.name for stimulus in design.stimuli]
+    )
     for _ in range(design.familiarisation):
         for i in matching.permutation(len(felt)):
             add(0, "familiarisation", (felt[i],), pause)
@@ -242,7 +246,7 @@ def _blocks(
         len(every), design.blocks * design.repetitions, participant, seed + place, design.order
     )
     spread = _random(seed, _SPREAD, participant, place)
-    catches = [one for one in design.catch for _ in range(one.count)]
+    catches = [trial for trial in design.catch for _ in range(trial.count)]
     where = spread.integers(0, design.blocks, len(catches))
     found = []
     for block in range(design.blocks):
@@ -273,7 +277,7 @@ def _adaptive_trials(
         order = random.permutation(series.count)
         queue += [(series.name, *kinds[i], None) for i in order]
     queue = [queue[i] for i in random.permutation(len(queue))]
-    for catch in (one for one in design.catch for _ in range(one.count)):
+    for catch in (trial for trial in design.catch for _ in range(trial.count)):
         queue.insert(int(random.integers(1, len(queue) + 1)), ("", False, catch.answer, catch))
     size = -(-len(queue) // design.blocks)
     for position, (name, reference_first, answer, caught) in enumerate(queue):

@@ -82,7 +82,7 @@ class Screening:
     @property
     def named(self) -> tuple[PersonJudgement, ...]:
         """Who does not do the task by the rule."""
-        return tuple(one for one in self.people if one.reasons)
+        return tuple(person for person in self.people if person.reasons)
 
     @property
     def left_out_sentence(self) -> str:
@@ -113,7 +113,7 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
     missed = {one.person: one for one in attention(caught)}
     people = [main.take(main.participant == person) for person in np.unique(main.participant)]
     models = [_models(mine) if main.design.answers else () for mine in people]
-    follows = [_follows(mine, one) for mine, one in zip(people, models, strict=True)]
+    follows = [_follows(mine, model) for mine, model in zip(people, models, strict=True)]
     middle, asked = float(np.median(follows)), -float(ndtri(rule.chance))
     excused, said = main.design.task == "match-to-sample" or len(people) < _LEAST_PEOPLE, ""
     if len(people) >= _LEAST_PEOPLE and abs(middle) < _ABOVE_CHANCE:
@@ -131,12 +131,12 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
         asked = min(asked, 0.5 * abs(middle))
     whole = min(max(mine.trials for mine in people), answers.design.most_main_trials)
     found = []
-    for mine, one, z in zip(people, models, follows, strict=True):
+    for mine, model, z in zip(people, models, follows, strict=True):
         name = mine.people[int(mine.participant[0])]
         reasons, doubts = _habits(mine), []
-        if one:
-            reasons += _changed(mine, one)
-        if mine.trials < _LEAST_TRIALS and one:
+        if model:
+            reasons += _changed(mine, model)
+        if mine.trials < _LEAST_TRIALS and model:
             doubts.append(f"{mine.trials} trials are too few to tell guessing from doing the task")
         elif z < -asked:
             reasons.insert(0, f"answers are mixed up (z = {z:.1f})")
@@ -236,18 +236,21 @@ def _follows(mine: Answers, models: _Models | tuple[()]) -> float:
     """z of following the surfaces."""
     if not models:
         return _numbers_follow(mine)
-    task, turned, guess = (_best(one) for one in models)
+    task, turned, guess = (_best(model) for model in models)
     return math.sqrt(2 * max(max(task, turned) - guess, 0.0)) * (1 if task >= turned else -1)
 
 
 def _changed(mine: Answers, models: _Models) -> list[str]:
     """Whether a part of the session, from its begin or to its end, was guessed or mixed up; or all
     of it has more lapses than the rule allows."""
-    rule, one_for_all, said = rule_of(mine.design), max(_best(one) for one in models), []
+    rule, one_for_all, said = rule_of(mine.design), max(_best(model) for model in models), []
     least = max(_LEAST_PART, mine.trials // 4)
     at = np.arange(least, mine.trials - least + 1)
     if at.size:
-        sums = [np.concatenate([np.zeros((1, one.shape[1])), one.cumsum(axis=0)]) for one in models]
+        sums = [
+            np.concatenate([np.zeros((1, model.shape[1])), model.cumsum(axis=0)])
+            for model in models
+        ]
         before = [one[at].max(axis=1) for one in sums]
         after = [(one[-1] - one[at]).max(axis=1) for one in sums]
         gains = {

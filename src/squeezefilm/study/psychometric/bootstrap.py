@@ -200,7 +200,9 @@ class Experiments:
         joined = [np.concatenate(one) for one in zip(*self._sets, strict=True)]
         runs = Simulated(joined[0], joined[1], joined[2], joined[3].astype(np.int64))
         asked = kernel.log_likelihoods(self._shape, theta, *runs)
-        mixed = np.array([kernel.log_likelihoods(self._shape, one, *runs) for one in self._truths])
+        mixed = np.array(
+            [kernel.log_likelihoods(self._shape, truth, *runs) for truth in self._truths]
+        )
         weights = 1.0 / np.mean(np.exp(mixed - asked), axis=0)
         some = weights > 1e-3 * weights.max()
         return Simulated(runs.x[some], runs.k[some], runs.n[some], runs.used[some]), weights[some]

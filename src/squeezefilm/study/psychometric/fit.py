@@ -345,5 +345,5 @@ def _by_place(
         raise InputError("trials = 0 everywhere; there must be at least one answer")
     places, where = np.unique(given[n > 0], return_inverse=True)
     counts = (np.bincount(where, one[n > 0], places.size) for one in (k, n))
-    summed_k, summed_n = (np.asarray(one, dtype=float) for one in counts)
+    summed_k, summed_n = (np.asarray(count, dtype=float) for count in counts)
     return places, summed_k, summed_n

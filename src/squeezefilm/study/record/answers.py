@@ -69,7 +69,7 @@ class Answers:
     @property
     def values(self) -> si.FloatArray:
         """How much (SI) each surface has of what is judged, shape (surfaces,)."""
-        return np.array([self.design.judged_value(one) for one in self.surfaces])
+        return np.array([self.design.judged_value(surface) for surface in self.surfaces])
 
     @property
     def presented(self) -> si.IntArray:
@@ -85,9 +85,9 @@ class Answers:
     def take(self, rows: NDArray[np.bool_]) -> Answers:
         """Some of the trials, with all people and surfaces."""
         arrays = {
-            one.name: getattr(self, one.name)[rows]
-            for one in dataclasses.fields(self)
-            if isinstance(getattr(self, one.name), np.ndarray)
+            field.name: getattr(self, field.name)[rows]
+            for field in dataclasses.fields(self)
+            if isinstance(getattr(self, field.name), np.ndarray)
         }
         explored = {key: values[rows] for key, values in self.exploration.items()}
         return dataclasses.replace(self, **arrays, exploration=explored)

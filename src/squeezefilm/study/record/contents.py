@@ -85,8 +85,8 @@ def _shape(execute: Callable[[str], Iterable[Any]], table: str) -> Shape:
     """Columns of a table: the type of their values, and whether they may be NULL."""
     columns = execute(f"PRAGMA table_info({table})")
     return {
-        one["name"]: (_KINDS.get(one["type"], bytes), not (one["notnull"] or one["pk"]))
-        for one in columns
+        column["name"]: (_KINDS.get(column["type"], bytes), not (column["notnull"] or column["pk"]))
+        for column in columns
     }
 
 
@@ -108,9 +108,9 @@ def _row_problems(
 
 def _trial_problems(rows: Rows, design: StudyDesign) -> Iterator[str]:
     """What no column shows alone: whether answers fit their trials, and trials their design."""
-    gratings = [one.name for one in design.alternatives]
-    stimuli = [one.name for one in design.stimuli]
-    catches = [one.stimulus.name for one in design.catch]
+    gratings = [alternative.name for alternative in design.alternatives]
+    stimuli = [stimulus.name for stimulus in design.stimuli]
+    catches = [trial.stimulus.name for trial in design.catch]
     for row in rows(
         "SELECT t.*, r.trial AS answered, r.stimuli AS felt, r.choice, r.intensity, r.estimate "
         "FROM trial t LEFT JOIN response r ON r.trial = t.uuid"
@@ -150,7 +150,7 @@ def _texts(text: str) -> bool:
 
 
 def _traces(text: str) -> bool:
-    return _texts(text) and all(_TRACE.fullmatch(one) for one in json.loads(text))
+    return _texts(text) and all(_TRACE.fullmatch(load) for load in json.loads(text))
 
 
 def _fields(text: str) -> bool:

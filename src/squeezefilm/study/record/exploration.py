@@ -261,7 +261,7 @@ def explored_table(table: Table, face: tuple[si.Metre, si.Metre] | None = None) 
 
 
 def _mean(values: list[float]) -> float:
-    known = [one for one in values if math.isfinite(one)]
+    known = [value for value in values if math.isfinite(value)]
     return float(np.mean(known)) if known else math.nan
 
 

@@ -112,7 +112,7 @@ def own_files(folder: Path) -> set[Path]:
     if mark.is_file() and not mark.is_symlink():
         ours = {folder / name for name in _marked(mark)} | {mark}
         # A file that was being written when a program was killed.
-        ours |= {p for p in present if any(p.name.startswith(f".{one.name}.") for one in ours)}
+        ours |= {p for p in present if any(p.name.startswith(f".{our.name}.") for our in ours)}
         ours = {path for path in ours if not path.is_symlink()}
     if others := sorted(str(path.relative_to(folder)) for path in present - ours):
         raise InputError(
@@ -145,7 +145,7 @@ def _remove_export(folder: Path) -> None:
     """Erase an earlier export. The mark goes last, so that an interrupted removal can be
     repeated. Raises what `own_files` raises."""
     mark = folder / _MARK
-    for path in sorted(own_files(folder), key=lambda one: one == mark):
+    for path in sorted(own_files(folder), key=lambda own_file: own_file == mark):
         erase_file(path)
     for path in sorted((p for p in folder.rglob("*") if p.is_dir()), reverse=True):
         path.rmdir()
@@ -245,9 +245,9 @@ def bids(store: StudyStore) -> dict[str, str]:
     task = keyword(design.task)
     rows = trial_table(store)
     columns = [
-        Column("sitting_id", one.description) if one.name == "session_id" else one
-        for one in COLUMNS
-        if not one.name.startswith("participant_")
+        Column("sitting_id", column.description) if column.name == "session_id" else column
+        for column in COLUMNS
+        if not column.name.startswith("participant_")
     ]
     people = {row["participant_id"]: row["participant_number"] for row in rows}
     listing: list[dict[str, Cell]] = [
@@ -284,19 +284,21 @@ def bids(store: StudyStore) -> dict[str, str]:
             **_described(_SITTINGS),
         }
     )
-    for one in people:
-        mine = [row for row in rows if row["participant_id"] == one]
-        files[f"sub-{one}/beh/sub-{one}_task-{task}_beh.tsv"] = _tsv(mine, columns)
-        sat = [row for row in sittings if row["participant_id"] == one]
-        files[f"sub-{one}/beh/sub-{one}_task-sittings_beh.tsv"] = _tsv(sat, _SITTINGS)
+    for person in people:
+        mine = [row for row in rows if row["participant_id"] == person]
+        files[f"sub-{person}/beh/sub-{person}_task-{task}_beh.tsv"] = _tsv(mine, columns)
+        sat = [row for row in sittings if row["participant_id"] == person]
+        files[f"sub-{person}/beh/sub-{person}_task-sittings_beh.tsv"] = _tsv(sat, _SITTINGS)
     return files
 
 
 # BIDS keeps the name session_id for sessions of its own folders (ses-*).
 _SITTINGS = [
-    Column("sitting_id", one.description) if one.name == "session_id" else one
-    for one in SESSION_COLUMNS
-    if one.name != "participant_id"
+    Column("sitting_id", session_column.description)
+    if session_column.name == "session_id"
+    else session_column
+    for session_column in SESSION_COLUMNS
+    if session_column.name != "participant_id"
 ]
 
 

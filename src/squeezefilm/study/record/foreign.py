@@ -107,7 +107,7 @@ def _rows(
     places = _places(path, design, names, columns)
     given: dict[str, int] = {}
     for number, cells in enumerate(reader, 2):
-        if not any(one.strip() for one in cells):
+        if not any(cell.strip() for cell in cells):
             continue
         if len(cells) < len(names):
             raise ConfigError(

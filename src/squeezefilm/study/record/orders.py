@@ -67,7 +67,7 @@ def write_orders(plan: StudyPlan, folder: str | Path) -> list[Path]:
 
 def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
     design = plan.design
-    gratings = {one.name: one for one in design.alternatives}
+    gratings = {alternative.name: alternative for alternative in design.alternatives}
     row: dict[str, Cell] = {
         "participant_number": number,
         "trial": trial.number,

@@ -113,7 +113,7 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
     Trials without an answer are not in it. Raises `RecordError` if the file cannot be read.
     """
     design = store.design
-    gratings = {one.name: one for one in design.alternatives}
+    gratings = {alternative.name: alternative for alternative in design.alternatives}
     found: list[dict[str, Cell]] = []
     explored, surfaces = ExploredTrials(store), _Surfaces()
     for row in store.rows(_QUERY):
@@ -274,7 +274,7 @@ SIMULATED_NOTE = "simulated participant"
 def origin_of(store: StudyStore) -> str:
     """What to label results with: people, simulated, both mixed, or nobody."""
     notes = [json.loads(row["conditions"]) for row in store.rows("SELECT conditions FROM session")]
-    simulated = [one.get("note") == SIMULATED_NOTE for one in notes]
+    simulated = [note.get("note") == SIMULATED_NOTE for note in notes]
     if not simulated:
         return "nobody"
     if all(simulated):

@@ -33,9 +33,9 @@ def felt_path(found: FeltPath) -> Figure:
     left, right = figure.subplots(1, 2, width_ratios=[1.1, 1])
     _over_surface(left, found)
     highest = found.observer.detection_criterion
-    for name, one in found.directions.items():
-        evidence = one.percept.evidence
-        label = f"{name}: {one.runs} runs, {shown(one.way, M, 2)}"
+    for name, direction in found.directions.items():
+        evidence = direction.percept.evidence
+        label = f"{name}: {direction.runs} runs, {shown(direction.way, M, 2)}"
         right.plot(1e3 * evidence.period, evidence.rhythm, color=_COLOURS[name], label=label)
         highest = max(highest, float(evidence.rhythm.max()))
     right.axhline(found.observer.detection_criterion, **style.REFERENCE)
@@ -56,7 +56,7 @@ def _over_surface(axes: Axes, found: FeltPath) -> None:
     ends = x.min() - room, x.max() + room, y.min() - room, y.max() + room
     u, w = np.linspace(*ends[:2], _PIXELS), np.linspace(*ends[2:], _PIXELS)
     values = found.stimulus.surface()(u[None, :], w[:, None], 0.08, 0.0)
-    left, right, bottom, top = (1e3 * float(one) for one in ends)
+    left, right, bottom, top = (1e3 * float(end) for end in ends)
     axes.imshow(
         values, extent=(left, right, bottom, top), origin="lower", cmap="Greys", alpha=0.35,
         aspect="equal", interpolation="nearest",
@@ -74,10 +74,10 @@ def _over_surface(axes: Axes, found: FeltPath) -> None:
 def _said(found: FeltPath) -> str:
     """What is felt in either direction, in words."""
     parts = []
-    for name, one in found.directions.items():
-        if one.clearest_d_prime > found.observer.detection_criterion:
-            period = shown(one.clearest_period, M, 3)
-            parts.append(f"{period} {name} (d′ = {one.clearest_d_prime:.2g})")
+    for name, direction in found.directions.items():
+        if direction.clearest_d_prime > found.observer.detection_criterion:
+            period = shown(direction.clearest_period, M, 3)
+            parts.append(f"{period} {name} (d′ = {direction.clearest_d_prime:.2g})")
         else:
             parts.append(f"nothing {name}")
     return ", ".join(parts)

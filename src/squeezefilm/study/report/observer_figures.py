@@ -27,8 +27,8 @@ def channels(tables: ChainTables) -> Figure:
     observer = tables.observer
     frequency = np.geomspace(1.0, 1000.0, 400)
     bands = [
-        f"{style.plain(one.name, 12)} from {shown(one.threshold, M, 2)}"
-        for one in observer.channels
+        f"{style.plain(channel.name, 12)} from {shown(channel.threshold, M, 2)}"
+        for channel in observer.channels
     ]
     figure = style.new_figure(
         f"Channels of '{style.plain(observer.name)}': {', '.join(bands)}",
@@ -37,9 +37,9 @@ def channels(tables: ChainTables) -> Figure:
         3.8,
     )
     axes = figure.subplots()
-    for one, (color, dashes) in zip(observer.channels, style.LINES, strict=False):
-        said = style.plain(one.name)
-        gain = one.gain(TUNED_AT / frequency, TUNED_AT)
+    for channel, (color, dashes) in zip(observer.channels, style.LINES, strict=False):
+        said = style.plain(channel.name)
+        gain = channel.gain(TUNED_AT / frequency, TUNED_AT)
         axes.plot(frequency, gain, color=color, ls=dashes, label=said)
     marks: dict[str, list[str]] = {}
     for name, why in tables.explain().items():

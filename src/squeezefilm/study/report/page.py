@@ -115,14 +115,14 @@ def write_overview(
     """Write a page per display, each in its own folder, and one to read first above them, with
     `more` sections (HTML) below."""
     folder = require_folder(folder)
-    for display, one in analyses.items():
-        write_study(one, folder / _folder_of(display), progress=progress)
+    for display, analysis in analyses.items():
+        write_study(analysis, folder / _folder_of(display), progress=progress)
     sections, name = "", ""
-    for display, one in analyses.items():
-        name = printable(one.name).removesuffix(f", {display}")
+    for display, analysis in analyses.items():
+        name = printable(analysis.name).removesuffix(f", {display}")
         place = escape(_folder_of(display))
         link = f'<p><a href="{place}/index.html">All numbers and figures</a></p>'
-        sections += section(escape(printable(display)), bullets(read_first(one)) + link)
+        sections += section(escape(printable(display)), bullets(read_first(analysis)) + link)
     origin = next(iter(analyses.values())).origin
     text = page(
         escape(f"{name}: what to read first"),

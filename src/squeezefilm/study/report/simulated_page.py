@@ -131,7 +131,7 @@ def write_simulated(
 
 def drawing(study: SimulatedStudy | SimulatedAnswers, key: str) -> Figure:
     """The figure of simulated participants of that key."""
-    return next(one for one in FIGURES if one.key == key).draw(study)
+    return next(figure for figure in FIGURES if figure.key == key).draw(study)
 
 
 def _write_answers(study: SimulatedAnswers, folder: Path, tell: Callable[[str], None]) -> Path:
@@ -186,7 +186,7 @@ def _analyses(study: SimulatedStudy, folder: Path, tell: Callable[[str], None]) 
 def _rows(study: SimulatedStudy) -> list[dict[str, Any]]:
     design = study.tables.design
     answers = design.answers
-    stimuli = [one.name for one in design.stimuli]
+    stimuli = [stimulus.name for stimulus in design.stimuli]
     people, trials = study.choice.shape
     return [
         {

@@ -58,10 +58,10 @@ def _said(analysis: TaskAnalysis) -> str:
 
 def _functions(axes: Axes, analysis: TaskAnalysis) -> None:
     scale, label = _scale(analysis)
-    values = [one.value for one in analysis.conditions]
+    values = [condition.value for condition in analysis.conditions]
     x = np.geomspace(min([*values, analysis.standard]), max([*values, analysis.standard]), 161)
-    for one in list(analysis.functions.values())[:_MOST_LINES]:
-        more = _share(one, np.log(x / analysis.standard))
+    for function in list(analysis.functions.values())[:_MOST_LINES]:
+        more = _share(function, np.log(x / analysis.standard))
         axes.plot(scale * x, 100 * more, **_FAINT)
     _shares(axes, analysis, scale)
     axes.axvline(scale * analysis.standard, **style.GUIDE)
@@ -71,11 +71,13 @@ def _functions(axes: Axes, analysis: TaskAnalysis) -> None:
 
 
 def _shares(axes: Axes, analysis: TaskAnalysis, scale: float) -> None:
-    for one in analysis.conditions:
-        if one.share is not None:
-            x = scale * one.value
-            axes.plot([x, x], [100 * one.share.low, 100 * one.share.high], **style.INTERVAL)
-            axes.plot([x], [100 * one.share.value], **style.ESTIMATE)
+    for condition in analysis.conditions:
+        if condition.share is not None:
+            x = scale * condition.value
+            axes.plot(
+                [x, x], [100 * condition.share.low, 100 * condition.share.high], **style.INTERVAL
+            )
+            axes.plot([x], [100 * condition.share.value], **style.ESTIMATE)
 
 
 def _differences(axes: Axes, analysis: TaskAnalysis) -> None:
@@ -97,11 +99,13 @@ def _counted(analysis: TaskAnalysis) -> str:
 
 def _unlike(axes: Axes, analysis: TaskAnalysis) -> None:
     """Surfaces without an amount, side by side by name."""
-    for at, one in enumerate(analysis.conditions):
-        if one.share is not None:
-            axes.plot([at, at], [100 * one.share.low, 100 * one.share.high], **style.INTERVAL)
-            axes.plot([at], [100 * one.share.value], **style.ESTIMATE)
-    _named(axes, [one.name for one in analysis.conditions])
+    for at, condition in enumerate(analysis.conditions):
+        if condition.share is not None:
+            axes.plot(
+                [at, at], [100 * condition.share.low, 100 * condition.share.high], **style.INTERVAL
+            )
+            axes.plot([at], [100 * condition.share.value], **style.ESTIMATE)
+    _named(axes, [condition.name for condition in analysis.conditions])
     axes.set(xlabel="the other surface", ylabel=_counted(analysis), ylim=(-2, 103))
     axes.set_title("all trials, Wilson's intervals")
 
@@ -122,10 +126,10 @@ def _share(one: PersonFunction, difference: FloatArray) -> FloatArray:
 
 def _adaptive(axes: Axes, analysis: TaskAnalysis) -> None:
     """Shares correct of everybody's trials in classes of equal size, and everybody's function."""
-    places = np.array([one.value for one in analysis.conditions])
+    places = np.array([condition.value for condition in analysis.conditions])
     x = np.geomspace(places.min() / 1.2, places.max() * 1.2, 161)
-    for one in list(analysis.functions.values())[:_MOST_LINES]:
-        axes.plot(100 * x, 100 * _share(one, np.log1p(x)), **_FAINT)
+    for function in list(analysis.functions.values())[:_MOST_LINES]:
+        axes.plot(100 * x, 100 * _share(function, np.log1p(x)), **_FAINT)
     for found in analysis.conditions:
         if found.share is not None:
             ends = 100 * found.share.low, 100 * found.share.high
@@ -139,9 +143,9 @@ def _adaptive(axes: Axes, analysis: TaskAnalysis) -> None:
 
 def _magnitudes(axes: Axes, analysis: TaskAnalysis) -> None:
     scale, label = _scale(analysis)
-    x = np.array([scale * one.value for one in analysis.conditions])
-    for at, one in zip(x, analysis.conditions, strict=True):
-        found = one.magnitude
+    x = np.array([scale * condition.value for condition in analysis.conditions])
+    for at, condition in zip(x, analysis.conditions, strict=True):
+        found = condition.magnitude
         if found is not None:
             if not math.isnan(found.low):
                 axes.plot([at, at], [found.low, found.high], **style.INTERVAL)
@@ -163,7 +167,7 @@ def _magnitudes(axes: Axes, analysis: TaskAnalysis) -> None:
 def persons(analysis: TaskAnalysis) -> Figure:
     """Each person's estimate with its interval, and the population's."""
     scale, unit = (100.0, " (%)") if analysis.measure == "Weber fraction" else (1.0, "")
-    found = sorted(analysis.persons, key=lambda one: one.estimate.value)
+    found = sorted(analysis.persons, key=lambda person: person.estimate.value)
     figure = style.new_figure(
         f"{len(found)} people, one by one: {analysis.measure}",
         f"{data_of(analysis)}; {100 * found[0].estimate.level if found else 95:g} % intervals; "
@@ -200,7 +204,7 @@ def persons(analysis: TaskAnalysis) -> Figure:
 def sensitivity(analysis: TaskAnalysis) -> Figure:
     """d′ of each comparison from the reference."""
     scale, label = _scale(analysis)
-    known = [one for one in analysis.conditions if one.d_prime is not None]
+    known = [condition for condition in analysis.conditions if condition.d_prime is not None]
     unlike = math.isnan(known[0].value)
     scale = 1.0 if unlike else scale
     found = [(at if unlike else c.value, c.d_prime) for at, c in enumerate(known) if c.d_prime]

@@ -50,12 +50,12 @@ def show_plan(plan: StudyPlan) -> None:
         (*_GRATING, "Surface", "Friction", "Right answer"),
         [
             (
-                *_grating(one),
-                one.kind,
-                "its own" if one.texture else f"{one.low:g} to {one.high:g}",
-                "" if design.compares else design.answer_to(one) or "none",
+                *_grating(stimulus),
+                stimulus.kind,
+                "its own" if stimulus.texture else f"{stimulus.low:g} to {stimulus.high:g}",
+                "" if design.compares else design.answer_to(stimulus) or "none",
             )
-            for one in design.stimuli
+            for stimulus in design.stimuli
         ],
     )
     if design.alternatives:
@@ -64,8 +64,12 @@ def show_plan(plan: StudyPlan) -> None:
             console,
             (*_GRATING, "Ridge", "Material"),
             [
-                (*_grating(one), shown(one.ridge_height, M, 3), one.material)
-                for one in design.alternatives
+                (
+                    *_grating(alternative),
+                    shown(alternative.ridge_height, M, 3),
+                    alternative.material,
+                )
+                for alternative in design.alternatives
             ],
         )
     heading(console, "First trials of the first participants")
@@ -102,8 +106,8 @@ def show_boards(head: tuple[str, ...], rows: list[tuple[str, ...]], says: Iterab
     console = plain_console()
     heading(console, "Boards to be made")
     table(console, head, rows)
-    for one in says:
-        console.print(one, highlight=False)
+    for say in says:
+        console.print(say, highlight=False)
 
 
 def show_status(store: StudyStore) -> None:
@@ -115,10 +119,10 @@ def show_status(store: StudyStore) -> None:
         ("Participant", "Number", "Answered", "Planned", "Set aside"),
         [
             (
-                one["uuid"],
-                *(str(one[key]) for key in ("number", "answered", "planned", "set_aside")),
+                participant["uuid"],
+                *(str(participant[key]) for key in ("number", "answered", "planned", "set_aside")),
             )
-            for one in store.participants()
+            for participant in store.participants()
         ],
     )
 
@@ -143,7 +147,7 @@ def show_merge(done: Merge, other: str) -> None:
         f"added, {done.present['response']} answers were there, {done.traces} traces copied"
     )
     if done.doubled_numbers:
-        numbers = ", ".join(str(one) for one in done.doubled_numbers)
+        numbers = ", ".join(str(doubled_number) for doubled_number in done.doubled_numbers)
         print(
             f"doubled participants' numbers: {numbers}; they had the same orders, which costs "
             "balance; give stations different --station of --stations next time"

@@ -45,22 +45,22 @@ def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
     from squeezefilm.study.tasks.findings import TaskAnalysis
 
     console = plain_console()
-    for display, one in analyses.items():
-        heading(console, f"{display}: {whose(one.origin)}")
-        for sentence in read_first(one):
+    for display, analysis in analyses.items():
+        heading(console, f"{display}: {whose(analysis.origin)}")
+        for sentence in read_first(analysis):
             console.print(sentence, highlight=False)
-        if isinstance(one, TaskAnalysis):
-            if one.conditions:
-                table(console, condition_head(one), condition_rows(one), fixed=(0,))
-            if len(one.persons) <= _SHOWN_PEOPLE:
-                table(console, PERSON_HEAD, person_rows(one), fixed=(0,))
+        if isinstance(analysis, TaskAnalysis):
+            if analysis.conditions:
+                table(console, condition_head(analysis), condition_rows(analysis), fixed=(0,))
+            if len(analysis.persons) <= _SHOWN_PEOPLE:
+                table(console, PERSON_HEAD, person_rows(analysis), fixed=(0,))
         else:
-            _show_confusion(console, one)
-        if one.screening is not None and one.screening.named:
-            rows = screening_rows(one.screening, named=True)
+            _show_confusion(console, analysis)
+        if analysis.screening is not None and analysis.screening.named:
+            rows = screening_rows(analysis.screening, named=True)
             table(console, SCREENING_HEAD, rows, fixed=(0, 1))
-        table(console, ("", "", ""), key_rows(one), fixed=(0,))
-        for note in one.notes:
+        table(console, ("", "", ""), key_rows(analysis), fixed=(0,))
+        for note in analysis.notes:
             console.print(f"  {note}", style="dim", highlight=False)
 
 

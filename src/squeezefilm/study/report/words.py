@@ -141,8 +141,8 @@ def result_rows(analysis: StudyAnalysis) -> Rows:
     parts = measure in ("Weber fraction", "proportion correct")
     scale, unit = (100.0, " %") if parts else (1.0, "")
     return [
-        (f"{measure[:1].upper()}{measure[1:]}: {name}", *_value_and_interval(one, scale, unit))
-        for name, one in screening.results.items()
+        (f"{measure[:1].upper()}{measure[1:]}: {name}", *_value_and_interval(result, scale, unit))
+        for name, result in screening.results.items()
     ]
 
 
@@ -287,11 +287,11 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
         rows.append(("Total sensitivity Δ′", f"{fit.total:.3g}", "equal-variance Thurstone model"))
         rows += [
             (
-                f"d′ {one} – {other}",
+                f"d′ {stimulus} – {other}",
                 f"{d:.2f}",
                 f"{low:.2f} to {high:.2f} ({fit.interval_method}, {100 * fit.level:g} %)",
             )
-            for one, other, d, low, high in zip(
+            for stimulus, other, d, low, high in zip(
                 analysis.matrix.stimuli[:-1],
                 analysis.matrix.stimuli[1:],
                 fit.d_prime,
@@ -322,17 +322,17 @@ def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
     units = {} if in_parts else {"spatial_period": "m", "orientation": "rad"}
     unit = si.Unit(units.get(analysis.judged, "1"))
     rows: list[tuple[str, ...]] = []
-    for one in analysis.conditions:
-        answers = one.magnitude or one.share
-        scale, said = (1.0, "") if one.magnitude is not None else (100.0, " %")
+    for condition in analysis.conditions:
+        answers = condition.magnitude or condition.share
+        scale, said = (1.0, "") if condition.magnitude is not None else (100.0, " %")
         rows.append(
             (
-                one.name,
-                "–" if math.isnan(one.value) else shown(one.value, unit, 3),
-                f"{one.trials}",
-                f"{one.participants}",
+                condition.name,
+                "–" if math.isnan(condition.value) else shown(condition.value, unit, 3),
+                f"{condition.trials}",
+                f"{condition.participants}",
                 "–" if answers is None else estimate_words(answers, scale, said),
-                "–" if one.d_prime is None else estimate_words(one.d_prime),
+                "–" if condition.d_prime is None else estimate_words(condition.d_prime),
             )
         )
     return rows
@@ -347,13 +347,13 @@ def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
     scale, unit = (100.0, " %") if analysis.measure == "Weber fraction" else (1.0, "")
     return [
         (
-            one.person,
-            f"{scale * one.estimate.value:.3g}{unit}",
-            f"{scale * one.estimate.low:.3g} to {scale * one.estimate.high:.3g}{unit}",
-            f"{one.trials}",
-            _person_remark(one, scale, unit),
+            person.person,
+            f"{scale * person.estimate.value:.3g}{unit}",
+            f"{scale * person.estimate.low:.3g} to {scale * person.estimate.high:.3g}{unit}",
+            f"{person.trials}",
+            _person_remark(person, scale, unit),
         )
-        for one in analysis.persons
+        for person in analysis.persons
     ]
 
 
@@ -376,12 +376,12 @@ def exploration_head(analysis: StudyAnalysis) -> tuple[str, ...]:
 def exploration_rows(analysis: StudyAnalysis) -> list[tuple[str, ...]]:
     """How people explored each stimulus: means over people with their intervals."""
     known = [rows for rows in analysis.exploration.values() if rows]
-    names = list(dict.fromkeys(one.name for rows in known for one in rows))
+    names = list(dict.fromkeys(row.name for rows in known for row in rows))
     found = []
     for name in names:
         cells = []
         for rows in known:
-            mine = [one for one in rows if one.name == name]
+            mine = [row for row in rows if row.name == name]
             if not mine:
                 cells.append("–")
                 continue

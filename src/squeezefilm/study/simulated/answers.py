@@ -68,7 +68,7 @@ class SimulatedAnswers(Result):
             "finger": tables.whose_finger,
             "participants": self.participants,
             "seed": self.seed,
-            "displays": {name: one.summary() for name, one in self.analyses.items()},
+            "displays": {name: analysis.summary() for name, analysis in self.analyses.items()},
             "provenance": stamp((design, tables.observer, tables.apparatus), self.seed),
         }
 
@@ -78,7 +78,7 @@ class SimulatedAnswers(Result):
     def rows(self) -> list[dict[str, Any]]:
         """One row a trial, units in the names."""
         a = self.answers
-        names = [one.name for one in a.surfaces]
+        names = [surface.name for surface in a.surfaces]
         answers, series = a.design.answers, [one.name for one in a.design.adaptive]
         return [
             {

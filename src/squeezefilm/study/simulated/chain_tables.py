@@ -72,12 +72,12 @@ class ChainTables:
     def asked(self) -> str:
         """What simulated answers follow from, but for people and seed: under it they are kept."""
         design = self.design
-        surfaces = [*design.stimuli, *(one.stimulus for one in design.catch)]
+        surfaces = [*design.stimuli, *(trial.stimulus for trial in design.catch)]
         # Two kinds of texture may have the same numbers, and the text of an image has no pixels.
         return " ".join(
             [
                 *map(config_hash, (design, self.observer, *self.plates, *self.apparatus)),
-                *(f"{one.surface()!r} {one.surface_sha256}" for one in surfaces),
+                *(f"{surface.surface()!r} {surface.surface_sha256}" for surface in surfaces),
             ]
         )
 
@@ -118,8 +118,8 @@ class ChainTables:
     def explain(self, display: int = 0) -> dict[str, Causes]:
         """The reasons by stimulus on one of the displays: medians over fingers."""
         return {
-            one.name: median_causes(found)
-            for one, found in zip(self.design.stimuli, self.causes[display], strict=True)
+            stimulus.name: median_causes(found)
+            for stimulus, found in zip(self.design.stimuli, self.causes[display], strict=True)
         }
 
 

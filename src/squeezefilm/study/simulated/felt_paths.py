@@ -101,20 +101,20 @@ class FeltPath(Result):
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints; keys carry units."""
         found = {}
-        for name, one in self.directions.items():
-            rhythms = one.percept.candidates
+        for name, direction in self.directions.items():
+            rhythms = direction.percept.candidates
             found[name] = {
-                "runs": one.runs,
-                "way_m": one.way,
-                "mean_speed_m_per_s": one.mean_speed,
-                "friction_swing_asked": one.asked_swing,
-                "friction_swing_felt": one.felt_swing,
+                "runs": direction.runs,
+                "way_m": direction.way,
+                "mean_speed_m_per_s": direction.mean_speed,
+                "friction_swing_asked": direction.asked_swing,
+                "friction_swing_felt": direction.felt_swing,
                 "rhythms": [
                     {"period_m": period, "d_prime": d}
                     for period, d in zip(rhythms.period, rhythms.d_prime, strict=True)
                     if math.isfinite(d)
                 ],
-                "felt": one.clearest_d_prime > self.observer.detection_criterion,
+                "felt": direction.clearest_d_prime > self.observer.detection_criterion,
             }
         values = {
             "origin": "simulated",
@@ -299,11 +299,11 @@ def _to_gratings(
     best = max(both, key=lambda one: one.clearest_d_prime)
     spread = percept_deviation(observer.period_weber_fraction)
     found = []
-    for one in design.alternatives:
-        touched = grating_percept(one, observer, finger).candidates
+    for alternative in design.alternatives:
+        touched = grating_percept(alternative, observer, finger).candidates
         apart = math.inf
         if best.clearest_d_prime > 0.0 and math.isfinite(touched.d_prime[0]):
             ratio = math.log(best.clearest_period / float(touched.period[0]))
             apart = abs(ratio) / (math.sqrt(2.0) * spread)
-        found.append(Likeness(one.name, apart))
+        found.append(Likeness(alternative.name, apart))
     return found

@@ -60,19 +60,19 @@ class Asked:
 
     def known(self) -> list[FeltSurface] | None:
         """What was computed before; None unless all was."""
-        found = [_known(_name(self.feel, one, self.rest)) for one in self.surfaces]
+        found = [_known(_name(self.feel, surface, self.rest)) for surface in self.surfaces]
         return None if None in found else [one for one in found if one is not None]
 
     def remember(self, found: list[FeltSurface]) -> None:
         """What another process found need not be found, nor read, again."""
-        for one, felt in zip(self.surfaces, found, strict=True):
-            _remember(_name(self.feel, one, self.rest), felt)
+        for surface, felt in zip(self.surfaces, found, strict=True):
+            _remember(_name(self.feel, surface, self.rest), felt)
 
 
 def _felt_of(
     feel: Callable[..., FeltSurface], surfaces: tuple[Any, ...], *rest: Any
 ) -> list[FeltSurface]:
-    return [feel(one, *rest) for one in surfaces]
+    return [feel(surface, *rest) for surface in surfaces]
 
 
 def felt_surfaces(asked: list[Asked], tell: SayProgress) -> list[list[FeltSurface]]:

@@ -82,7 +82,7 @@ def simulate_judgements(
     tell = progress or (lambda _: None)
     room = _Room(design, observer, tables)
     schedules = [
-        [one for one in trials(design, person, seed) if one.asks]
+        [trial for trial in trials(design, person, seed) if trial.asks]
         for person in range(min(participants, CHUNK))
     ]
     parts = []
@@ -112,9 +112,9 @@ class _Room:
         self.design, self.observer, self.tables = design, observer, tables
         self.surfaces: list[Stimulus] = [
             *design.stimuli,
-            *(one.stimulus for one in design.catch),
+            *(trial.stimulus for trial in design.catch),
         ]
-        self.place = {one.name: number for number, one in enumerate(self.surfaces)}
+        self.place = {surface.name: number for number, surface in enumerate(self.surfaces)}
         self.display = {name: number for number, name in enumerate(design.displays)}
         self._chosen: dict[tuple[str, float], int] = {}
         self._felt: dict[tuple[int, int, int], tuple[si.FloatArray, si.FloatArray]] = {}
@@ -304,7 +304,7 @@ def _number(
     room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
 ) -> _Given:
     design = room.design
-    values = np.array([design.judged_value(one) for one in design.stimuli])
+    values = np.array([design.judged_value(stimulus) for stimulus in design.stimuli])
     middle = math.exp(float(np.mean(np.log(np.maximum(values, 1e-12)))))
     here = design.judged_value(design.stimulus(design.reference)) if design.reference else middle
     one = _in_clearest_direction(felt[0])

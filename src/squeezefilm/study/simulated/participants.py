@@ -81,7 +81,7 @@ class SimulatedStudy(Result):
         return ConfusionMatrix(
             self.participant_counts(display).sum(axis=0),
             design.answers,
-            tuple(one.name for one in design.stimuli),
+            tuple(stimulus.name for stimulus in design.stimuli),
         )
 
     def proportion_correct(self, display: int = 0) -> si.Dimensionless:
@@ -127,7 +127,7 @@ class SimulatedStudy(Result):
     def _table(self) -> Any:
         """One row a trial."""
         design = self.tables.design
-        names = [one.name for one in design.stimuli]
+        names = [stimulus.name for stimulus in design.stimuli]
         answers = design.answers
         return [
             {
@@ -182,7 +182,7 @@ def simulate_matches(
         count = min(CHUNK, participants - first)
         random = np.random.default_rng([seed, _STREAM, first // CHUNK])
         chunks.append(_answers(found, display, stimulus, number, random, count))
-    choice, felt, times, finger = (np.concatenate([one[i] for one in chunks]) for i in range(4))
+    choice, felt, times, finger = (np.concatenate([chunk[i] for chunk in chunks]) for i in range(4))
     return SimulatedStudy(
         found, seed, display[rows], stimulus[rows], choice, number[rows], felt, times, finger
     )
@@ -201,18 +201,18 @@ def require_people(design: StudyDesign, participants: int, seed: int) -> None:
 def right_answers(design: StudyDesign) -> si.IntArray:
     """Number of the right alternative of each stimulus, −1 where none is right."""
     names = design.answers
-    right = [design.answer_to(one) for one in design.stimuli]
+    right = [design.answer_to(stimulus) for stimulus in design.stimuli]
     return np.array([names.index(one) if one else -1 for one in right], dtype=np.int64)
 
 
 def _orders(
     design: StudyDesign, people: int, seed: int
 ) -> tuple[si.IntArray, si.IntArray, si.IntArray]:
-    places = {one.name: i for i, one in enumerate(design.stimuli)}
+    places = {stimulus.name: i for i, stimulus in enumerate(design.stimuli)}
     displays = {name: i for i, name in enumerate(design.displays)}
     rows = []
     for person in range(people):
-        asked = [one for one in trials(design, person, seed) if one.asks]
+        asked = [trial for trial in trials(design, person, seed) if trial.asks]
         rows.append(
             [
                 (displays[one.display], places[one.stimuli[0]], number)

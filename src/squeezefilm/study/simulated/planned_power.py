@@ -169,7 +169,7 @@ def pair_scores(answers: Answers, first: str, second: str) -> si.FloatArray:
     """
     design, main = answers.design, answers.main(0)
     require_pair(design, first, second)
-    names = np.array([one.name for one in main.surfaces])
+    names = np.array([surface.name for surface in main.surfaces])
     people, size = main.participant, len(main.people)
 
     def mean(values: si.FloatArray, rows: NDArray[np.bool_]) -> si.FloatArray:

@@ -216,8 +216,8 @@ def planned_precision(
         truth=truth,
         participants=np.array(sizes),
         reached=reached,
-        low=np.array([one.low for one in bounds]),
-        high=np.array([one.high for one in bounds]),
+        low=np.array([bound.low for bound in bounds]),
+        high=np.array([bound.high for bound in bounds]),
         held=held,
         target=target,
         needed=lasting[0] if lasting else None,
@@ -286,7 +286,7 @@ def _on_grid(main: Answers) -> PeopleOnGrid | None:
 
 
 def _values(persons: list[PersonEstimate]) -> si.FloatArray:
-    return np.array([one.estimate.value for one in persons])
+    return np.array([person.estimate.value for person in persons])
 
 
 def _sequential(

@@ -152,7 +152,7 @@ def _screened(answers: Answers, how: _How) -> StudyAnalysis:
         require_magnitudes(answers.main(how.display))
     people, said = judged_people(answers, how.display)
     rule = rule_of(answers.design)
-    out = [one.person for one in people if one.reasons]
+    out = [person.person for person in people if person.reasons]
     results: dict[str, Estimate | None] = {}
     robust: Estimate | None = None
     if not out or len(out) == len(people):
@@ -169,7 +169,7 @@ def _screened(answers: Answers, how: _How) -> StudyAnalysis:
     if isinstance(chosen, TaskAnalysis):
         is_everybody = len(chosen.people) == len(people)
         results["robust, everybody"] = chosen.robust if is_everybody else robust
-    known = {name: one for name, one in results.items() if one is not None}
+    known = {name: result for name, result in results.items() if result is not None}
     screening = Screening(rule, people, known, said)
     methods = chosen.methods + screening.left_out_sentence
     return dataclasses.replace(chosen, screening=screening, methods=methods)
@@ -188,8 +188,8 @@ def _main_numbers(answers: Answers, how: _How) -> tuple[Estimate | None, Estimat
 def stimuli_and_answers(design: StudyDesign) -> tuple[list[str], list[str]]:
     """Names of a match-to-sample design's stimuli and their right answers. Raises `InputError`
     where the answers are not each the right one to a stimulus."""
-    stimuli = [one.name for one in design.stimuli]
-    right = [design.answer_to(one) for one in design.stimuli]
+    stimuli = [stimulus.name for stimulus in design.stimuli]
+    right = [design.answer_to(stimulus) for stimulus in design.stimuli]
     if sorted(right) != sorted(design.answers):
         raise InputError(
             "an identification needs one right answer for each stimulus and no other answers; "
@@ -202,7 +202,7 @@ def _identified(main: Answers, how: _How) -> IdentificationRequest:
     """The trials of a display as identifications take them."""
     design = main.design
     stimuli, right = stimuli_and_answers(design)
-    order = np.array([right.index(one) for one in design.answers])
+    order = np.array([right.index(answer) for answer in design.answers])
     times = main.response_time
     return IdentificationRequest(
         np.array(main.people)[main.participant],
@@ -247,7 +247,7 @@ def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
     course = course_of(answers, display)
     times, ex_gaussian = _times(main, condition, names, level, seed, found.notes)
     explored = _explored(main, condition, names, level)
-    unbounded = [one.person for one in found.persons if one.unbounded]
+    unbounded = [person.person for person in found.persons if person.unbounded]
     notes = [*found.notes]
     if unbounded:
         notes.append(
@@ -288,7 +288,7 @@ def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
 def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
     """What response times are told apart by: the comparison, the difference or the stimulus."""
     if (main.series >= 0).any():
-        return main.series, tuple(one.name for one in main.design.adaptive)
+        return main.series, tuple(series.name for series in main.design.adaptive)
     # By value, as they are read, and not in the order in which somebody met them first.
     order = np.argsort(main.values, kind="stable")
     place = np.argsort(order, kind="stable")

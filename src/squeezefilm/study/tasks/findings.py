@@ -176,14 +176,14 @@ class TaskAnalysis(Result):
         """One row a condition."""
         return [
             {
-                "condition": one.name,
-                "value": one.value,
-                "trials": one.trials,
-                "share": None if one.share is None else one.share.value,
-                "d_prime": None if one.d_prime is None else one.d_prime.value,
-                "magnitude": None if one.magnitude is None else one.magnitude.value,
+                "condition": condition.name,
+                "value": condition.value,
+                "trials": condition.trials,
+                "share": None if condition.share is None else condition.share.value,
+                "d_prime": None if condition.d_prime is None else condition.d_prime.value,
+                "magnitude": None if condition.magnitude is None else condition.magnitude.value,
             }
-            for one in self.conditions
+            for condition in self.conditions
         ]
 
 

@@ -64,7 +64,7 @@ def magnitude_conditions(
         own[mine] = logs[mine].mean()
         counts.append(np.bincount(main.first[mine], minlength=len(main.surfaces)).tolist())
     notes = []
-    if any(one != counts[0] for one in counts):
+    if any(count != counts[0] for count in counts):
         notes.append(
             "people have not judged the stimuli equally often, so that their scales cannot be "
             "taken out exactly; the exponents do not suffer from it"

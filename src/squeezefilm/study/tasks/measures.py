@@ -70,7 +70,7 @@ def measured(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
 def _trimmed(persons: list[PersonEstimate], level: float) -> Estimate | None:
     """The mean of people's values without the fifth at either end, with Yuen's interval (1974,
     10.1093/biomet/61.1.165); None of fewer than five people."""
-    values = np.sort([one.estimate.value for one in persons])
+    values = np.sort([person.estimate.value for person in persons])
     cut = values.size // 5
     if not cut:
         return None

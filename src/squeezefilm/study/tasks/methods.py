@@ -64,7 +64,11 @@ def methods_text(answers: Answers, display: int) -> str:
 def _stimuli(design: StudyDesign) -> str:
     free = " They were explored freely over the face." if design.exploring == "free" else ""
     # Beside the reference of adaptive series they are for practice and familiarisation only.
-    every = [one for one in design.stimuli if not design.adaptive or one.name == design.reference]
+    every = [
+        stimulus
+        for stimulus in design.stimuli
+        if not design.adaptive or stimulus.name == design.reference
+    ]
     simple = all(one.kind in ("square grating", "sine grating", "constant") for one in every)
     listed = []
     for one in every:
@@ -94,20 +98,20 @@ def _surface(one: Stimulus) -> str:
 def _adaptive(design: StudyDesign) -> list[str]:
     said = []
     alike = design.task == "same-different"
-    for one in design.adaptive:
-        if one.method == "staircase":
-            target = 100 * 0.5 ** (1 / one.down)
+    for series in design.adaptive:
+        if series.method == "staircase":
+            target = 100 * 0.5 ** (1 / series.down)
             how = (
-                f"a staircase, {one.down} down and 1 up, that settles at {target:.1f} % correct "
-                f"(Levitt 1971, 10.1121/1.1912375), from {100 * one.start:g} %"
+                f"a staircase, {series.down} down and 1 up, that settles at {target:.1f} % correct "
+                f"(Levitt 1971, 10.1121/1.1912375), from {100 * series.start:g} %"
             )
         else:
             by = _QUEST_PLUS if alike else _PSI
             how = f"a Bayesian choice of the most informative difference ({by})"
             how += "; every fourth went through all differences in turn" if alike else ""
         said.append(
-            f"The series '{one.name}' of {one.count} trials chose the comparison by {how}, within "
-            f"{100 * one.lowest:g} and {100 * one.highest:g} % of the reference"
+            f"The series '{series.name}' of {series.count} trials chose the comparison by {how}, "
+            f"within {100 * series.lowest:g} and {100 * series.highest:g} % of the reference"
             + ("; half of its trials presented the reference twice." if alike else ".")
         )
     if len(design.adaptive) > 1:

@@ -103,8 +103,8 @@ class Population:
     def __init__(self, people: Sequence[PersonLikelihood]) -> None:
         if not people:
             raise InputError("a population needs at least one person")
-        low = min(float(one.x[0]) for one in people)
-        high = max(float(one.x[-1]) for one in people)
+        low = min(float(person.x[0]) for person in people)
+        high = max(float(person.x[-1]) for person in people)
         self._means = np.linspace(low, high, _MEANS)
         # Denser where few people differ little: flat in τ by the cells' widths.
         edges = _NARROWEST + (_WIDEST - _NARROWEST) * np.linspace(0.0, 1.0, _SPREADS + 1) ** 2
@@ -112,7 +112,7 @@ class Population:
         self._widths = np.diff(edges) * np.exp(-0.5 * (self._spreads / USUAL_SPREAD) ** 2)
         self._edges = edges
         self._people = people
-        self._logs = np.array([self._log_likelihood(one) for one in people])
+        self._logs = np.array([self._log_likelihood(person) for person in people])
 
     def _log_likelihood(self, one: PersonLikelihood) -> si.FloatArray:
         """ln of a person's likelihood under each μ, τ and h, shape (means, spreads, lapses)."""
@@ -182,8 +182,8 @@ class Population:
         """Lower end, median and upper end of the mean over people who do the task, where each may
         be one of the `NOT_DOING_IT` who do not: a mixture in place of a verdict."""
         si.require("level", level, above=0.0, below=1.0)
-        greatest = [(one.likelihood * one.width).max() for one in self._people]
-        other = np.array([one.otherwise for one in self._people]) / np.array(greatest)
+        greatest = [(person.likelihood * person.width).max() for person in self._people]
+        other = np.array([person.otherwise for person in self._people]) / np.array(greatest)
         # The densities over x leave this factor out.
         with np.errstate(divide="ignore"):
             otherwise = np.log(NOT_DOING_IT * other * np.sqrt(2 * np.pi))
@@ -212,7 +212,7 @@ def scatter_interval(
     free = max(values.size - 1, 1)
     tails = float(chdtri(free, 0.5 * (1.0 - level))), float(chdtri(free, 0.5 * (1.0 + level)))
     # Scatter falls with the deviation.
-    least, most = np.interp([-one for one in tails], -scatter, _TRIED)
+    least, most = np.interp([-tail for tail in tails], -scatter, _TRIED)
     return float(least), float(most)
 
 

@@ -74,11 +74,13 @@ def spread_edges(main: Answers, cells: int) -> si.FloatArray:
     eight times the greatest, whatever was presented."""
     design = main.design
     if design.adaptive:
-        ends = [math.log1p(x) for one in design.adaptive for x in (one.lowest, one.highest)]
+        ends = [
+            math.log1p(x) for series in design.adaptive for x in (series.lowest, series.highest)
+        ]
     else:
         here = math.log(design.judged_value(design.stimulus(design.reference)))
-        logs = [abs(math.log(design.judged_value(one)) - here) for one in design.stimuli]
-        ends = [one for one in logs if one > 0]
+        logs = [abs(math.log(design.judged_value(stimulus)) - here) for stimulus in design.stimuli]
+        ends = [log for log in logs if log > 0]
     return np.linspace(math.log(min(ends) / 8), math.log(8 * max(ends)), cells + 1)
 
 
@@ -132,8 +134,10 @@ class PeopleOnGrid:
     def functions(self, level: si.Dimensionless) -> dict[str, PersonFunction]:
         """Each person's Weber fraction, bias and lapse rate, to be drawn."""
         return {
-            one.person: PersonFunction(one.estimate.value, bias, lapse)
-            for one, bias, lapse in zip(self.estimates(level), self.bias, self.lapse, strict=True)
+            estimate.person: PersonFunction(estimate.estimate.value, bias, lapse)
+            for estimate, bias, lapse in zip(
+                self.estimates(level), self.bias, self.lapse, strict=True
+            )
         }
 
 
@@ -206,7 +210,7 @@ def adaptive_conditions(main: Answers, level: si.Dimensionless) -> tuple[Conditi
 def in_eighths(order: si.IntArray) -> dict[str, si.IntArray]:
     """Trials in the order of their difference, in eighths by name; none is empty."""
     parts = np.array_split(order, 8)
-    return {f"eighth {k + 1} of the differences": one for k, one in enumerate(parts) if one.size}
+    return {f"eighth {k + 1} of the differences": part for k, part in enumerate(parts) if part.size}
 
 
 def condition_finding(

@@ -87,15 +87,15 @@ def explanation_table(study: PrototypeStudy) -> Table:
     """Parameter sets that all give the measured frequency, and what else they predict."""
     rows = [
         (
-            one.name,
-            f"{one.free}: {one.value}",
-            f"{one.frequency / 1e3:.2f} kHz",
-            *(f"{ratio:.4f}" for ratio in one.neighbour_ratios),
-            changed(one.open_shift),
-            f"{one.amplitude * 1e6:.2f} µm (Q {one.quality_factor:.0f})",
-            f"{one.quality_factor_for_measured:.0f}",
+            explanation.name,
+            f"{explanation.free}: {explanation.value}",
+            f"{explanation.frequency / 1e3:.2f} kHz",
+            *(f"{ratio:.4f}" for ratio in explanation.neighbour_ratios),
+            changed(explanation.open_shift),
+            f"{explanation.amplitude * 1e6:.2f} µm (Q {explanation.quality_factor:.0f})",
+            f"{explanation.quality_factor_for_measured:.0f}",
         )
-        for one in study.explanations
+        for explanation in study.explanations
     ]
     head = (
         "explanation", "solved for", "(8,0)", *MEASUREMENTS[:3], "open shift",
@@ -107,12 +107,16 @@ def explanation_table(study: PrototypeStudy) -> Table:
 def separation_table(study: PrototypeStudy) -> Table:
     """The distance of each two explanations, in units of what could be measured."""
     rows = []
-    for one in study.separations:
-        told = [m for m, a in zip(one.measurements, one.apart, strict=True) if a > _TOLD_APART]
+    for separation in study.separations:
+        told = [
+            m
+            for m, a in zip(separation.measurements, separation.apart, strict=True)
+            if a > _TOLD_APART
+        ]
         rows.append(
             (
-                f"{one.first} / {one.second}",
-                *(f"{apart:.1f}" for apart in one.apart),
+                f"{separation.first} / {separation.second}",
+                *(f"{apart:.1f}" for apart in separation.apart),
                 ", ".join(told) or "none of these",
             )
         )
@@ -130,8 +134,10 @@ def sentences(study: PrototypeStudy) -> list[str]:
     ]  # told apart by no neighbouring mode
     open_only = [s for s in same if s.apart[frequencies] > _TOLD_APART]
     never = [s for s in study.separations if max(s.apart) <= _TOLD_APART]
-    amplitudes = [one.amplitude_for_q_60 * 1e6 for one in study.explanations]
-    worst = max(abs(one.frequency / MEASURED_FREQUENCY - 1) for one in study.explanations)
+    amplitudes = [explanation.amplitude_for_q_60 * 1e6 for explanation in study.explanations]
+    worst = max(
+        abs(explanation.frequency / MEASURED_FREQUENCY - 1) for explanation in study.explanations
+    )
     return [
         f"The prototype lies {changed(missing)} from the perfectly bonded plate with d31. "
         + (
@@ -189,8 +195,10 @@ def identifiability(study: PrototypeStudy) -> Figure:
     at = np.arange(len(study.explanations))[::-1]
     for number, axes in enumerate(panels):
         values, errors, label = _panel(study.explanations, number)
-        for y, value, error, one in zip(at, values, errors, study.explanations, strict=True):
-            color = style.ORANGE if "e31" in one.name else style.BLUE
+        for y, value, error, explanation in zip(
+            at, values, errors, study.explanations, strict=True
+        ):
+            color = style.ORANGE if "e31" in explanation.name else style.BLUE
             axes.errorbar(value, y, xerr=error, fmt="o", ms=5, lw=2.2, capsize=3, color=color)
         axes.set_xlabel(label)
         axes.set_ylim(-0.6, at.size - 0.4)
@@ -210,7 +218,12 @@ def identifiability(study: PrototypeStudy) -> Figure:
         color=style.MUTED,
     )
     panels[0].set_yticks(
-        at, [f"{one.name}\n{one.free}: {one.value}" for one in study.explanations], fontsize=8.5
+        at,
+        [
+            f"{explanation.name}\n{explanation.free}: {explanation.value}"
+            for explanation in study.explanations
+        ],
+        fontsize=8.5,
     )
     return figure
 
@@ -220,12 +233,12 @@ def _panel(
 ) -> tuple[list[float], list[float], str]:
     ratios = len(MEASUREMENTS) - 2
     if number < ratios:
-        values = [one.neighbour_ratios[number] for one in explanations]
+        values = [explanation.neighbour_ratios[number] for explanation in explanations]
         return values, [v * RATIO_ACCURACY for v in values], MEASUREMENTS[number]
     if number == ratios:
-        values = [100 * one.open_shift for one in explanations]
+        values = [100 * explanation.open_shift for explanation in explanations]
         return values, [100 * OPEN_ACCURACY] * len(values), "open shift (%)"
-    values = [1e6 * one.amplitude_for_q_60 for one in explanations]
+    values = [1e6 * explanation.amplitude_for_q_60 for explanation in explanations]
     return values, [v * AMPLITUDE_ACCURACY for v in values], "15 V, Q 60 (µm)"
 
 

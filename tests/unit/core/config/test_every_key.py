@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import functools
-import importlib
 import json
 import math
 import types
@@ -47,7 +46,7 @@ FILES: tuple[type[Any], ...] = (
     SessionConditions,
     Observer,
     TwinSettings,
-    *(getattr(importlib.import_module(module), name) for module, name in ACTUATORS.values()),
+    *ACTUATORS.values(),
     *RECORDINGS.values(),
 )
 

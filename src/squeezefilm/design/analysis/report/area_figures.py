@@ -100,7 +100,7 @@ def _places(axes: Axes, area: ActiveArea) -> None:
     from matplotlib.patches import Rectangle
 
     shown = np.ma.masked_invalid(area.relative_friction.T)
-    within = [one for one in CRITERIA if shown.min() < one < shown.max()]
+    within = [criterion for criterion in CRITERIA if shown.min() < criterion < shown.max()]
     if within:
         lines = axes.contour(
             1e3 * area.x, 1e3 * area.y, shown, levels=within, colors=style.PAPER, linewidths=1.4

@@ -81,7 +81,9 @@ def theory_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
 def influence_rows(unsure: UncertainFriction, knowledge: Knowledge, most: int) -> list[list[str]]:
     """What of a group makes a friction uncertain, the most important first: its path, what is drawn
     of it, its share of the variance with all its company, and whose range or weights these are."""
-    group = [one for one in unsure.influences if one.parameter.knowledge == knowledge]
+    group = [
+        influence for influence in unsure.influences if influence.parameter.knowledge == knowledge
+    ]
     return [
         [
             one.parameter.path,
@@ -113,7 +115,11 @@ def group_words(one: GroupInfluence) -> str:
 
 def weight_rows(unsure: UncertainFriction) -> list[list[str]]:
     """The laws and states that are drawn, each with its assumed weight and why."""
-    choices = [one.parameter for one in unsure.influences if hasattr(one.parameter, "options")]
+    choices = [
+        influence.parameter
+        for influence in unsure.influences
+        if hasattr(influence.parameter, "options")
+    ]
     return [
         [choice.path, option.name, si.percent(option.weight), option.why]
         for choice in sorted(choices, key=lambda one: one.path)

@@ -30,7 +30,9 @@ def place_rows(p: Prediction, judged: JudgedArea | None) -> list[Row]:
             ("µ′/µ over the active area", "not known", "" if area is None else area.why_not),
         ]
     places = f"at {place_words(area.best_place)} and {place_words(area.worst_place)}"
-    shares = ", ".join(f"{percent(area.share_below(one))} below {one:.2f}" for one in CRITERIA)
+    shares = ", ".join(
+        f"{percent(area.share_below(criterion))} below {criterion:.2f}" for criterion in CRITERIA
+    )
     return [
         *rows,
         (

@@ -122,7 +122,7 @@ def _bodies(made: Fabrication) -> dict[str, bytes]:
         names[kind]: stl_bytes(np.concatenate(surfaces), f"{title}, {kind}")
         for kind, surfaces in by.items()
     }
-    whole = np.concatenate([one for surfaces in by.values() for one in surfaces])
+    whole = np.concatenate([surface for surfaces in by.values() for surface in surfaces])
     return {"assembly.stl": stl_bytes(whole, title), **found}
 
 
@@ -137,7 +137,10 @@ def _page(made: Fabrication, drawing: Drawing, views: str, names: list[str]) -> 
         section("Bill of materials", text_table(_BILL_SAID, BILL, bill_rows(made.bill))),
         section("Drive electronics", _electronics(made)),
         part("bench", "Test plan for the vibrometer", _PLAN_SAID),
-        *(section(f"{n}. {escape(one.name)}", _step(one)) for n, one in enumerate(made.steps, 1)),
+        *(
+            section(f"{n}. {escape(step.name)}", _step(step))
+            for n, step in enumerate(made.steps, 1)
+        ),
         part("assumed", "What is assumed", ""),
         section("What the intervals allow for", _allowed(made)),
         section("Assumed values of the description", _assumed(made)),
@@ -229,9 +232,9 @@ def _allowed(made: Fabrication) -> str:
 
 def _assumed(made: Fabrication) -> str:
     rows = [
-        (one.path, one.text, one.source or "–")
-        for one in display_values(made.display)
-        if one.evidence == "assumed"
+        (display_value.path, display_value.text, display_value.source or "–")
+        for display_value in display_values(made.display)
+        if display_value.evidence == "assumed"
     ]
     if not rows:
         return "<p>None.</p>"
@@ -262,7 +265,7 @@ def show_fabrication(made: Fabrication) -> None:
     rows = [(row[2], row[1], row[3], row[4], row[6]) for row in bill_rows(made.bill)]
     table(console, ("", "", "", "", ""), rows)
     heading(console, "Test plan")
-    steps = [(f"{n}", one.name, one.file) for n, one in enumerate(made.steps, 1)]
+    steps = [(f"{n}", step.name, step.file) for n, step in enumerate(made.steps, 1)]
     table(console, ("", "", ""), steps)
     for text in made.prediction.warnings:
         console.print(f"! {printable(text)}")

@@ -35,7 +35,7 @@ def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     """The drawing of a plate; `common` are notes that every sheet has."""
     plate = made.display.actuator
     assert isinstance(plate, RectangularPlate)
-    below = sum(one.face == "bottom" for one in plate.patches) * 2 >= len(plate.patches)
+    below = sum(patch.face == "bottom" for patch in plate.patches) * 2 >= len(plate.patches)
     face = "bottom" if below else "top"
     scale = scale_for(plate.length, plate.width, _ROOM)
     size_x, size_y = 1e3 * scale * plate.length, 1e3 * scale * plate.width
@@ -56,13 +56,15 @@ def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
 def electrode_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
     """Where each ceramic lies and what its outer electrode is joined to, in millimetres."""
     rows = []
-    for one in electrodes:
-        shape = one.footprint
+    for electrode in electrodes:
+        shape = electrode.footprint
         assert isinstance(shape, Rectangle)
-        sizes = (shape.x, shape.y, shape.length, shape.width, one.thickness)
-        poled = "away" if one.poling > 0 else "towards"
-        where = "" if one.face == "bottom" else " (top)"
-        rows.append((f"{one.ceramic}{where}", *map(millimetres, sizes), one.connection, poled))
+        sizes = (shape.x, shape.y, shape.length, shape.width, electrode.thickness)
+        poled = "away" if electrode.poling > 0 else "towards"
+        where = "" if electrode.face == "bottom" else " (top)"
+        rows.append(
+            (f"{electrode.ceramic}{where}", *map(millimetres, sizes), electrode.connection, poled)
+        )
     return rows
 
 
@@ -72,18 +74,18 @@ def _plan(sheet: Sheet, made: Fabrication, plate: RectangularPlate, face: str, s
 
     sheet.add(placed("BODY", 0.0, 0.0, plate.length, plate.width))
     sheet.add(placed("OUTLINE", 0.0, 0.0, plate.length, plate.width))
-    for one in made.electrodes:
-        shape = one.footprint
+    for electrode in made.electrodes:
+        shape = electrode.footprint
         assert isinstance(shape, Rectangle)
         at = (shape.x, shape.y, shape.length, shape.width)
-        if one.face != face:
+        if electrode.face != face:
             sheet.add(placed("CERAMICS_OTHER_FACE", *at))
             continue
-        layer = "CERAMICS_B" if one.connection == ANTIPHASE else "CERAMICS"
+        layer = "CERAMICS_B" if electrode.connection == ANTIPHASE else "CERAMICS"
         if plate.glue is not None:
             sheet.add(placed("GLUE", *at))
         sheet.add(placed(layer, *at), placed("ELECTRODES", *at))
-        _label(sheet, one, shape, sign)
+        _label(sheet, electrode, shape, sign)
     for held in plate.supports:
         sheet.add(placed("SUPPORTS", held.x, held.y, held.length, held.width))
     over = 3.0 * sheet.unit
@@ -184,7 +186,7 @@ def _keys_of_thickness(plate: RectangularPlate) -> dict[int, str]:
 
 def _said(plate: RectangularPlate, face: str, whole: bool) -> Iterable[str]:
     """Notes of a plate."""
-    other = sum(one.face != face for one in plate.patches)
+    other = sum(patch.face != face for patch in plate.patches)
     side = "below, where x runs right and y down" if face == "bottom" else "above"
     yield f"Plan seen from {side}. Places are from the corner of the plate at x = y = 0."
     if other:
@@ -193,8 +195,8 @@ def _said(plate: RectangularPlate, face: str, whole: bool) -> Iterable[str]:
     if not whole:
         yield "Places too near to each other for a number are in the table only."
     if plate.supports:
-        thick = " or ".join(sorted({millimetres(one.thickness) for one in plate.supports}))
-        faces = " and ".join(sorted({one.face for one in plate.supports}))
+        thick = " or ".join(sorted({millimetres(support.thickness) for support in plate.supports}))
+        faces = " and ".join(sorted({support.face for support in plate.supports}))
         yield f"Dashed, violet: foam, {thick} mm thick, on the {faces} face."
     if plate.clamped_edges:
         yield f"Clamped edges: {', '.join(plate.clamped_edges)}."

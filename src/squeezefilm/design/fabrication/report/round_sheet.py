@@ -55,8 +55,8 @@ def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
         away = reach + 8.0 - rim / sheet.unit
         sheet.across(*ends, rim, away, y_to=0.0, value_of="actuator.radial_width")
     # Of the teeth one stands for all of them.
-    teeth = [one for one in made.parts if one.kind == "substrate"][1:]
-    shown = [one for one in made.parts if one not in teeth[1:]]
+    teeth = [part for part in made.parts if part.kind == "substrate"][1:]
+    shown = [part for part in made.parts if part not in teeth[1:]]
     low = sheet.origin[1] - reach - 16.0 - 7.0 * len(lines)
     extra = section_view(sheet, made, shown, _MIDDLE, low, _keys_of_thickness(actuator))
     said = [*_said(made), *extra, *common]
@@ -66,17 +66,17 @@ def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
 def sector_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
     """From where to where each electrode goes, and what it is joined to."""
     rows = []
-    for one in electrodes:
-        shape = one.footprint
+    for electrode in electrodes:
+        shape = electrode.footprint
         assert isinstance(shape, Sector)
         ends = (f"{math.degrees(angle):.6g}°" for angle in (shape.start, shape.end))
-        poled = "away" if one.poling > 0 else "towards"
-        rows.append((one.name, *ends, one.connection, poled))
+        poled = "away" if electrode.poling > 0 else "towards"
+        rows.append((electrode.name, *ends, electrode.connection, poled))
     return rows
 
 
 def _ring(parts: Sequence[Part], kind: str) -> Sector:
-    shape = next(one.footprint for one in parts if one.kind == kind)
+    shape = next(part.footprint for part in parts if part.kind == kind)
     assert isinstance(shape, Sector)
     return shape
 
@@ -89,17 +89,17 @@ def _polar(radius: float, angle: float) -> tuple[float, float]:
 def _plan(sheet: Sheet, made: Fabrication, body: Sector) -> None:
     ceramic, actuator = _ring(made.parts, "ceramic"), made.display.actuator
     sheet.add(Arc("BODY", 0.0, 0.0, body.outer_radius), Arc("OUTLINE", 0.0, 0.0, body.outer_radius))
-    if any(one.kind == "glue" for one in made.parts):
+    if any(part.kind == "glue" for part in made.parts):
         sheet.add(Arc("GLUE", 0.0, 0.0, ceramic.outer_radius))
     sheet.add(Arc("CERAMICS", 0.0, 0.0, ceramic.outer_radius))
     if ceramic.inner_radius > body.inner_radius + 1e-9:
         sheet.add(Arc("BODY", 0.0, 0.0, ceramic.inner_radius))
     if body.inner_radius > 0:
         sheet.add(Arc("HOLES", 0.0, 0.0, body.inner_radius))
-    for one in made.electrodes:
-        shape = one.footprint
+    for electrode in made.electrodes:
+        shape = electrode.footprint
         assert isinstance(shape, Sector)
-        _electrode(sheet, one, shape)
+        _electrode(sheet, electrode, shape)
     if isinstance(actuator, AnnularStator):
         sheet.interrupted(Arc("CENTRE_LINES", 0.0, 0.0, actuator.mean_diameter / 2))
         # The teeth are on the other face: their walls, beyond the rim.
@@ -190,7 +190,7 @@ def _said(made: Fabrication) -> Iterable[str]:
                 f"{count} teeth on the upper face, a pitch of {pitch} mm on the mean diameter, "
                 f"slots of {slot} mm: ticks beyond the rim are their walls."
             )
-    assumed = sorted({one.assumed for one in made.parts if one.assumed})
+    assumed = sorted({part.assumed for part in made.parts if part.assumed})
     for text in assumed:
         yield f"NOT TO BE MADE BY THESE THICKNESSES: {text}."
     if len(made.electrodes) > 1:

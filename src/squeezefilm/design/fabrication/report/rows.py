@@ -66,19 +66,24 @@ def expected_rows(made: Fabrication) -> list[tuple[str, ...]]:
     """The numbers that one looks for first, once each, in the order of the plan."""
     found: dict[tuple[str, str], tuple[str, ...]] = {}
     for step in made.steps:
-        for one in step.checks:
-            key = one.answer in _KEY or one.what.startswith(("Amplitude at", "Free amplitude"))
-            if key and one.value is not None:
-                row = (one.what, said(one.value, one.unit), expected_said(one), one.remark)
-                found.setdefault((one.what, one.unit), row)
+        for check in step.checks:
+            key = check.answer in _KEY or check.what.startswith(("Amplitude at", "Free amplitude"))
+            if key and check.value is not None:
+                row = (
+                    check.what,
+                    said(check.value, check.unit),
+                    expected_said(check),
+                    check.remark,
+                )
+                found.setdefault((check.what, check.unit), row)
     return list(found.values())
 
 
 def step_rows(checks: Iterable[Check]) -> list[tuple[str, ...]]:
     """What is to be read in one step, with empty places for what is measured."""
     return [
-        (one.what, said(one.value, one.unit), expected_said(one), "", "☐", one.remark)
-        for one in checks
+        (check.what, said(check.value, check.unit), expected_said(check), "", "☐", check.remark)
+        for check in checks
     ]
 
 
@@ -136,22 +141,22 @@ def plan_csv(made: Fabrication) -> str:
     """The plan as CSV in SI units, with empty columns for what is measured."""
     rows = []
     for step in made.steps:
-        for one in step.checks:
-            low, high = one.interval or (None, None)
-            under = "; ".join(f"{name}={value:.9g}" for name, value in one.conditions)
-            numbers = ("" if end is None else f"{end:.9g}" for end in (one.value, low, high))
+        for check in step.checks:
+            low, high = check.interval or (None, None)
+            under = "; ".join(f"{name}={value:.9g}" for name, value in check.conditions)
+            numbers = ("" if end is None else f"{end:.9g}" for end in (check.value, low, high))
             rows.append(
                 (
                     step.name,
                     step.do,
                     step.kind,
                     step.file,
-                    one.what,
-                    one.answer,
+                    check.what,
+                    check.answer,
                     under,
                     *numbers,
-                    "" if one.level is None else f"{one.level:g}",
-                    one.unit,
+                    "" if check.level is None else f"{check.level:g}",
+                    check.unit,
                     "",
                     "",
                 )

@@ -37,7 +37,7 @@ class Cut:
 @si.checked_numbers
 def stretch_for(height: si.Metre, scale: si.Dimensionless, room: float = 34.0) -> int:
     """How many times larger thicknesses are drawn so that a height (m) fits the room (mm)."""
-    fits = (one for one in _STRETCHES if 1e3 * height * scale * one <= room)
+    fits = (stretch for stretch in _STRETCHES if 1e3 * height * scale * stretch <= room)
     return next(fits, 1)
 
 
@@ -61,17 +61,17 @@ def spans(part: Part, cut: Cut) -> list[tuple[si.Metre, si.Metre]]:
 def best_cut(parts: Sequence[Part]) -> Cut:
     """The cut through the middle of some ceramic that meets most of them; along x, in the plate's
     middle, where that meets as many."""
-    base = next(one.footprint for one in parts if one.kind == "substrate")
+    base = next(part.footprint for part in parts if part.kind == "substrate")
     if isinstance(base, Sector):
         return Cut(False, 0.0)
-    ceramics = [one for one in parts if one.kind == "ceramic"]
+    ceramics = [part for part in parts if part.kind == "ceramic"]
     options = [Cut(False, base.width / 2), Cut(True, base.length / 2)]
-    for one in ceramics:
-        shape = one.footprint
+    for ceramic in ceramics:
+        shape = ceramic.footprint
         assert isinstance(shape, Rectangle)
         options.append(Cut(False, shape.y + shape.width / 2))
         options.append(Cut(True, shape.x + shape.length / 2))
-    return max(options, key=lambda cut: sum(bool(spans(one, cut)) for one in ceramics))
+    return max(options, key=lambda cut: sum(bool(spans(ceramic, cut)) for ceramic in ceramics))
 
 
 def section_view(
@@ -87,14 +87,16 @@ def section_view(
     face; `keys` are those of the description by what they are of (0: the substrate, n: ceramic n,
     −n: its glue). Notes of tolerances that have no room beside their numbers."""
     cut = best_cut(parts)
-    met = [(one, found) for one in parts if (found := spans(one, cut))]
+    met = [(part, found) for part in parts if (found := spans(part, cut))]
     high, low = max(one.top for one, _ in met), min(one.bottom for one, _ in met)
     stretch = stretch_for(high - low, sheet.scale)
     ends = [end for _, found in met for span in found for end in span]
     _, y_top = sheet.at(0.0, top)
     centre, _ = sheet.at(middle, 0.0)
     shift = centre - (min(ends) + max(ends)) / 2
-    turned = {one.ceramic for one in made.electrodes if one.connection == ANTIPHASE}
+    turned = {
+        electrode.ceramic for electrode in made.electrodes if electrode.connection == ANTIPHASE
+    }
 
     def height(z: float) -> float:
         return y_top + stretch * (z - high)

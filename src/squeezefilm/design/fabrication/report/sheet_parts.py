@@ -281,8 +281,8 @@ def table(
     shown = [list(row) for row in rows[:most]]
     weights = [max(len(row[k]) for row in (head, *shown)) + 2 for k in range(len(head))]
     ends = [left]
-    for one in weights:
-        ends.append(ends[-1] + one * (right - left) / sum(weights))
+    for weight in weights:
+        ends.append(ends[-1] + weight * (right - left) / sum(weights))
     y = top - step / 2
     for number, row in enumerate((head, *shown)):
         for k, cell in enumerate(row):

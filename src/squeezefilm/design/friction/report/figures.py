@@ -130,7 +130,11 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
     unsure = result.uncertainty
     assert unsure is not None, "asked without samples"
     low, high = unsure.interval
-    first = next(one for one in unsure.influences if one.parameter.knowledge == "measurable")
+    first = next(
+        influence
+        for influence in unsure.influences
+        if influence.parameter.knowledge == "measurable"
+    )
     figure = style.new_figure(
         f"{unsure.sentence}; to know it better, measure the {_name(first.parameter.path)}",
         f"{unsure.model}, {unsure.refused.evaluations} draws",

@@ -57,7 +57,9 @@ def front(found: DesignSearch) -> Figure:
     plate to build and the display to compare with."""
     names = found.requirements.objectives
     pairs = list(itertools.combinations(range(len(names)), 2))
-    rows = _rows(found, _thinned([one for one in found.screened if one.is_feasible]))
+    rows = _rows(
+        found, _thinned([candidate for candidate in found.screened if candidate.is_feasible])
+    )
     if not rows.size and not found.front:
         return style.message_figure(
             "No design meets the requirements", "What each limit costs is told on the page."
@@ -81,12 +83,12 @@ def _front_title(found: DesignSearch) -> str:
     if not found.front:
         return "No solved plate keeps all limits; what is shown was screened only"
     spans = []
-    for k, one in enumerate(goals):
+    for k, goal in enumerate(goals):
         low, high = (
-            one.shown(end)
+            goal.shown(end)
             for end in (float(found.objectives[:, k].min()), float(found.objectives[:, k].max()))
         )
-        spans.append(f"{one.said} {low}" if low == high else f"{one.said} from {low} to {high}")
+        spans.append(f"{goal.said} {low}" if low == high else f"{goal.said} from {low} to {high}")
     verb = "is" if found.plates_on_front == 1 else "are"
     return f"{front_words(found)} {verb} the front: {', '.join(spans)}"
 
@@ -103,16 +105,16 @@ def _front_axes(
     """Two objectives against each other; `zoomed` on the front and what it is compared with."""
     names = found.requirements.objectives
     goals = [criterion_of(names[k]) for k in (first, second)]
-    solved = _rows(found, [one for one in found.solved if one.is_feasible])
-    broken = _rows(found, [one for one in found.solved if one.broken])
+    solved = _rows(found, [solution for solution in found.solved if solution.is_feasible])
+    broken = _rows(found, [solution for solution in found.solved if solution.broken])
     reference = _rows(found, [] if found.reference is None else [found.reference])
     most = [found.objectives, reference] + ([] if zoomed else [screened, solved])
     within = np.concatenate(most)[:, [first, second]]
     scales = []
-    for k, one in enumerate(goals):
-        factor, symbol = scaled(within[:, k], one.unit)
+    for k, goal in enumerate(goals):
+        factor, symbol = scaled(within[:, k], goal.unit)
         scales.append(factor)
-        _axis(axes, "xy"[k], within[:, k] * factor, labelled(one.said, symbol))
+        _axis(axes, "xy"[k], within[:, k] * factor, labelled(goal.said, symbol))
 
     def at(rows: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
         return rows[:, first] * scales[0], rows[:, second] * scales[1]
@@ -237,7 +239,7 @@ def _screening_axes(
 def settings(found: DesignSearch) -> Figure:
     """What was chosen along the front: each variable over the first objective."""
     spaces = found.requirements.spaces
-    of_front = sorted({one.evaluated.design.shape for one in found.front})
+    of_front = sorted({design.evaluated.design.shape for design in found.front})
     free = {variable.name: variable for shape in of_front for variable in spaces[shape].free}
     if not found.front or not free:
         return style.message_figure(
@@ -270,9 +272,9 @@ def _settings_axes(axes: Axes, found: DesignSearch, variable: Variable) -> None:
     goal = criterion_of(requirements.objectives[0])
     factor, _ = scaled(found.objectives[:, 0], goal.unit)
     members = [
-        (factor * float(x), one)
-        for x, one in zip(found.objectives[:, 0], found.front, strict=True)
-        if variable.name in one.evaluated.design.settings
+        (factor * float(x), design)
+        for x, design in zip(found.objectives[:, 0], found.front, strict=True)
+        if variable.name in design.evaluated.design.settings
     ]
     if isinstance(variable, Choice):
         names = {

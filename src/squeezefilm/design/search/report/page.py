@@ -65,8 +65,8 @@ def write_design(found: DesignSearch, folder: Path, *, fabrication: str = "") ->
     """
     folder = require_folder(folder)
     files: dict[str, str | bytes] = {
-        f"{PLATES}/{one.name}.toml": plate_file(found.requirements, one.evaluated.design)
-        for one in found.front
+        f"{PLATES}/{design.name}.toml": plate_file(found.requirements, design.evaluated.design)
+        for design in found.front
     }
     files |= {DATA: json_text(found.summary()), TABLE: front_csv(found)}
     files[PAGE] = design_page(found, fabrication=fabrication)
@@ -167,18 +167,18 @@ def _svg(found: DesignSearch, item: FigureOf) -> str:
     figure = item.draw(found)
     svg = style.svg(figure, item.key, " ".join(figure.get_suptitle().split()))
     titles = {
-        one.name: escape(
-            f"{one.name}: {chosen_words(found.requirements, one.evaluated.design)}; "
+        design.name: escape(
+            f"{design.name}: {chosen_words(found.requirements, design.evaluated.design)}; "
             + ", ".join(
                 f"{head} {text}"
                 for head, text in zip(
                     front_head(found.requirements),
-                    front_row(found.requirements, one),
+                    front_row(found.requirements, design),
                     strict=True,
                 )
             )
         )
-        for one in found.front
+        for design in found.front
     }
     return re.sub(
         rf'<g id="{item.key}-{MARKED}([0-9a-f]+)-\d+">',
@@ -193,15 +193,17 @@ def _front_table(found: DesignSearch) -> str:
     requirements = found.requirements
     head = ["name", "what was chosen", *front_head(requirements)]
     rows, kinds = [], []
-    for one in found.front:
-        chosen = one is found.chosen
+    for design in found.front:
+        chosen = design is found.chosen
         # Where the marks of the figure lead to.
-        anchor = f'<a id="front-row-{one.name}" href="{PLATES}/{one.name}.toml">{one.name}</a>'
+        anchor = (
+            f'<a id="front-row-{design.name}" href="{PLATES}/{design.name}.toml">{design.name}</a>'
+        )
         rows.append(
             [
                 anchor + (" ◀ to build" if chosen else ""),
-                as_html(chosen_words(requirements, one.evaluated.design)),
-                *map(as_html, front_row(requirements, one)),
+                as_html(chosen_words(requirements, design.evaluated.design)),
+                *map(as_html, front_row(requirements, design)),
             ]
         )
         kinds.append("assumed" if chosen else "")
@@ -246,17 +248,17 @@ def _criteria_rows(found: DesignSearch, member: FrontMember) -> Iterator[tuple[s
     bounds = {one.key: bound for one, bound in bounded(found.requirements.limits)}
     left = margins(found.requirements, member.evaluated)
     made = {} if member.made is None else member.made.intervals
-    for key, one in CRITERIA.items():
-        value = one.value(member.evaluated.numbers)
-        if key not in bounds and (math.isnan(value) or one.of):
+    for key, criterion in CRITERIA.items():
+        value = criterion.value(member.evaluated.numbers)
+        if key not in bounds and (math.isnan(value) or criterion.of):
             continue
-        limit = one.bound_said(bounds[key]) if key in bounds else ""
+        limit = criterion.bound_said(bounds[key]) if key in bounds else ""
         yield (
-            one.said,
-            one.shown(value),
+            criterion.said,
+            criterion.shown(value),
             limit,
             margin_words(left[key]) if key in left else "not judged" if limit else "",
-            " to ".join(one.shown(end) for end in made[key]) if key in made else "",
+            " to ".join(criterion.shown(end) for end in made[key]) if key in made else "",
         )
 
 
@@ -268,11 +270,11 @@ def _reference_section(found: DesignSearch) -> Iterator[str]:
     if reference is not None and not reference.reason and chosen is not None:
         rows = [
             (
-                one.said,
-                one.shown(reference.numbers[key]),
-                one.shown(chosen.evaluated.numbers.get(key)),
+                criterion.said,
+                criterion.shown(reference.numbers[key]),
+                criterion.shown(chosen.evaluated.numbers.get(key)),
             )
-            for key, one in CRITERIA.items()
+            for key, criterion in CRITERIA.items()
             if key in reference.numbers
         ]
         head = ("criterion", found.requirements.compare_with, f"{chosen.name}, to build")
@@ -288,14 +290,14 @@ def _corners(found: DesignSearch) -> str:
         )
     rows = [
         (
-            f"{one.shape}, {one.where}",
-            f"{one.designs}",
-            f"{CRITERIA[one.key].said}, {100 * one.share:.0f} % of them"
-            if one.key
-            else f"{100 * one.share:.0f} % cannot be built",
-            one.example,
+            f"{corner.shape}, {corner.where}",
+            f"{corner.designs}",
+            f"{CRITERIA[corner.key].said}, {100 * corner.share:.0f} % of them"
+            if corner.key
+            else f"{100 * corner.share:.0f} % cannot be built",
+            corner.example,
         )
-        for one in found.corners
+        for corner in found.corners
     ]
     head = ("part of the space", "designs", "most often broken", "for example")
     return text_table("Parts without a design that keeps all limits", head, rows)
@@ -303,9 +305,9 @@ def _corners(found: DesignSearch) -> str:
 
 def _errors(found: DesignSearch) -> str:
     rows = []
-    for space, one in zip(found.requirements.spaces, found.corrections, strict=True):
-        for key, raw in {} if one is None else one.raw.items():
-            after = one.errors[key] if one is not None else raw
+    for space, correction in zip(found.requirements.spaces, found.corrections, strict=True):
+        for key, raw in {} if correction is None else correction.raw.items():
+            after = correction.errors[key] if correction is not None else raw
             what = f"{space.shape}: {CRITERIA[key].said}"
             rows.append((what, si.percent(raw, 1), si.percent(after, 1)))
     table = text_table(
@@ -317,7 +319,7 @@ def _errors(found: DesignSearch) -> str:
 
 
 def _files(found: DesignSearch) -> str:
-    plates = [f"{PLATES}/{one.name}.toml" for one in found.front]
+    plates = [f"{PLATES}/{design.name}.toml" for design in found.front]
     return (
         f"<p>{links((DATA, TABLE, *plates))}</p>"
         "<p>A plate's file is a display like any other: <code>squeezefilm analyze "

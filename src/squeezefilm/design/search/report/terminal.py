@@ -61,7 +61,7 @@ def show_design(found: DesignSearch) -> None:
         heading(console, "Where nothing keeps the limits")
         _say(
             console,
-            [f"{corner_in_words(one)}." for one in found.corners[:_CORNERS]],
+            [f"{corner_in_words(corner)}." for corner in found.corners[:_CORNERS]],
         )
         if len(found.corners) > _CORNERS:
             console.print(f"{len(found.corners) - _CORNERS} more stand in the files of --out")
@@ -73,7 +73,7 @@ def show_design(found: DesignSearch) -> None:
 
 
 def _say(console: Console, sentences: list[str]) -> None:
-    bullets(console, [("–", one, "") for one in sentences])
+    bullets(console, [("–", sentence, "") for sentence in sentences])
 
 
 def _show_front(console: Console, found: DesignSearch) -> None:
@@ -82,13 +82,15 @@ def _show_front(console: Console, found: DesignSearch) -> None:
     if len(members) > 1:
         heading(console, "The front: what each plate does")
         head = [in_lines(one) for one in ("name", *front_head(requirements))]
-        rows = [[one.name, *front_row(requirements, one)] for one in members]
+        rows = [[member.name, *front_row(requirements, member)] for member in members]
         if found.reference is not None and not found.reference.reason:
             rows.append(["to compare", *row_of(requirements, found.reference), ""])
         looks = {found.chosen_name: "bold"}
         table(console, head, rows, fixed=(0,), styles=lambda row: looks.get(row[0], ""))
         heading(console, "The front: what was chosen")
-        made_of = [[one.name, chosen_words(requirements, one.evaluated.design)] for one in members]
+        made_of = [
+            [member.name, chosen_words(requirements, member.evaluated.design)] for member in members
+        ]
         table(console, ("", ""), made_of, fixed=(0,))
         if len(found.front) > len(members):
             console.print(f"{len(found.front) - len(members)} more rows stand in front.csv")

@@ -93,11 +93,11 @@ def asked_sentences(requirements: Requirements) -> list[str]:
     volts = shown(drive.voltage, si.Unit("V"))
     if drive.least_voltage not in (None, drive.voltage):
         volts = f"{shown(float(drive.least_voltage or 0), si.Unit('V'))} to {volts}"
-    goals = " and ".join(criterion_of(one).said for one in requirements.objectives)
+    goals = " and ".join(criterion_of(objective).said for objective in requirements.objectives)
     bounds = [one.limit_said(bound) for one, bound in bounded(requirements.limits)]
     if requirements.limits.least_yield is not None:
         bounds.append(f"yield at least {si.percent(requirements.limits.least_yield)}")
-    shapes = ", ".join(one.shape for one in requirements.spaces)
+    shapes = ", ".join(space.shape for space in requirements.spaces)
     return [
         f"A finger at {shown(touch.speed, si.Unit('m/s'))} with "
         f"{shown(finger.normal_force, si.Unit('N'))} on '{surface}'; a plate of {size}, driven "
@@ -111,8 +111,8 @@ def asked_sentences(requirements: Requirements) -> list[str]:
 def counts_sentence(found: DesignSearch) -> str:
     """How many designs were looked at, and what is left of them."""
     screened, several = len(found.screened), len(found.solved) > found.plates_solved
-    feasible = sum(one.is_feasible for one in found.screened)
-    failed = sum(bool(one.reason) for one in found.screened)
+    feasible = sum(candidate.is_feasible for candidate in found.screened)
+    failed = sum(bool(candidate.reason) for candidate in found.screened)
     return (
         f"{many(screened, 'design')} screened, of which {feasible} keep all limits"
         + (f" and {failed} cannot be built or computed" if failed else "")
@@ -163,8 +163,8 @@ def many(count: int, word: str) -> str:
 
 def front_head(requirements: Requirements) -> list[str]:
     """The headings of `front_row`, without the name."""
-    return [*(criterion_of(one).said for one in requirements.objectives), *_others(requirements),
-            "yield"]  # fmt: skip
+    objectives = [criterion_of(objective).said for objective in requirements.objectives]
+    return [*objectives, *_others(requirements), "yield"]
 
 
 def _others(requirements: Requirements) -> list[str]:
@@ -173,7 +173,7 @@ def _others(requirements: Requirements) -> list[str]:
 
 def _told(requirements: Requirements) -> list[str]:
     """The keys of the criteria of a front's table."""
-    keys = [criterion_of(one).key for one in requirements.objectives]
+    keys = [criterion_of(objective).key for objective in requirements.objectives]
     return [*keys, *(key for key in ALWAYS if key not in keys)]
 
 
@@ -194,12 +194,12 @@ def chosen_sentences(found: DesignSearch) -> list[str]:
     chosen = found.chosen
     if chosen is None:
         return []
-    goals = [criterion_of(one) for one in found.requirements.objectives]
+    goals = [criterion_of(objective) for objective in found.requirements.objectives]
     has = " and ".join(
-        f"{one.said} {one.shown(chosen.evaluated.numbers.get(one.key))}" for one in goals
+        f"{goal.said} {goal.shown(chosen.evaluated.numbers.get(goal.key))}" for goal in goals
     )
     best = " and ".join(
-        one.shown(float(found.objectives[:, k].min())) for k, one in enumerate(goals)
+        goal.shown(float(found.objectives[:, k].min())) for k, goal in enumerate(goals)
     )
     said = [
         f"{chosen.name} has {has}. Of the front it is nearest to the best of every objective "
@@ -227,7 +227,7 @@ def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]
     made = member.made
     if made is None:
         return ["How many plates made of its drawing keep the limits was not computed."]
-    breaks = sorted(made.broken.items(), key=lambda one: -one[1])
+    breaks = sorted(made.broken.items(), key=lambda item: -item[1])
     told = ", ".join(f"{CRITERIA[key].said} by {count}" for key, count in breaks)
     failed = f"; {made.failed} could not be computed" if made.failed else ""
     alone = requirements.limits.unasked_of_made
@@ -291,9 +291,9 @@ def reference_sentences(found: DesignSearch) -> list[str]:
     if reference.reason:
         return [f"{name} could not be judged: {reference.reason}"]
     own = reference.objectives(requirements.objectives)
-    goals = [criterion_of(one) for one in requirements.objectives]
+    goals = [criterion_of(objective) for objective in requirements.objectives]
     has = " and ".join(
-        f"{one.said} {one.shown(value)}" for one, value in zip(goals, own, strict=True)
+        f"{goal.said} {goal.shown(value)}" for goal, value in zip(goals, own, strict=True)
     )
     said = [f"Judged in the same way, {name} has {has}."]
     said += [f"It breaks a limit: {one.sentence}." for one in reference.broken]
@@ -314,7 +314,7 @@ def reference_sentences(found: DesignSearch) -> list[str]:
 
 def _left(found: DesignSearch, k: int, own: tuple[float, ...]) -> str:
     """How much better one objective can be where no other is worse."""
-    goals = [criterion_of(one) for one in found.requirements.objectives]
+    goals = [criterion_of(objective) for objective in found.requirements.objectives]
     others = [j for j in range(len(goals)) if j != k]
     rows = found.objectives
     as_good = np.flatnonzero(np.all(rows[:, others] <= np.array(own)[others], axis=1))
@@ -345,8 +345,8 @@ def limit_sentences(found: DesignSearch) -> list[str]:
     """What each limit does to the screened designs; those that none breaks in one sentence, those
     that none was asked in another."""
     count = len(found.screened)
-    said = [limit_in_words(one, count) for one in found.limits if one.broken]
-    idle = [one for one in found.limits if not one.broken]
+    said = [limit_in_words(limit, count) for limit in found.limits if limit.broken]
+    idle = [limit for limit in found.limits if not limit.broken]
     for head, those in (
         ("No screened design breaks", [one for one in idle if one.key not in OF_SOLVED]),
         ("Asked of solved plates only", [one for one in idle if one.key in OF_SOLVED]),
@@ -358,10 +358,10 @@ def limit_sentences(found: DesignSearch) -> list[str]:
 
 def limit_gain(found: DesignSearch) -> str:
     """The limit without which the objectives could be better, in a sentence; "" for none."""
-    for one in found.limits:
-        if one.best_without:
+    for limit in found.limits:
+        if limit.best_without:
             return (
-                f"The limit on {CRITERIA[one.key].said} costs: without it there would be "
-                f"{gains_in_words(one)} (screened, not solved)."
+                f"The limit on {CRITERIA[limit.key].said} costs: without it there would be "
+                f"{gains_in_words(limit)} (screened, not solved)."
             )
     return ""

@@ -37,14 +37,14 @@ def compared_rows(folder: Path | None, rows: str) -> tuple[Row, ...]:
     except (csv.Error, ValueError) as error:
         raise InputError(f"{file} is no table of a sweep: {error}; make it again") from error
     numbers = re.fullmatch(r"\s*(\d{1,9})\s*,\s*(\d{1,9})\s*", rows)
-    places = [int(one) for one in numbers.groups()] if numbers else []
-    if not places or not all(1 <= one <= len(body) for one in places):
+    places = [int(group) for group in numbers.groups()] if numbers else []
+    if not places or not all(1 <= place <= len(body) for place in places):
         raise InputError(
             f"compare {rows:.40} names no two rows of {file}; write two numbers from 1 to "
             f"{len(body)}, as in compare = 1,2",
             quantity="compare",
         )
-    first, second = (body[one - 1] for one in places)
+    first, second = (body[place - 1] for place in places)
     pairs = zip(head, first, second, strict=True)
     return tuple((name, a, b, _ratio(a, b)) for name, a, b in pairs if a != b)
 

@@ -51,7 +51,7 @@ def sweep_figure(found: Sweep) -> Figure:
     over = " and ".join(name_of(axis) for axis in axes)
     figure = style.new_figure(
         f"{', '.join(map(_panel_name, panels))} over {over}",
-        f"that of {' and '.join(_SAID.get(one, one) for one in found.verbs)}; display "
+        f"that of {' and '.join(_SAID.get(verb, verb) for verb in found.verbs)}; display "
         f"{style.plain(found.title)}{_left_out(found)}",
         1.2 + 3.2 * -(-len(panels) // 2) if len(panels) > 1 else 4.6,
     )
@@ -114,7 +114,7 @@ def _lines(axes: Axes, found: Sweep, along: Axis, beside: Axis | None, panel: li
     factor, symbol = (1.0, "") if numbers is None else scaled(numbers, along.units[0])
     scale, unit = scaled(np.concatenate([c.values for c in panel]), panel[0].unit)
     # Modes that nothing drives are there, and do not matter.
-    quiet = {one.label for one in found.follows if not one.driven}
+    quiet = {follow.label for follow in found.follows if not follow.driven}
     told, named = 0, False
     for column in panel:
         values = scale * _values(found, along, beside, column)
@@ -265,7 +265,7 @@ def shares_figure(effects: tuple[Effects, ...], varied: tuple[Varied, ...]) -> F
 @style.drawn
 def _shares(drawn: tuple[tuple[Effects, ...], tuple[Varied, ...]]) -> Figure:
     effects, varied = drawn
-    exact = all(one.explained is None for one in effects)
+    exact = all(effect.explained is None for effect in effects)
     figure = style.new_figure(
         "What decides: shares of the variance over the sweep",
         "analysis of variance of the whole grid"
@@ -275,22 +275,22 @@ def _shares(drawn: tuple[tuple[Effects, ...], tuple[Varied, ...]]) -> Figure:
     )
     row = figure.subplots(1, len(effects), squeeze=False, sharey=True)[0]
     places = np.arange(len(varied))
-    for axes, one in zip(row, effects, strict=True):
+    for axes, effect in zip(row, effects, strict=True):
         for offset, key, color, label in (
             (-0.18, "first", style.BLUE, "alone"),
             (0.18, "total", style.ORANGE, "with interactions"),
         ):
             axes.barh(
                 places + offset,
-                [getattr(share, key) for share in one.shares],
+                [getattr(share, key) for share in effect.shares],
                 0.34,
-                xerr=[getattr(share, f"{key}_error") for share in one.shares],
+                xerr=[getattr(share, f"{key}_error") for share in effect.shares],
                 color=color,
                 ecolor=style.INK,
                 label=label,
             )
         axes.set_xlim(0, 1.05)
-        axes.set_title(_short(name_of(one.column)), fontsize=10)
+        axes.set_title(_short(name_of(effect.column)), fontsize=10)
         axes.set_yticks(places, [_short(varied_name(v)) for v in varied])
         axes.set_xlabel("share")
     row[0].invert_yaxis()

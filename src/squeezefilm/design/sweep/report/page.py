@@ -118,26 +118,26 @@ def _reasons(found: Sweep) -> list[str]:
 def _decisive(effects: Sequence[Effects], varied: Sequence[Varied]) -> str:
     """Tables of the shares, and of the pairs, of every answer."""
     out = ""
-    for one in effects:
+    for effect in effects:
         rows = [
             (varied_name(v), _share(s.first, s.first_error), _share(s.total, s.total_error))
-            for v, s in zip(varied, one.shares, strict=True)
+            for v, s in zip(varied, effect.shares, strict=True)
         ]
         pairs = [
             (f"{varied_name(varied[i])} and {varied_name(varied[j])}", _share(share, error))
-            for (i, j), (share, error) in sorted(one.pairs.items(), key=lambda p: -p[1][0])[:10]
+            for (i, j), (share, error) in sorted(effect.pairs.items(), key=lambda p: -p[1][0])[:10]
         ]
         told = (
             "Exact for the points of this grid; a finer grid may say otherwise."
-            if one.explained is None
-            else f"From a fit to {one.points} points, which explains {one.explained:.0%} of the "
-            "variance of points left out of it; errors are one standard error, from drawing "
+            if effect.explained is None
+            else f"From a fit to {effect.points} points, which explains {effect.explained:.0%} of "
+            "the variance of points left out of it; errors are one standard error, from drawing "
             "the points again."
         )
         table = text_table(told, ("Varied", "Share alone", "Share with interactions"), rows)
         if pairs:
             table += text_table("Only both together", ("Pair", "Share"), pairs)
-        out += section(f"What decides: {escape(name_of(one.column))}", table)
+        out += section(f"What decides: {escape(name_of(effect.column))}", table)
     return out
 
 
@@ -161,8 +161,11 @@ def _best(found: Sweep, better: tuple[tuple[str, int], ...]) -> str:
     rows = rows[np.argsort(values[rows, 0], kind="stable")]
     scales = [scaled(c.values, c.unit) for c in columns]
     settings = {
-        one.name: (one, scaled(one.values, one.unit) if not one.words else (1.0, ""))
-        for one in varied_values(found)
+        varied_value.name: (
+            varied_value,
+            scaled(varied_value.values, varied_value.unit) if not varied_value.words else (1.0, ""),
+        )
+        for varied_value in varied_values(found)
     }
     head = [
         "Row",
@@ -214,7 +217,7 @@ def write_sweep(
     folder cannot be written to.
     """
     require_kind(table)
-    better = wishes([(one.name, one.unit) for one in found.columns], less, more)
+    better = wishes([(column.name, column.unit) for column in found.columns], less, more)
     folder = require_folder(folder)
     name = f"sweep.{table}"
     summary = found.summary()

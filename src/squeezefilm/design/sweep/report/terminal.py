@@ -77,8 +77,8 @@ def show_sweep(found: Sweep) -> None:
     if len(reasons) > _TOLD:
         console.print(f"! {len(reasons) - _TOLD} more reasons stand in the table's last column")
     if found.follows:
-        lost = sum(one.lost for one in found.follows)
-        least = min(one.least_likeness for one in found.follows)
+        lost = sum(follow.lost for follow in found.follows)
+        least = min(follow.least_likeness for follow in found.follows)
         console.print(
             f"{len(found.follows)} modes followed by their shapes, {lost or 'none'} of them lost "
             f"on the way; least likeness from one point to the next {least:.2f}"
@@ -89,7 +89,7 @@ def show_sweep(found: Sweep) -> None:
             )
         )
     # First what is so at some of the points only: that is what the points differ by.
-    for text, count in sorted(found.warnings, key=lambda one: one[1] == points)[:_TOLD]:
+    for text, count in sorted(found.warnings, key=lambda warning: warning[1] == points)[:_TOLD]:
         console.print(
             f"! {printable(text)} (at {count} of {points} points, numbers as at one of them)"
         )

@@ -105,7 +105,9 @@ class Trace(Result):
             "columns": list(self.columns),
             "rows": len(self.rows),
             "duration_s": self.duration,
-            "events": [{"kind": one.kind, "row": one.row, **one.fields} for one in self.events],
+            "events": [
+                {"kind": event.kind, "row": event.row, **event.fields} for event in self.events
+            ],
             "damage": list(self.damage.sentences),
             "metadata": dict(self.metadata),
         }

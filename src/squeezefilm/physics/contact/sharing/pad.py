@@ -272,9 +272,9 @@ def _tied(
     # Each balance is already the mean over all ridges.
     tied = [
         share_load_tied(
-            table, asperities, one, plateau_pressure, offset=offset, shares=shares, skin=skin
+            table, asperities, swing, plateau_pressure, offset=offset, shares=shares, skin=skin
         )
-        for one in swings
+        for swing in swings
     ]
     return PadFriction(
         amplitude=swings.max(axis=1),

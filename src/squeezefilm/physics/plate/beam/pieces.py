@@ -81,8 +81,8 @@ def stressed_span(plate: RectangularPlate, patch: CeramicPatch) -> tuple[si.Metr
 def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[Piece, ...]:
     """The pieces of a plate along its length, for nodal lines across it; what lies side by side
     across the plate bends together."""
-    spans = [stressed_span(plate, one) for one in plate.patches]
-    ends = [e for one in plate.patches for e in (one.x, one.x + one.length)]
+    spans = [stressed_span(plate, patch) for patch in plate.patches]
+    ends = [e for patch in plate.patches for e in (patch.x, patch.x + patch.length)]
     stops = _apart([0.0, plate.length, *ends, *itertools.chain(*spans)], _NEAR * plate.length)
     sections = dict[tuple[_Strip, ...], si.FloatArray]()
 
@@ -96,9 +96,9 @@ def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[P
     for begin, end in itertools.pairwise(stops):
         middle = (begin + end) / 2
         lying = [
-            (one, low < middle < high)
-            for one, (low, high) in zip(plate.patches, spans, strict=True)
-            if one.x < middle < one.x + one.length
+            (patch, low < middle < high)
+            for patch, (low, high) in zip(plate.patches, spans, strict=True)
+            if patch.x < middle < patch.x + patch.length
         ]
         g, s, _, j = section(one for one, is_stressed in lying if is_stressed)
         m = section(one for one, _ in lying)[2]
@@ -141,7 +141,7 @@ def pieced_beam_mode(pieces: Sequence[Piece], nodal_lines: int) -> BeamMode:
     frequency of any of the pieces.
     """
     require_nodal_lines(nodal_lines)
-    cutoff = min(math.sqrt(one.shear_stiffness / one.rotary_inertia) for one in pieces)
+    cutoff = min(math.sqrt(piece.shear_stiffness / piece.rotary_inertia) for piece in pieces)
     length = pieces[-1].end
     half_wavelength = length / (nodal_lines - 0.5)
     beam = _Elements(pieces, _LONGEST * half_wavelength)
@@ -164,14 +164,14 @@ class _Elements:
 
     def __init__(self, pieces: Sequence[Piece], longest: si.Metre) -> None:
         self.pieces = pieces
-        shares = [math.ceil((one.end - one.begin) / longest) for one in pieces]
+        shares = [math.ceil((piece.end - piece.begin) / longest) for piece in pieces]
         edges = [
-            one.begin + (one.end - one.begin) * k / share
-            for one, share in zip(pieces, shares, strict=True)
+            piece.begin + (piece.end - piece.begin) * k / share
+            for piece, share in zip(pieces, shares, strict=True)
             for k in range(share)
         ]
         self.mesh = LineMesh((*edges, pieces[-1].end), (_ORDER,) * len(edges))
-        own = [one for one, share in zip(pieces, shares, strict=True) for _ in range(share)]
+        own = [piece for piece, share in zip(pieces, shares, strict=True) for _ in range(share)]
         g, m, s, j = np.array([_constants(one) for one in own]).T[:, :, None, None]
         h = np.diff(self.mesh.edges)[:, None, None]
         moving, sliding, bending = line_matrices(1.0, _ORDER)
@@ -255,15 +255,15 @@ class _Elements:
     def half_wavelength(self, omega: float) -> si.Metre:
         """π over the mean wave number of the pieces, of the part that oscillates."""
         lengths = collections.defaultdict[tuple[float, ...], float](float)
-        for one in self.pieces:
-            lengths[_constants(one)] += one.end - one.begin
+        for piece in self.pieces:
+            lengths[_constants(piece)] += piece.end - piece.begin
         waves = [extent * wave_numbers(omega, *of)[1] for of, extent in lengths.items()]
         return math.pi * self.pieces[-1].end / math.fsum(waves)
 
 
 def _even(pieces: Sequence[Piece]) -> Laminate:
     """A uniform section that yields as the pieces do one after the other, and weighs the same."""
-    parts = np.array([(one.end - one.begin, *_constants(one)) for one in pieces])
+    parts = np.array([(piece.end - piece.begin, *_constants(piece)) for piece in pieces])
     share = parts[:, 0] / np.sum(parts[:, 0])
     g, m, s, j = parts[:, 1:].T
     return Laminate(

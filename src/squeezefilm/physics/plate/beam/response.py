@@ -204,14 +204,14 @@ def _forces(
     # a ceramic narrower than the plate drives in proportion to its width.
     pushed = np.array(
         [
-            _moment(plate, cross_section, one) * one.drive_sign * (one.width / plate.width)
-            for one in plate.patches
+            _moment(plate, cross_section, patch) * patch.drive_sign * (patch.width / plate.width)
+            for patch in plate.patches
         ]
     )
     if theory == "euler_bernoulli":
-        spans = [(one.x, one.x + one.length) for one in plate.patches]
+        spans = [(patch.x, patch.x + patch.length) for patch in plate.patches]
     else:
-        spans = [stressed_span(plate, one) for one in plate.patches]
+        spans = [stressed_span(plate, patch) for patch in plate.patches]
     begin, end = np.array(spans).T
     for mode in modes:
         yield pushed * (mode.rotation_at(end) - mode.rotation_at(begin))

@@ -207,7 +207,7 @@ class BoxModel:
     @property
     def spring_losses(self) -> list[float]:
         """The loss factor of each foundation."""
-        return [one.loss for one in self.foundations]
+        return [foundation.loss for foundation in self.foundations]
 
     @functools.cached_property
     def kept(self) -> NDArray[np.bool_]:

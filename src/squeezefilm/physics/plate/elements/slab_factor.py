@@ -211,15 +211,15 @@ class SlabFactor:
         offsets, sizes = self._slabs.offsets, self._slabs.sizes
         at = np.stack(
             [
-                np.concatenate([np.arange(offsets[n], offsets[n + 1]) for n in one.nodes])
-                for one in places
+                np.concatenate([np.arange(offsets[n], offsets[n + 1]) for n in place.nodes])
+                for place in places
             ],
             axis=1,
         )
         signs = np.stack(
             [
-                self._mirror_signs[at[:, k]] if one.mirrored else np.ones(at.shape[0])
-                for k, one in enumerate(places)
+                self._mirror_signs[at[:, k]] if place.mirrored else np.ones(at.shape[0])
+                for k, place in enumerate(places)
             ],
             axis=1,
         )

@@ -115,7 +115,7 @@ def thermal_body(actuator: Actuator) -> ThermalBody:
         ceramic = math.pi / 4 * (rim**2 - hole**2) * actuator.ceramic_thickness
     else:
         area, perimeter = actuator.area, 2 * (actuator.length + actuator.width)
-        ceramic = sum(one.length * one.width * one.thickness for one in actuator.patches)
+        ceramic = sum(patch.length * patch.width * patch.thickness for patch in actuator.patches)
     metal, piezo = actuator.substrate, actuator.ceramic
     capacity = area * actuator.thickness * metal.heat_per_volume + ceramic * piezo.heat_per_volume
     bonded = sum(ceramics_of(actuator))
@@ -129,6 +129,6 @@ def thermal_body(actuator: Actuator) -> ThermalBody:
 def driven_thickness(actuator: Actuator) -> si.Metre | None:
     """Between the electrodes of the thinnest ceramic (m); None where no ceramic is described."""
     if isinstance(actuator, RectangularPlate):
-        driven = [one.thickness for one in actuator.patches if one.electrode == "driven"]
+        driven = [patch.thickness for patch in actuator.patches if patch.electrode == "driven"]
         return min(driven, default=None)
     return actuator.ceramic_thickness if isinstance(actuator, DiscPlate) else None

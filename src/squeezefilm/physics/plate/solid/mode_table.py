@@ -89,7 +89,7 @@ def collected_modes(
     Raises `InputError` where none is left.
     """
     tables = [_table(piece, drive_signs(plate)) for piece in pieces]
-    order = _order([one for table in tables for one in table.frequencies], band)
+    order = _order([frequency for table in tables for frequency in table.frequencies], band)
 
     def taken(columns: Iterable[Iterable[_Row]]) -> list[_Row]:
         rows = list(itertools.chain.from_iterable(columns))

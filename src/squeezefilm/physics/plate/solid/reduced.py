@@ -173,7 +173,7 @@ def _krylov_space(
 
 def class_slices(parts: list[ReducedClass]) -> list[slice]:
     """Where the coordinates of each class stand among those of all."""
-    ends = np.cumsum([0, *(one.basis.shape[1] for one in parts)]).tolist()
+    ends = np.cumsum([0, *(part.basis.shape[1] for part in parts)]).tolist()
     return [slice(*pair) for pair in itertools.pairwise(ends)]
 
 
@@ -181,7 +181,7 @@ def surface_values(
     parts: list[ReducedClass], x: si.FloatArray, y: si.FloatArray, z: float
 ) -> si.FloatArray:
     """w of every coordinate of all classes on a grid, shape (coordinates, x, y)."""
-    return np.concatenate([one.solved.field(one.basis, x, y, z)[..., 2] for one in parts])
+    return np.concatenate([part.solved.field(part.basis, x, y, z)[..., 2] for part in parts])
 
 
 def harmonic_solution(

@@ -190,10 +190,10 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         """Mean power (W) lost in materials, supports, shunts and loads; equals the input power."""
         omega = 2 * np.pi * self.frequencies
         out = omega / 2 * self._quadratic_form("loss")
-        for one, V in zip(self._parts, self._potentials, strict=True):
-            for number, resistance, share in one.circuit:
+        for part, V in zip(self._parts, self._potentials, strict=True):
+            for number, resistance, share in part.circuit:
                 if np.isfinite(resistance):
-                    patches = one.solved.copies / share
+                    patches = part.solved.copies / share
                     out += patches * np.abs(V[:, number]) ** 2 / (2 * resistance)
         for load in self._loads:
             x, y, area = load.points()
@@ -211,9 +211,9 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
     def _quadratic_form(self, matrix: Literal["mass", "stiffness", "loss"]) -> si.FloatArray:
         """qᴴ A q of the coordinates q per volt and one matrix of all classes, by frequency."""
         out = np.zeros(self.frequencies.size)
-        for one, at in zip(self._parts, class_slices(self._parts), strict=True):
+        for part, at in zip(self._parts, class_slices(self._parts), strict=True):
             q = self._coordinates[:, at]
-            out += np.einsum("fi,ij,fj->f", q.conj(), getattr(one, matrix), q).real
+            out += np.einsum("fi,ij,fj->f", q.conj(), getattr(part, matrix), q).real
         return out
 
 
@@ -346,7 +346,7 @@ def _load_stiffness(
     loads: Sequence[SurfaceLoad],
     omega: si.FloatArray,
 ) -> si.ComplexArray:
-    total = sum(one.basis.shape[1] for one in parts)
+    total = sum(part.basis.shape[1] for part in parts)
     out = np.zeros((omega.size, total, total), dtype=complex)
     for load in loads:
         x, y, area = load.points()
@@ -365,7 +365,7 @@ def _truncation(
 ) -> float:
     """How much the admittance changes when each space loses its last quarter."""
     pick = np.arange(0, omega.size, max(1, omega.size // 12))
-    shorter = [_shortened(one) for one in parts]
+    shorter = [_shortened(part) for part in parts]
     kept = np.concatenate(
         [
             np.arange(at.start, at.start + short.basis.shape[1])

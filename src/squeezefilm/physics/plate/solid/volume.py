@@ -139,10 +139,10 @@ def harmonic_fields(
     moved = np.zeros(volume.points.shape, dtype=complex)
     charged = np.zeros(len(volume.points), dtype=complex)
     parts = response._parts
-    for one, own, potentials in zip(parts, class_slices(parts), response._potentials, strict=True):
-        vector = one.basis @ response._coordinates[at, own]
-        moved += volume.displacement(one.solved, vector)
-        charged += volume.potential(one.solved, vector, potentials[at])
+    for part, own, potentials in zip(parts, class_slices(parts), response._potentials, strict=True):
+        vector = part.basis @ response._coordinates[at, own]
+        moved += volume.displacement(part.solved, vector)
+        charged += volume.potential(part.solved, vector, potentials[at])
     return moved, charged
 
 

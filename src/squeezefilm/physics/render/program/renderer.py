@@ -179,7 +179,7 @@ class Played:
 def _rows(arrays: Iterable[si.FloatArray]) -> tuple[si.FloatArray, ...]:
     """Arrays as the compiled loops take them; copies, since NumPy warns when compiled code looks at
     the views that broadcasting makes."""
-    return tuple(one.copy().ravel() for one in arrays)
+    return tuple(array.copy().ravel() for array in arrays)
 
 
 def _series(*arguments: Any) -> tuple[si.FloatArray, ...]:

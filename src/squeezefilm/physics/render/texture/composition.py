@@ -175,9 +175,9 @@ def _require_alike(textures: SequenceOf[Composable], what: str) -> None:
             f"a {what} of {len(textures)} textures cannot be made: give 1 to {MOST_PARTS}",
             quantity="textures",
         )
-    for one in textures:
-        require_texture("textures", one)
-    found = list(dict.fromkeys(one.quantity for one in textures))
+    for texture in textures:
+        require_texture("textures", texture)
+    found = list(dict.fromkeys(texture.quantity for texture in textures))
     if len(found) > 1:
         raise InputError(
             f"a {what} cannot mix {' and '.join(found)}: all its textures must be of one "
@@ -209,12 +209,12 @@ class Sum(_Several):
         _require_alike(self.textures, "sum")
 
     def _values(self, finger: Finger) -> si.FloatArray:
-        parts = [one._values(finger) for one in self.textures]
+        parts = [texture._values(finger) for texture in self.textures]
         return np.asarray(np.add.reduce(parts))
 
     def _lower(self, assembler: Assembler) -> None:
-        for index, one in enumerate(self.textures):
-            one._lower(assembler)
+        for index, texture in enumerate(self.textures):
+            texture._lower(assembler)
             if index:
                 assembler.emit(ADD)
 

@@ -165,7 +165,7 @@ def finger_arguments(
     try:
         return Finger(*np.broadcast_arrays(*arrays))
     except ValueError as error:
-        shapes = ", ".join(str(one.shape) for one in arrays)
+        shapes = ", ".join(str(array.shape) for array in arrays)
         raise InputError(
             f"x, y, v, t of shapes {shapes} do not broadcast; give equal shapes or scalars"
         ) from error

@@ -107,8 +107,8 @@ class Pattern(Part):
 def _parts(kind: type[_Joined], *operands: Pattern) -> tuple[Pattern, ...]:
     """Operands with nested ones of the same kind flattened, so that brackets make no difference."""
     found: list[Pattern] = []
-    for one in operands:
-        found += one.patterns if isinstance(one, kind) else [one]
+    for operand in operands:
+        found += operand.patterns if isinstance(operand, kind) else [operand]
     return tuple(found)
 
 
@@ -154,16 +154,16 @@ class _Joined:
                 f"{len(self.patterns)} patterns cannot be joined; give 1 to {MOST_PARTS}",
                 quantity="patterns",
             )
-        for one in self.patterns:
-            require_pattern("patterns", one)
+        for pattern in self.patterns:
+            require_pattern("patterns", pattern)
 
     def _values(self, finger: Finger) -> si.FloatArray:
-        parts = [one._values(finger) for one in self.patterns]
+        parts = [pattern._values(finger) for pattern in self.patterns]
         return np.asarray(self._operation.reduce(parts))
 
     def _lower(self, assembler: Assembler) -> None:
-        for index, one in enumerate(self.patterns):
-            one._lower(assembler)
+        for index, pattern in enumerate(self.patterns):
+            pattern._lower(assembler)
             if index:
                 assembler.emit(self._opcode)
 

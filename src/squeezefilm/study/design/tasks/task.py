@@ -129,7 +129,9 @@ def kinds_of(surfaces: Sequence[Stimulus]) -> list[int]:
     Raises `ConfigError` for a surface whose file cannot be read.
     """
     known: dict[object, int] = {}
-    return [known.setdefault((one.texture, one.surface()), len(known)) for one in surfaces]
+    return [
+        known.setdefault((surface.texture, surface.surface()), len(known)) for surface in surfaces
+    ]
 
 
 CLEARER = "Of the two directions the one in which a rhythm is clearer decides."
