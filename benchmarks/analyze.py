@@ -3,10 +3,9 @@
 Wall-clock times and, in brackets, processor times (user and system, all processes of the verb),
 imports included, what was compiled loaded from the cache, the least of some runs.
 "first" solves the plate and the films under the finger, "again" finds what the run before it kept
-on disk, "changed" is again with a force that no run had, whose draws are drawn anew. Peers: the
-same run again on one processor, where there is no second process, and `predict` alone in the same
-process. Steps are the processor time of the process that an engineer waits for; one takes all until
-the next is told. The speed of a machine drifts: compare within one run only.
+on disk, "changed" is again with a force that no run had, whose draws are drawn anew. The peer is
+`predict` alone in the same process. Steps are processor time; one takes all until the next is told.
+The speed of a machine drifts: compare within one run only.
 Run: python benchmarks/analyze.py [DISPLAY …]
 """
 
@@ -31,9 +30,7 @@ PREDICT = ("resonance, amplitude and friction", "solve")
 
 # Its own process, as a person starts it: imports are waited for too.
 STEPS = """
-import json, os, sys, time
-if sys.argv[3] == "one":
-    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+import json, sys, time
 took, last = {}, ["imports", 0.0]
 def tell(text):
     name, began = last
@@ -43,18 +40,15 @@ def tell(text):
     took[name] = took.get(name, 0.0) + now - began
     last[:] = [text, now]
 from pathlib import Path
-from squeezefilm.cli.describe import _prepare, _prepare_figures
-from squeezefilm.core.second_process import second_process
-with second_process(_prepare, _prepare_figures, at_once=False):
-    from squeezefilm.design.analysis.analyze import analyze
-    from squeezefilm.physics.display import load_display
-    from squeezefilm.design.analysis.report.page import write_analysis
-    display = load_display(sys.argv[1])
-    force = float(sys.argv[4]) * display.finger.normal_force
-    found = analyze(display, normal_force=force, progress=tell)
-    tell("summary")
-    write_analysis(found, Path(sys.argv[2]), tell)
-    tell("end")
+from squeezefilm.design.analysis.analyze import analyze
+from squeezefilm.physics.display import load_display
+from squeezefilm.design.analysis.report.page import write_analysis
+display = load_display(sys.argv[1])
+force = float(sys.argv[3]) * display.finger.normal_force
+analysis = analyze(display, normal_force=force, progress=tell)
+tell("summary")
+write_analysis(analysis, Path(sys.argv[2]), tell)
+tell("end")
 print(json.dumps(took))
 """
 
@@ -68,10 +62,10 @@ class Run(NamedTuple):
     steps: dict[str, float]
 
 
-def run(display: str, folder: Path, kept: str, processors: str, force: float = 1.0) -> Run:
+def run(display: str, folder: Path, kept: str, force: float = 1.0) -> Run:
     """Run the verb with a force over the display's own; `kept` is where films, plates and draws are
     kept, or "off"."""
-    command = [sys.executable, "-c", STEPS, display, str(folder / "report"), processors, str(force)]
+    command = [sys.executable, "-c", STEPS, display, str(folder / "report"), str(force)]
     environment = os.environ | {"SQUEEZEFILM_CACHE": kept}
     began, before = time.perf_counter(), os.times()
     done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment)
@@ -82,33 +76,31 @@ def run(display: str, folder: Path, kept: str, processors: str, force: float = 1
 
 def main() -> None:
     """Print for each display how long its analysis takes, over its peers, and what limits it."""
-    head = "".join(f"{name:>18}" for name in ("first", "again", "changed", "one processor"))
+    head = "".join(f"{name:>18}" for name in ("first", "again", "changed"))
     head += f"{'over predict':>14}"
     print(f"{'display':<16}{head}   what takes it")
     for display in sys.argv[1:] or DISPLAYS:
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             kept = str(folder / "kept")
-            first = run(display, folder, kept, "all")
+            first = run(display, folder, kept)
             # In turn, so that all meet the same machine.
             turns = [
                 (
-                    run(display, folder, kept, "all"),
-                    run(display, folder, kept, "all", 1.01 + 0.001 * number),
-                    run(display, folder, kept, "one"),
+                    run(display, folder, kept),
+                    run(display, folder, kept, 1.01 + 0.001 * number),
                 )
                 for number in range(ROUNDS)
             ]
-        both, changed, alone = (
-            min(some, key=lambda one: one.wall) for some in zip(*turns, strict=True)
+        again, changed = (
+            min(runs, key=lambda each: each.processor) for runs in zip(*turns, strict=True)
         )
-        whole = sum(alone.steps.values())
-        predicted = sum(alone.steps[step] for step in PREDICT if step in alone.steps)
-        ranked = sorted(alone.steps.items(), key=lambda item: -item[1])[:5]
+        whole = sum(again.steps.values())
+        predicted = sum(again.steps[step] for step in PREDICT if step in again.steps)
+        ranked = sorted(again.steps.items(), key=lambda item: -item[1])[:5]
         most = ", ".join(f"{name} {100 * took / whole:.0f} %" for name, took in ranked)
         times = "".join(
-            f"{each.wall:>8.1f} s ({each.processor:.1f} s)"
-            for each in (first, both, changed, alone)
+            f"{each.wall:>8.1f} s ({each.processor:.1f} s)" for each in (first, again, changed)
         )
         print(f"{display:<16}{times}{whole / predicted:>14.1f}   {most}", flush=True)
 

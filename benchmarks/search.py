@@ -56,7 +56,7 @@ def pools() -> Iterator[dict[str, Any]]:
     """One and two workers, of processes and of a cluster."""
     with local_cluster(1) as one, local_cluster(2) as two:
         # A pool of processes that has one.
-        from squeezefilm.design.sweep.processes import Processes
+        from squeezefilm.design.sweep.workers import Processes
 
         with (
             Processes(1) as process,
