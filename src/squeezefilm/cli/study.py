@@ -20,7 +20,7 @@ from squeezefilm.cli.app import (
     working,
     written_to,
 )
-from squeezefilm.core.arguments import called_with
+from squeezefilm.core.called_with import called_with
 
 
 @app.command()

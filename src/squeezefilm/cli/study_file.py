@@ -8,7 +8,7 @@ import typer
 
 from squeezefilm.cli.app import AsJson, In, print_json, read_option, working, written_to
 from squeezefilm.cli.study import Observer, Store, drawing_by_two, study
-from squeezefilm.core.arguments import called_with
+from squeezefilm.core.called_with import called_with
 
 
 @dataclass(frozen=True)

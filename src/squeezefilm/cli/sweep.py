@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from squeezefilm.cli.app import AsJson, Finger, Jobs, Scheduler, answer, app, working, written_to
-from squeezefilm.core.arguments import called_with
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 
 

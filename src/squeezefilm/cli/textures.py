@@ -25,7 +25,7 @@ from squeezefilm.cli.app import (
     working,
     written_to,
 )
-from squeezefilm.core.arguments import called_with
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 
 

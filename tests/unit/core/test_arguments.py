@@ -6,7 +6,8 @@ from dataclasses import KW_ONLY, dataclass
 
 import pytest
 
-from squeezefilm.core.arguments import called_with, reads_text
+from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.quantities import Metre
 
 

@@ -9,7 +9,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with, reads_text
+from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.design.analysis.area_odds import JudgedArea, judged_area

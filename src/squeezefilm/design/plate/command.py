@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with, reads_text
+from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import NODAL_LINES, require_within
 from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left

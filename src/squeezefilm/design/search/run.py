@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with, reads_text
+from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError, WorkersError
 from squeezefilm.core.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED, require_within
 from squeezefilm.core.progress import SayProgress, about

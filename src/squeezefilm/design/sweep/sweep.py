@@ -12,7 +12,8 @@ from typing import Annotated, Any
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with, reads_text
+from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import WorkersError
 from squeezefilm.core.progress import SayProgress, about
 from squeezefilm.core.results import config_hash, stamp

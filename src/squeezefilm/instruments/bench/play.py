@@ -16,7 +16,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with, reads_text
+from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress

@@ -30,6 +30,35 @@ SKIN_COMPLIANCE = "skin_compliance"
 FORCE = "finger.normal_force"
 
 
+_NAMES = {
+    "finger.asperities.roughness": "roughness of skin and surface",
+    "finger.asperities.modulus": "modulus of the outermost skin",
+    "finger.asperities.hurst_exponent": "Hurst exponent of the roughness",
+    "finger.asperities.longest_wavelength": "longest wave of the roughness",
+    "finger.asperities.shortest_wavelength": "shortest wave of the roughness",
+    "finger.asperities.reference_gap": "gap of the asperities",
+    "finger.asperities.decay_length": "decay length of the asperities",
+    "finger.plateau_width": "width of a ridge's plateau",
+    "finger.contact_length": "length of the contact",
+    "finger.contact_decay_length": "decay length of the contact's pressure",
+    "finger.decay_speed_exponent": "growth of the decay length with speed",
+    "finger.contact_area_exponent": "growth of the contact with force",
+    "finger.normal_force": "force of the finger",
+    "finger.moisture": "moisture of the finger",
+    "height_law": "law of the heights",
+    "gas.slip": "slip law of the gas",
+    "actuator.quality_factor": "quality factor",
+    "skin_compliance": "softness of the pad",
+}
+
+
+def name_of(path: str) -> str:
+    """The name for people of an uncertain value by its dotted path."""
+    if path.startswith("surfaces."):
+        return "roughness of the surface"
+    return _NAMES.get(path, path.split(".", 1)[-1].replace("_", " "))
+
+
 @dataclass(frozen=True)
 class Parameter:
     """One uncertain value: its dotted path in the display, nominal value, distribution and origin.
@@ -47,6 +76,11 @@ class Parameter:
     source: str
     knowledge: Knowledge = "measurable"
     steps: int | None = None
+
+    @property
+    def said(self) -> str:
+        """Its name for people."""
+        return name_of(self.path)
 
     @si.checked_numbers
     def drawn(self, share: si.DimensionlessArray) -> list[float]:

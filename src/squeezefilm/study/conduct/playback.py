@@ -16,7 +16,8 @@ from types import TracebackType
 from typing import Annotated, Literal, Self
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import ReadBy, called_with, reads_text
+from squeezefilm.core.arguments import ReadBy, reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.bench.markers import Markers, markers_if
 from squeezefilm.instruments.twin.hand import EXPLORING

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.study.identification.choice_model import (

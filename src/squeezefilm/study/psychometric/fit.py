@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 from scipy.special import ndtr
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with, reads_text
+from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.study.psychometric import kernel

@@ -8,7 +8,8 @@ from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with, reads_text
+from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.bench.markers import markers_if
 from squeezefilm.study.conduct.terminal_run import Desk, Examiner, open_study, run_session

@@ -17,7 +17,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.arguments import called_with, reads_text
+from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.formats.traces import table_from_csv
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp, to_json

@@ -72,7 +72,7 @@ def _sentence(analysis: Analysis) -> str:
     if area is None or area.odds is None:
         return f"{text}."
     worst = probability_words(area.odds.probabilities_below(below)[-1])
-    return f"{text}; at the worst place {worst}."
+    return f"{text} at the best place and {worst} at the worst."
 
 
 def _numbers(analysis: Analysis) -> list[Row]:
@@ -152,7 +152,8 @@ def _next_step(analysis: Analysis) -> str:
     for influence in unsure.influences:
         if influence.parameter.knowledge == "measurable":
             share = si.percent(max(influence.total, 0.0))
-            return f"Measure {influence.parameter.path}: it carries {share} of the variance."
+            name = f"{influence.parameter.said} ({influence.parameter.path})"
+            return f"Measure the {name}: {share} of the variance of µ′/µ comes from it."
     return "Nothing that can be measured would make the friction surer."
 
 

@@ -24,27 +24,6 @@ if TYPE_CHECKING:
     from squeezefilm.physics.chain.friction import FrictionLaw
     from squeezefilm.physics.chain.prediction import Prediction
 
-_NAMES_OF_PARAMETERS = {
-    "finger.asperities.roughness": "roughness of skin and surface",
-    "finger.asperities.modulus": "modulus of the outermost skin",
-    "finger.asperities.hurst_exponent": "Hurst exponent of the roughness",
-    "finger.asperities.longest_wavelength": "longest wave of the roughness",
-    "finger.asperities.shortest_wavelength": "shortest wave of the roughness",
-    "finger.asperities.reference_gap": "gap of the asperities",
-    "finger.asperities.decay_length": "decay length of the asperities",
-    "finger.plateau_width": "width of a ridge's plateau",
-    "finger.contact_length": "length of the contact",
-    "finger.contact_decay_length": "decay length of the contact's pressure",
-    "finger.decay_speed_exponent": "growth of the decay length with speed",
-    "finger.contact_area_exponent": "growth of the contact with force",
-    "finger.normal_force": "force of the finger",
-    "finger.moisture": "moisture of the finger",
-    "height_law": "law of the heights",
-    "gas.slip": "slip law of the gas",
-    "actuator.quality_factor": "quality factor",
-    "skin_compliance": "softness of the pad",
-}
-
 
 @style.drawn
 def models(result: FrictionAnalysis) -> Figure:
@@ -136,7 +115,7 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
         if influence.parameter.knowledge == "measurable"
     )
     figure = style.new_figure(
-        f"{unsure.sentence}; to know it better, measure the {_name(first.parameter.path)}",
+        f"{unsure.sentence}; to know it better, measure the {first.parameter.said}",
         f"{unsure.model}, {unsure.refused.evaluations} draws",
         4.8,
     )
@@ -170,7 +149,7 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
             label=name,
             **look,
         )
-    right.set_yticks(rows, [_name(i.parameter.path) for i in ranked])
+    right.set_yticks(rows, [i.parameter.said for i in ranked])
     right.set(xlabel="share of the variance of µ′/µ (%)", xlim=(0, None))
     right.grid(visible=False, axis="y")
     style.legend_below(right, columns=1)
@@ -202,12 +181,6 @@ def ripple(result: FrictionAnalysis) -> Figure:
     axes.set(xlim=(0, 2e3 * half), ylim=(0, 1.04))
     style.legend_below(axes)
     return figure
-
-
-def _name(path: str) -> str:
-    if path.startswith("surfaces."):
-        return "roughness of the surface"
-    return _NAMES_OF_PARAMETERS.get(path, path.split(".", 1)[-1].replace("_", " "))
 
 
 FIGURES = (
