@@ -329,7 +329,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--count", type=int, default=70, help="mutants in the sample")
     parser.add_argument("--rooms", default="", help="only these, separated by commas")
     parser.add_argument(
-        "--budget", type=float, default=10, help="processor time of the tests of a mutant (s)"
+        "--budget", type=float, default=16, help="processor time of the tests of a mutant (s)"
     )
     parser.add_argument("--minutes", type=float, default=60, help="after which none is begun")
     parser.add_argument(

@@ -113,9 +113,10 @@ def chosen_modes(
             out.append(np.sort(np.array(hits[:3], dtype=np.int64)))
         if not any(o.size for o in out):
             seen = ", ".join(str(label) for one in found for label in one.labels if label)
+            where = "" if near is None else f" near {near:.0f} Hz"
             raise InputError(
-                f"no mode {mode} was found near {near:.0f} Hz (there are {seen}); solve near "
-                "another frequency",
+                f"no mode {mode} was found{where} (there are {seen or 'none with nodal lines'}); "
+                "solve near another frequency",
                 quantity="mode",
             )
         return out
