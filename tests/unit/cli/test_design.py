@@ -117,7 +117,7 @@ def test_one_that_is_stopped_says_so_and_ends_as_interrupted(
         raise KeyboardInterrupt
 
     monkeypatch.setattr(searches.SearchRun, "_screen", stopped)
-    monkeypatch.setattr(searches.SearchRun, "_compare", lambda self: None)
+    monkeypatch.setattr(searches, "reference_of", lambda _: None)
     for options, hint in (
         (["--out", tmp_path], "the same command goes on"),
         ([], "add --out DIR to keep what is done"),
@@ -136,7 +136,7 @@ def test_one_whose_cluster_is_gone_shows_what_it_has_and_says_so(
         raise WorkersError("the scheduler answers no more; start it")
 
     monkeypatch.setattr(searches.SearchRun, "_screen", gone)
-    monkeypatch.setattr(searches.SearchRun, "_compare", lambda self: None)
+    monkeypatch.setattr(searches, "reference_of", lambda _: None)
     with pytest.raises(WorkersError):
         invoked(PRESET, *FEW, "--out", tmp_path)
     assert not (tmp_path / "index.html").exists()

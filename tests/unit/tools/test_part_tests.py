@@ -25,10 +25,10 @@ def test_a_room_has_the_tests_below_it_and_those_of_its_physics_elsewhere() -> N
 @pytest.mark.parametrize(
     ("part", "test"),
     [
-        ("loading", "tests/unit/core/test_loading.py"),
+        ("interrupts", "tests/unit/core/test_interrupts.py"),
         ("planar", "tests/unit/physics/film/planar/test_kernel.py"),
         ("physics/film/planar", "tests/unit/physics/film/planar/test_kernel.py"),
-        ("control", "tests/unit/actuators/control/test_force_law.py"),
+        ("control", "tests/unit/instruments/control/test_plate_loop.py"),
     ],
 )
 def test_a_module_a_folder_and_a_path_are_parts(part: str, test: str) -> None:
