@@ -2,15 +2,18 @@
 
 MATLAB files, Universal Files and pictures are taken apart by libraries that a changed byte can
 crash or make unpack to gigabytes. A child reads them, with limits of memory and of processor time
-where the system has them (POSIX; macOS keeps none of memory) and of elapsed time everywhere. One
-child reads many files, and another is started after a crash: a start costs about half a second,
-once a process. It is no process of `multiprocessing`, which would load the caller's program again.
+where the system has them (POSIX; macOS keeps none of memory) and of elapsed time everywhere. What
+it read comes back as JSON and arrays of floats, never as pickled objects: a file that takes the
+child over gets no further. One child reads many files, and another is started after a crash: a
+start costs about half a second, once a process. It is no process of `multiprocessing`, which would
+load the caller's program again.
 """
 
 from __future__ import annotations
 
 import atexit
 import contextlib
+import json
 import os
 import pickle
 import signal
@@ -29,11 +32,13 @@ from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.hard_limits import READING_MEMORY, READING_TIME
 
 Read = tuple[Any, list[si.FloatArray]]
-"""What a function in the child returns: facts (plain values), and arrays."""
+"""What a function in the child returns: facts (anything that JSON holds), and arrays."""
 
 _PATIENCE: si.Second = 4 * READING_TIME.most
 """How long a child may take for one file by the clock on the wall."""
 _LEAVE: si.Second = 2.0
+_FLOATS = np.dtype("<f8")
+_LONGEST_HEAD = 16_000_000
 
 
 class IsolatedReader:
@@ -80,16 +85,15 @@ class IsolatedReader:
             try:
                 child.stdin.write(request)
                 child.stdin.flush()
-                result, refused = pickle.load(child.stdout)
-            except (OSError, EOFError, pickle.UnpicklingError) as error:
+                facts, arrays, refused = _received(child.stdout)
+            except (OSError, EOFError, ValueError, LookupError, RecursionError) as error:
                 self.end()
                 raise ConfigError(self._why(child, overdue.is_set()), file=file) from error
             finally:
                 watch.cancel()
         if refused is not None:
             raise ConfigError(**{"file": str(file), **refused})
-        read: Read = result
-        return read
+        return facts, arrays
 
     def end(self) -> None:
         """Let the child go; another is started for the next file."""
@@ -150,6 +154,19 @@ def _end_late(child: subprocess.Popen[bytes], overdue: threading.Event) -> None:
     child.kill()
 
 
+def _received(answers: IO[bytes]) -> tuple[Any, list[si.FloatArray], dict[str, Any] | None]:
+    """Facts, arrays and refusal that a child sent. Raises `ValueError` for what is no answer."""
+    head = json.loads(answers.readline(_LONGEST_HEAD))
+    arrays = []
+    for shape in head["shapes"]:
+        size = int(np.prod(shape)) * _FLOATS.itemsize
+        if not 0 <= size <= READING_MEMORY.most:
+            raise ValueError(f"an array of {size} bytes")
+        content = answers.read(size)
+        arrays.append(np.frombuffer(content, _FLOATS).astype(float).reshape(shape))
+    return head["facts"], arrays, head["refused"]
+
+
 _READER = IsolatedReader()
 atexit.register(_READER.end)
 
@@ -163,28 +180,33 @@ def _serve(requests: IO[bytes], answers: IO[bytes]) -> None:
         while True:
             function, arguments, seconds = pickle.load(requests)
             _limit_processor_time(seconds)
-            answers.write(pickle.dumps(_answer(function, arguments)))
+            facts, arrays, refused = _answer(function, arguments)
+            shapes = [array.shape for array in arrays]
+            head = {"facts": facts, "shapes": shapes, "refused": refused}
+            answers.write(json.dumps(head).encode() + b"\n")
+            answers.writelines(array.tobytes() for array in arrays)
             answers.flush()
 
 
 def _answer(
     function: Callable[..., Read], arguments: tuple[Any, ...]
-) -> tuple[Read | None, dict[str, Any] | None]:
+) -> tuple[Any, list[si.FloatArray], dict[str, Any] | None]:
     """The result of a function, or what a `ConfigError` says in its place."""
     try:
         facts, arrays = function(*arguments)
-        return (facts, [np.asarray(array, dtype=float) for array in arrays]), None
+        return facts, [np.ascontiguousarray(array, _FLOATS) for array in arrays], None
     except ConfigError as error:
         said = {key: getattr(error, key) for key in ("message", "file", "line", "column", "key")}
-        return None, {key: value for key, value in said.items() if value is not None}
+        refused = {key: value for key, value in said.items() if value is not None}
     except InputError as error:
-        return None, {"message": str(error)}
+        refused = {"message": str(error)}
     except MemoryError:
         allowed = f"{READING_MEMORY.most / 1e9:g} GB ({READING_MEMORY.name}"
-        return None, {
+        refused = {
             "message": f"cannot be read: reading it takes more than {allowed}: "
             f"{READING_MEMORY.reason}); export it again with less data"
         }
+    return None, [], refused
 
 
 def _limit_processor_time(seconds: si.Second) -> None:

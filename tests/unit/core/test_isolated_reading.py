@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import io
 import os
+import pickle
 import random
 import signal
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -173,3 +175,29 @@ def test_a_small_file_that_unpacks_to_gigabytes_is_refused(tmp_path: Path) -> No
     assert path.stat().st_size < 2e6
     with pytest.raises(ConfigError, match="takes more than"):
         read_matlab(path)
+
+
+class Harmful:
+    """What runs a command where it is unpickled."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return os.system, ("touch harmed",)
+
+
+def taken_over(data: bytes) -> Read:
+    """A child that a file has taken over sends what it likes."""
+    answers = next(fd for fd in range(3, 20) if Path(f"/proc/self/fd/{fd}").exists())
+    os.write(answers, pickle.dumps(Harmful()) + b"\n")
+    os._exit(0)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="finds the child's pipe in /proc")
+def test_what_a_child_sends_is_never_unpickled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    reader = IsolatedReader()
+    with pytest.raises(ConfigError, match="crashed"):
+        reader.read(taken_over, file="a.mat")
+    reader.end()
+    assert not list(tmp_path.iterdir())
