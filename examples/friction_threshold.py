@@ -3,7 +3,6 @@
 The least drop of friction that a (simulated) person tells from none, in two intervals.
 """
 
-import json
 from statistics import NormalDist
 
 import numpy as np
@@ -25,8 +24,10 @@ def main() -> dict[str, float]:
     while not method.finished:
         drop = method.next_stimulus()
         method.update(drop, bool(chance.random() < person(drop)))
-        if len(method.trials) == 75:  # stopped and resumed: the same as if it had not been
-            method = sf.BayesianAdaptive.from_state(json.loads(json.dumps(method.state())))
+        if len(method.trials) == 75:  # stopped and resumed: the answers are played again
+            answered, method = method.trials, sf.BayesianAdaptive(design)
+            for trial in answered:
+                method.update(trial.intensity, trial.positive)
 
     fit = sf.fit_psychometric(
         [trial.intensity for trial in method.trials],
