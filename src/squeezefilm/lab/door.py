@@ -139,7 +139,7 @@ class Door:
             connection.close()
 
     def _has_room(self, address: str) -> bool:
-        """Whether a newcomer may stay; a stranger may have had to go for it."""
+        """True where a newcomer may stay; a stranger may have had to go for it."""
         own = [one for one in self._open if one.address == address]
         if len(own) >= self._most_of_address:
             return self._end_stranger([one for one in own if one.is_stranger])

@@ -158,7 +158,7 @@ def static_file(folder: Path, name: str) -> Response:
 
 
 def is_named(real: PurePath, folder: PurePath, name: str) -> bool:
-    """Whether a resolved path is the one below a resolved folder that an address names.
+    """True where a resolved path is the one below a resolved folder that an address names.
 
     A name with a slash at its end, with a backslash, or one that a link leads elsewhere is not.
     """

@@ -43,7 +43,7 @@ class ToldProcess:
 
     @property
     def running(self) -> bool:
-        """Whether it is at work."""
+        """True where it is at work."""
         return self._process is not None and self._process.is_alive()
 
     def start(self, work: Callable[..., None], **arguments: Any) -> None:

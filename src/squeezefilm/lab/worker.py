@@ -90,7 +90,7 @@ class _Process:
     def ask(
         self, work: Callable[..., T], arguments: tuple[Any, ...], told: Told | None
     ) -> tuple[bool, Any]:
-        """Whether it worked, and the result or the error; how far it is is told meanwhile.
+        """Success, and the result or the error; how far it is is told meanwhile.
 
         Raises `EOFError` if the process dies.
         """

@@ -190,7 +190,7 @@ class Analysis(Result):
 
     @property
     def has_sensitivities(self) -> bool:
-        """Whether summary and report hold what each value does."""
+        """True where summary and report hold what each value does."""
         return self.whole or self.effort is not None
 
     @functools.cached_property

@@ -96,7 +96,7 @@ class DisplaySensitivity:
 
     @property
     def known(self) -> bool:
-        """Whether both ends have a friction."""
+        """True where both ends have a friction."""
         return None not in (self.low.relative_friction, self.high.relative_friction)
 
     @property

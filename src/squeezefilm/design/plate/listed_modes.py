@@ -62,12 +62,12 @@ class ListedMode:
 
     @property
     def crowded(self) -> bool:
-        """Whether a neighbour takes part in what moves at this mode's resonance."""
+        """True where a neighbour takes part in what moves at this mode's resonance."""
         return self.neighbour_share >= CROWDED
 
     @property
     def hidden(self) -> bool:
-        """Whether a neighbour moves more than this mode does at its own resonance."""
+        """True where a neighbour moves more than this mode does at its own resonance."""
         return self.neighbour_share >= 1
 
 

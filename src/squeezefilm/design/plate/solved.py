@@ -251,7 +251,7 @@ class Hurry:
         return cls(size, whole)
 
     def allows_band(self, plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> bool:
-        """Whether all modes of a band (Hz, Hz) can be looked for, on the coarse meshes at least."""
+        """True where modes of a band (Hz, Hz) can be looked for, on the coarse meshes at least."""
         return self.whole is None or self.whole.allows(band_seconds(plate, band[1]))
 
     def left_out(self, alone: PlateModes, modes: PlateModes) -> tuple[str, ...]:

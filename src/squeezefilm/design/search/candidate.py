@@ -115,7 +115,7 @@ class Evaluated:
 
     @property
     def is_feasible(self) -> bool:
-        """Whether it can be built and keeps all limits that are known of it."""
+        """True where it can be built and keeps all limits that are known of it."""
         return not self.reason and not self.broken
 
     def objectives(self, names: tuple[str, ...]) -> tuple[float, ...]:

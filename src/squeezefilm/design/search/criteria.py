@@ -64,7 +64,7 @@ class Criterion:
 
     @property
     def is_floor(self) -> bool:
-        """Whether its limit is a least."""
+        """True where its limit is a least."""
         return self.limit.startswith("least_")
 
     def shown(self, value: float | None) -> str:

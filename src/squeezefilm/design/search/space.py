@@ -36,7 +36,7 @@ class Number:
 
     @property
     def is_fixed(self) -> bool:
-        """Whether there is nothing to choose."""
+        """True where there is nothing to choose."""
         return self.low == self.high
 
     def at(self, share: float, chosen: Values) -> float:
@@ -65,7 +65,7 @@ class Step:
 
     @property
     def is_fixed(self) -> bool:
-        """Whether there is nothing to choose."""
+        """True where there is nothing to choose."""
         return all(len(one) == 1 for one in self.lists.values())
 
     def _values(self, chosen: Values) -> tuple[float, ...]:
@@ -98,7 +98,7 @@ class Choice:
 
     @property
     def is_fixed(self) -> bool:
-        """Whether there is nothing to choose."""
+        """True where there is nothing to choose."""
         return len(self.values) == 1
 
     def at(self, share: float, chosen: Values) -> str:

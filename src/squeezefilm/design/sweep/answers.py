@@ -38,7 +38,7 @@ class Asked:
 
     @property
     def _plain(self) -> bool:
-        """Whether the key alone asks this verb."""
+        """True where the key alone asks this verb."""
         verbs = (verb for verb in VERBS if verb != FOLLOWED and _known(verb, self.key))
         return next(verbs, None) == self.verb
 
@@ -49,7 +49,7 @@ class Asked:
 
     @property
     def draws(self) -> bool:
-        """Whether it is part of an interval, for which the verb draws samples."""
+        """True where it is part of an interval, for which the verb draws samples."""
         return _DRAWN.search(self.key) is not None
 
 

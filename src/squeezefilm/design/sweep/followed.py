@@ -111,7 +111,7 @@ class FollowedMode:
 
     @property
     def lost(self) -> bool:
-        """Whether it was lost at a point."""
+        """True where it was lost at a point."""
         return None in self.numbers
 
     @property

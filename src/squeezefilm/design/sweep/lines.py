@@ -29,7 +29,7 @@ def _checked_line(values: dict[str, Any]) -> bytes:
 
 
 def _is_damaged(line: bytes) -> bool:
-    """Whether a line is not what was written: by its checksum, or, where it has none, no JSON."""
+    """True where a line is not what was written: by its checksum, or, without one, no JSON."""
     if (check := _check_of(line)) is not None:
         return check != zlib.crc32(line[:-_CHECK_SIZE] + b"}")
     try:

@@ -28,7 +28,7 @@ def non_dominated(values: si.FloatArray) -> NDArray[np.bool_]:
 
 
 def dominates(a: si.FloatArray, b: si.FloatArray) -> bool:
-    """Whether `a` is at least as small as `b` in everything and smaller in something; either may
+    """True where `a` is at least as small as `b` in everything and smaller in something; either may
     be infinite."""
     return bool(np.all(a <= b) and np.any(a < b))
 

@@ -33,7 +33,7 @@ class Verb:
     draws: bool = False
 
     def knows(self, option: str) -> bool:
-        """Whether an option may stand beside this verb: it takes it, or is not moved by it."""
+        """True where an option may stand beside this verb: it takes it, or is not moved by it."""
         return option in self.takes | self.unmoved | {"voltage", "ambient_pressure"}
 
     def settings(self, options: Mapping[str, Any]) -> dict[str, Any]:

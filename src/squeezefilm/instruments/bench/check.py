@@ -1,4 +1,4 @@
-"""Whether a device does what the protocol promises: link, timing, limits, watchdog, readings.
+"""Checks that a device does what the protocol promises: link, timing, limits, watchdog, readings.
 
 Each check drives the device itself and says what it measured, what is allowed and what to do. They
 never ask for more than `TEST_VOLTAGE`, so that a device that fails them does no harm.
@@ -55,7 +55,7 @@ class DeviceCheck:
 
     @property
     def passed(self) -> bool:
-        """Whether every check passed."""
+        """True where every check passed."""
         return all(result.passed for result in self.results)
 
 
@@ -366,7 +366,7 @@ def _refusal(
     reason: Reason,
     sequence: int | None = None,
 ) -> CheckResult:
-    """Whether a payload of a kind is refused for a reason, and the output stays at zero."""
+    """True where a payload of a kind is refused for a reason, and the output stays at zero."""
     found = talk.answer(talk.send_raw(kind, payload, sequence))
     # Time for an output that should not be there to show.
     talk.listen_for(3e-3)

@@ -1,4 +1,4 @@
-"""Whether this computer makes a loop's ticks, and whether it was let: checked before it plays."""
+"""Checks that this computer makes a loop's ticks, and that it was let: checked before it plays."""
 
 from __future__ import annotations
 

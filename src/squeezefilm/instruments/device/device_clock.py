@@ -36,7 +36,7 @@ class DeviceClock:
 
     @property
     def known(self) -> bool:
-        """Whether a round trip has been seen."""
+        """True where a round trip has been seen."""
         return math.isfinite(self.lowest) and math.isfinite(self.highest)
 
     @property

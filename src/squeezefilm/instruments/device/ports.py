@@ -41,7 +41,7 @@ class Drive(Protocol):
 
     @property
     def stops_by_itself(self) -> bool:
-        """Whether the output goes to zero on its own within 60 ms when the host falls silent."""
+        """True where the output goes to zero on its own within 60 ms when the host falls silent."""
         ...
 
     def write(self, block: si.FloatArray) -> int:
@@ -100,7 +100,7 @@ class ReplaySensor:
 
     @property
     def ended(self) -> bool:
-        """Whether the last sample has been read."""
+        """True where the last sample has been read."""
         return self._given == self._time.size
 
     def read(self) -> FingerSample | None:

@@ -179,7 +179,7 @@ class Studies:
         return self.display_of(sitting.study, sitting.participant)
 
     def has_ended(self, id: str) -> bool:
-        """Whether a sitting has ended, or is not known any more."""
+        """True where a sitting has ended, or is not known any more."""
         return not self.sittings.is_open(id)
 
     def where(self, id: str) -> dict[str, Any]:
@@ -296,8 +296,8 @@ class Studies:
         return found, trial.seed
 
     def needs_device(self, id: str, token: str) -> bool:
-        """Whether an answer to this trial needs a device that played it: not one that is recorded
-        already, and not one of a real grating."""
+        """True where an answer to this trial needs a device that played it: not one that is
+        recorded already, and not one of a real grating."""
         sitting = self.sittings.get(id)
         if sitting.device == "none" or sitting.session is None:
             return False

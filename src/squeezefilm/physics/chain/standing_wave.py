@@ -24,7 +24,7 @@ from squeezefilm.physics.render.texture.coordinate import AlongX, AlongY
 
 Wave = Literal["ignored", "felt", "compensated"]
 WAVES: tuple[Wave, ...] = get_args(Wave)
-"""Whether the standing wave's nodes are left out, felt, or felt and made up for."""
+"""Treatment of the standing wave's nodes: left out, felt, or felt and made up for."""
 
 # Of a stroke's steps and its speeds, 160 MB.
 _MOST_FRICTIONS = 20_000_000

@@ -1,1 +1,1 @@
-"""Whether a description can be true: checked against what is built, before anything is solved."""
+"""Checks that a description can be true, against what is built, before anything is solved."""

@@ -23,7 +23,7 @@ from squeezefilm.physics.plausibility.checks import described_numbers
 _Whole = TypeVar("_Whole")
 Origin = Literal["given", "assumed"]
 Knowledge = Literal["measurable", "unknown"]
-"""Whether an experiment on the finger or the display could settle it, or nobody knows."""
+"""Knowledge: an experiment on finger or display could settle it, or nobody knows."""
 
 SKIN_COMPLIANCE = "skin_compliance"
 """Where the pad lies between all ridges at one mean gap (0) and each at its own balance (1)."""

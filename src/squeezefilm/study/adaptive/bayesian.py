@@ -116,7 +116,7 @@ class BayesianAdaptive:
 
     @property
     def finished(self) -> bool:
-        """Whether it has its trials."""
+        """True where it has its trials."""
         return len(self._trials) >= self.design.most_trials
 
     @property

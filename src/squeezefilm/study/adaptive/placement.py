@@ -121,7 +121,7 @@ class Placement:
 
     @property
     def finished(self) -> bool:
-        """Whether it has its trials."""
+        """True where it has its trials."""
         return len(self._given) >= self.trials
 
     @property

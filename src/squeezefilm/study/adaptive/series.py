@@ -43,7 +43,7 @@ class SameDifferentSeries:
 
     @property
     def finished(self) -> bool:
-        """Whether it has its trials."""
+        """True where it has its trials."""
         return self._placement.finished
 
     def estimate(self) -> tuple[si.Dimensionless, si.Dimensionless]:

@@ -112,7 +112,7 @@ class Staircase:
 
     @property
     def finished(self) -> bool:
-        """Whether it has its reversals or its trials."""
+        """True where it has its reversals or its trials."""
         reversals = sum(trial.reversal for trial in self._trials)
         return reversals >= self.rule.reversals or len(self._trials) >= self.rule.most_trials
 

@@ -99,7 +99,7 @@ class SessionDevice:
 
     @property
     def presenting(self) -> bool:
-        """Whether a surface was presented and not stopped yet."""
+        """True where a surface was presented and not stopped yet."""
         return self._presenting
 
     @property
@@ -109,7 +109,7 @@ class SessionDevice:
 
     @property
     def over(self) -> bool:
-        """Whether what was presented ended by itself, which is a failure; `stop` tells which."""
+        """True where what was presented ended by itself, which is a failure; `stop` tells which."""
         connection = self._connection
         return self._presenting and (connection is None or connection.poll(0.0))
 

@@ -242,8 +242,8 @@ class StudyRun:
         return trial, surfaces
 
     def recorded(self, token: str) -> bool:
-        """Whether this trial's answer is on the disk. Raises `InputError` for a token of no trial
-        of this participant."""
+        """True where this trial's answer is on the disk. Raises `InputError` for a token of no
+        trial of this participant."""
         return self._recorded(self._planned(token)) is not None
 
     def _rest_left(self, row: Row) -> si.Second:

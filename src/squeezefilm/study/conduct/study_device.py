@@ -78,7 +78,7 @@ class DeviceVerification:
 
     @property
     def passed(self) -> bool:
-        """Whether nothing measured is off."""
+        """True where nothing measured is off."""
         return not self.problems
 
 

@@ -37,7 +37,7 @@ def doubts_of(design: StudyDesign, observer: Observer, reach: bool = False) -> t
 
 
 def _of_range(design: StudyDesign, observer: Observer) -> list[str]:
-    """Whether differences from the reference lie on both sides of the predicted threshold."""
+    """True where differences from the reference lie on both sides of the predicted threshold."""
     fraction = predicted_fraction(design, observer)
     if not design.compares or not design.on_a_scale or fraction is None:
         return []

@@ -309,7 +309,7 @@ class StudyDesign:
 
     @property
     def on_a_scale(self) -> bool:
-        """Whether the surfaces have each another amount of what is judged, so that differences
+        """True where the surfaces have each another amount of what is judged, so that differences
         between them are told along it; those of adaptive series always have."""
         amounts = [self.judged_value(stimulus) for stimulus in self.stimuli]
         distinct = all(map(math.isfinite, amounts)) and len(set(amounts)) == len(amounts)

@@ -60,12 +60,12 @@ class Trial:
 
     @property
     def asks(self) -> bool:
-        """Whether an answer is wanted."""
+        """True where an answer is wanted."""
         return self.phase != "familiarisation"
 
     @property
     def feedback(self) -> bool:
-        """Whether the participant is told what was right."""
+        """True where the participant is told what was right."""
         return self.phase == "practice"
 
     def row(self) -> dict[str, Any]:

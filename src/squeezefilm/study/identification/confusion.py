@@ -66,7 +66,7 @@ class ConfusionMatrix:
 
     @property
     def is_square(self) -> bool:
-        """Whether answer number i is the right one for stimulus number i."""
+        """True where answer number i is the right one for stimulus number i."""
         return len(self.answers) == len(self.stimuli)
 
     @property

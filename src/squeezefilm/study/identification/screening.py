@@ -76,7 +76,7 @@ class Screening:
 
     @property
     def left_out(self) -> bool:
-        """Whether those named are left out of the results that are quoted."""
+        """True where those named are left out of the results that are quoted."""
         return self.rule.action == "exclude" and "without those named" in self.results
 
     @property
@@ -241,8 +241,8 @@ def _follows(mine: Answers, models: _Models | tuple[()]) -> float:
 
 
 def _changed(mine: Answers, models: _Models) -> list[str]:
-    """Whether a part of the session, from its begin or to its end, was guessed or mixed up; or all
-    of it has more lapses than the rule allows."""
+    """True where a part of the session, from its begin or to its end, was guessed or mixed up; or
+    all of it has more lapses than the rule allows."""
     rule, one_for_all, said = rule_of(mine.design), max(_best(model) for model in models), []
     least = max(_LEAST_PART, mine.trials // 4)
     at = np.arange(least, mine.trials - least + 1)

@@ -51,7 +51,7 @@ class Experiment(Protocol):
 
     @property
     def dear(self) -> bool:
-        """Whether simulating takes longer than fitting."""
+        """True where simulating takes longer than fitting."""
         ...
 
     def __call__(self, theta: si.FloatArray) -> Simulated:

@@ -95,7 +95,7 @@ class PsychometricFit(Result):
 
     @property
     def falls(self) -> bool:
-        """Whether the answers fall with intensity, more clearly than one guesser in a thousand."""
+        """True where answers fall with intensity, more clearly than one guesser in a thousand."""
         return self.falling_p < _FALLING
 
     @property

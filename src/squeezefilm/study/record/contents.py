@@ -42,7 +42,7 @@ def require_identifier(text: str) -> None:
 
 
 def is_trace(name: str) -> bool:
-    """Whether a file among the traces has a name that this program gave, half-written or not."""
+    """True where a file among the traces has a name that this program gave, half-written or not."""
     return bool(_TRACE.fullmatch(name) or _HALF_WRITTEN.fullmatch(name))
 
 
@@ -154,7 +154,7 @@ def _traces(text: str) -> bool:
 
 
 def _fields(text: str) -> bool:
-    """Whether a text is an object of plain values."""
+    """True where a text is an object of plain values."""
     found = _json(text)
     return isinstance(found, dict) and all(isinstance(one, _PLAIN) for one in found.values())
 

@@ -79,7 +79,7 @@ def discard(path: Path, claimed: Identity) -> None:
 
 
 def is_study(path: Path) -> bool:
-    """Whether a file is a study's, of whatever version. Nothing of it is changed."""
+    """True where a file is a study's, of whatever version. Nothing of it is changed."""
     try:
         return path.is_file() and _marks(path)[0] == APPLICATION_ID
     except InputError:

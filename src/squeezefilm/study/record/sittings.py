@@ -101,7 +101,7 @@ class Sittings:
         return _of(self._all(), id)
 
     def is_open(self, id: str) -> bool:
-        """Whether there is such a sitting and it has not ended."""
+        """True where there is such a sitting and it has not ended."""
         found = self._all().get(id)
         return found is not None and not found.ended
 

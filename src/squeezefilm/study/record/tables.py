@@ -136,7 +136,7 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
 
 
 def is_chosen(design: StudyDesign, name: str, row: Mapping[str, Any]) -> bool:
-    """Whether the surface of that name in a row is what an adaptive series chose."""
+    """True where the surface of that name in a row is what an adaptive series chose."""
     return bool(row["adaptive_series"]) and name != design.reference
 
 

@@ -244,7 +244,7 @@ def unlike_persons(
 
 
 def _pairs(main: Answers) -> tuple[NDArray[np.bool_], si.IntArray]:
-    """Whether both were the same surface, and the number of the one that is not the reference."""
+    """True for the same surface twice, and the number of the one that is not the reference."""
     names = [surface.name for surface in main.surfaces]
     here = names.index(main.design.reference) if main.design.reference in names else -1
     return main.first == main.second, np.where(main.first != here, main.first, main.second)

@@ -89,7 +89,7 @@ def mode_surface(result: PlateAnalysis) -> Figure:
 
 
 class _Hidden:
-    """Whether the surface stands between a point of a nodal line and the eye."""
+    """True where the surface stands between a point of a nodal line and the eye."""
 
     def __init__(
         self,

@@ -93,7 +93,7 @@ class Machine:
 
     @property
     def enabled(self) -> bool:
-        """Whether the amplifier's enable line is held."""
+        """True where the amplifier's enable line is held."""
         return self.state in (State.ARMED, State.PLAYING) or self.level > 0
 
     @property

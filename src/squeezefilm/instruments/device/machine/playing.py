@@ -56,11 +56,11 @@ class Tile:
 
     @property
     def ready(self) -> bool:
-        """Whether every amplitude has arrived."""
+        """True where every amplitude has arrived."""
         return self.size > 0 and len(self.levels) == self.size
 
     def fits(self, first: int, count: int) -> bool:
-        """Whether `count` amplitudes from number `first` are the next ones and find room."""
+        """True where `count` amplitudes from number `first` are the next ones and find room."""
         return first == len(self.levels) and first + count <= self.size
 
     def level(self, x: int) -> int:
@@ -92,7 +92,7 @@ class Reports:
         return Reason.ACCEPTED
 
     def take(self, now: int) -> bool:
-        """Whether one is due now. One that was missed is not made up; the phase is kept."""
+        """True where one is due now. One that was missed is not made up; the phase is kept."""
         if self.period == 0:
             return False
         late = -until(self.due, now)

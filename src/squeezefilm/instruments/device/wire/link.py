@@ -245,7 +245,7 @@ class Link:
         return statuses
 
     def _doubled(self, frame: Frame) -> bool:
-        """Whether the device's frame came before, by its number; counts those that never came."""
+        """True where a device's frame came before, by its number; counts those that never came."""
         if self._recent.get(frame.sequence) == frame.payload:
             self._statistics.doubled += 1
             return True

@@ -36,7 +36,7 @@ COMPILED_CLOCK: bool = (
     and not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
     and _has_symbols("clock_gettime", "clock_nanosleep", "getppid")
 )
-"""Whether compiled code can read the clock and sleep here."""
+"""True where compiled code can read the clock and sleep here."""
 
 _clock_gettime: Any = types.ExternalFunction("clock_gettime", types.intc(types.intc, types.uintp))
 _clock_nanosleep: Any = types.ExternalFunction(

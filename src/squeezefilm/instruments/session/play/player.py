@@ -89,7 +89,7 @@ class Player:
 
     @property
     def faulted(self) -> bool:
-        """Whether the device has faulted."""
+        """True where the device has faulted."""
         return self.ending is Ending.FAULT
 
     @property
@@ -187,7 +187,7 @@ class Player:
         self._write()
 
     def judge(self) -> Usability:
-        """Whether what was played can be used; the verdict goes into the record."""
+        """True where what was played can be used; the verdict goes into the record."""
         found = self._ticks.judged(self.late_commands)
         self._note("usability", found.to_json())
         return found
@@ -232,7 +232,7 @@ class Player:
         return samples
 
     def _repeats(self, reading: Reading, stamp: si.Second) -> bool:
-        """Whether a reading shows a place that was fed already and no news of the finger."""
+        """True where a reading shows a place that was fed already and no news of the finger."""
         last = self._last
         if last is None or stamp - self._fed >= RESTING_SAMPLE:
             return False

@@ -68,12 +68,12 @@ class PlayOutcome:
 
     @property
     def failed(self) -> bool:
-        """Whether it ended for another reason than its time or its user."""
+        """True where it ended for another reason than its time or its user."""
         return self.ending not in (Ending.DURATION, Ending.INTERRUPTED)
 
     @property
     def usable(self) -> bool:
-        """Whether it did not fail and played as planned, see `Usability`."""
+        """True where it did not fail and played as planned, see `Usability`."""
         return not self.failed and (self.usability is None or self.usability.usable)
 
     @property
@@ -271,7 +271,7 @@ def _preferred() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _interruptible(until: Callable[[], bool] | None) -> Iterator[Callable[[], bool]]:
-    """Whether Ctrl-C was pressed (no exception in the middle of something), or `until` is true."""
+    """True where Ctrl-C was pressed (no exception amid something), or `until` is true."""
     pressed = threading.Event()
 
     def interrupted() -> bool:

@@ -1,4 +1,4 @@
-"""Whether what was played can be used: ticks made, the longest gap, commands that came in time.
+"""Usability of what was played: ticks made, the longest gap, commands that came in time.
 
 A session may end as it should and still have played next to nothing: where a computer, or a whole
 virtual one, was held up, no link breaks and a twin's watchdog counts its own time. So every session

@@ -53,7 +53,7 @@ class Damage:
 
     @property
     def whole(self) -> bool:
-        """Whether the trace is all that was written, to the end."""
+        """True where the trace is all that was written, to the end."""
         return self.closed and not self.lost_bytes and not self.lost_blocks
 
 
