@@ -246,19 +246,27 @@ def _least(
     start: si.FloatArray,
     reach: float | si.FloatArray,
 ) -> si.FloatArray:
-    """The numbers within `reach` of their start at which the squares of a residual are least."""
-    with np.errstate(all="ignore"):
-        settled = optimize.least_squares(
-            residual,
-            start,
-            slopes,
-            bounds=(start - reach, start + reach),
-            x_scale="jac",
-            ftol=_SETTLED,
-            xtol=_SETTLED,
-            gtol=None,
-            max_nfev=_MOST_STEPS,
-        )
+    """The numbers within `reach` of their start at which the squares of a residual are least.
+
+    Raises `ArithmeticError` where SciPy meets an infinity, which a fit tells as it does its own.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            settled = optimize.least_squares(
+                residual,
+                start,
+                slopes,
+                bounds=(start - reach, start + reach),
+                x_scale="jac",
+                ftol=_SETTLED,
+                xtol=_SETTLED,
+                gtol=None,
+                max_nfev=_MOST_STEPS,
+            )
+    except InputError:
+        raise
+    except ValueError as error:
+        raise ArithmeticError(f"its squares cannot be made least: {error}") from error
     return np.asarray(settled.x)
 
 
