@@ -20,7 +20,7 @@ def test_intervals_hold_the_truth(design: str) -> None:
         assert found.share >= 0.95 - 5 * math.sqrt(0.95 * 0.05 / runs), name
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("design", sorted(DESIGNS))
 def test_intervals_hold_the_truth_whatever_is_wrong(design: str) -> None:
     runs = 100

@@ -203,6 +203,6 @@ def plan_contrast(
     return float(found.curve.power[0])
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_few_adaptive_studies_find_a_worse_display(monkeypatch: pytest.MonkeyPatch) -> None:
     assert plan_contrast((1.0, 0.3), 100, 60, monkeypatch) > 0.4

@@ -13,7 +13,7 @@ import pytest
 from .task_people import DESIGNS, coverage
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["constant", "magnitude"])
 def test_intervals_hold_the_truth(name: str) -> None:
     """Of two designs that are quick to fit; the campaign has the others."""

@@ -87,7 +87,7 @@ def check(ratios: np.ndarray, most: float = 6.0) -> None:
     assert np.median(ratios[:, 1:]) < most
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_stated_errors_hold_the_true_ones_of_thirty_films() -> None:
     check(judged(KINDS, 6, 1))
 

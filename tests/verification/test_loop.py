@@ -150,7 +150,7 @@ np.save(sys.argv[2], _both(TEXTURES["square"], LVDT_10_KHZ, "inverse", rate=1e3)
 """
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_loop_interpreted_is_the_loop_compiled(tmp_path: Path) -> None:
     # Also what a person sees who steps through it in a debugger.
     there = tmp_path / "rows.npy"

@@ -55,7 +55,7 @@ def with_half_the_bandwidth(display: Display) -> Display:
     )
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_trace_without_texture_is_guessed() -> None:
     design = design_on(STATOR, waveform="constant")
     design = dataclasses.replace(

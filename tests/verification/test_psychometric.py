@@ -107,7 +107,7 @@ def test_the_fit_is_the_maximum_that_scipy_finds(shape: Shape, guess_rate: float
     assert loss(ours) <= least + 1e-6
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_no_start_leads_higher_than_the_fit() -> None:
     # Few answers can have several local maxima; threshold and width of the starts cover the prior.
     truth = PsychometricFunction("weibull", 3.0, 1.0, 0.25, 0.02, "log")

@@ -75,7 +75,7 @@ def coefficient() -> float:
     )
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_stroke_is_what_slide_makes_of_the_same_bone_and_amplitude() -> None:
     plant, truth, speed = played(point(), CALM, 100_000, 400_000)
     assert np.all(truth["normal_force_N"] == FORCE)

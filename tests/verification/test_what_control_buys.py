@@ -142,7 +142,7 @@ def intended(point: WorkingPoint) -> tuple[float, float]:
     return float(friction.mean()), float(2 * np.abs(np.mean(friction * np.exp(1j * phase))))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_minute_of_drift_and_20_landings() -> None:
     at = shared("touchpad-glass-point", point)
     mean, contrast = intended(at)

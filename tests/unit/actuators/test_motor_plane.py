@@ -38,7 +38,7 @@ def planar(slider_mass: float = 0.05, direction: float = 0.0) -> AssembledMotor:
     return replace(ready, modes=(first, replace(second, working=driven)))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_along_one_line_it_is_the_march_between_events() -> None:
     for speed in (0.0, 0.02):
         events = simulate(motor(), WORKING, speed=speed, periods=200, traced=0)

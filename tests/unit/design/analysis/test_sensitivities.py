@@ -149,7 +149,7 @@ def test_an_amplitude_that_is_given_leaves_the_plate_out() -> None:
     assert not any(one.path.startswith("actuator.") for one in found.rows)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_beam_moves_as_the_solved_plate_does() -> None:
     """On the paper's plate the quick shifts are within a third of the solved ones, or 0.2 %."""
     display = load_display("biet2008-plate")

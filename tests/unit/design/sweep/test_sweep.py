@@ -237,7 +237,8 @@ def test_a_plate_is_solved_once_for_its_voltages_and_forces(
         vary={
             "voltage": "8 V, 12 V",
             "finger.normal_force": "0.4 N, 0.5 N",
-            "actuator.thickness": "1.9 mm, 2 mm",
+            # No other test has these: what another one solved would not be solved here.
+            "actuator.thickness": "1.87 mm, 1.93 mm",
         },
         ask="relative_friction",
     )

@@ -149,7 +149,7 @@ def test_presets_pass_without_a_word() -> None:
         assert implausibilities(display) == (), display.name
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_two_hundred_plausible_plates_are_not_refused() -> None:
     doubted = [found for one in built(7, 200) if (found := implausibilities(one))]
     assert not [one for found in doubted for one in found if one.refused]

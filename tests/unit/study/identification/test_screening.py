@@ -103,7 +103,7 @@ def test_three_bad_people_among_eight_good_ones(tmp_path: Path) -> None:
     require_recipe(tmp_path, range(2))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_three_bad_people_over_twenty_seeds(tmp_path: Path) -> None:
     require_recipe(tmp_path, range(100, 120))
 
