@@ -30,7 +30,8 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "core/regular_file.py": {"os.open": "the reader itself", "json.loads": "the reader itself"},
     "core/isolated_reading.py": {
         "open": "the pipe of its parent",
-        "pickle.load": "requests and answers, by a pipe of its own",
+        "json.loads": "answers of a child that may be taken over",
+        "pickle.load": "requests of the process that started it, by a pipe of its own",
     },
     "core/kept/records.py": {
         "json.loads": "what `read_regular` read; any error counts as not there"

@@ -121,7 +121,7 @@ def presets(as_json: AsJson = False) -> None:
 def drawing_by_two(out: Path | None) -> AbstractContextManager[object]:
     """A second process that draws its share of the pages in `out`; none where nothing is drawn."""
     from squeezefilm.core.second_process import second_process
-    from squeezefilm.study.report.pictures import load_drawing
+    from squeezefilm.study.report.simulated_page import load_drawing
 
     return nullcontext() if out is None else second_process(load_drawing)
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core.kit import style
@@ -48,14 +47,6 @@ def pictures(
 def png_files(found: Mapping[str, tuple[str, Picture]]) -> dict[str, str | bytes]:
     """The files NAME.png that pages show."""
     return {f"{name}.png": picture.png for name, (_, picture) in found.items()}
-
-
-def load_drawing() -> None:
-    """Load what drawing takes, in a program, before there is anything to draw."""
-    for name in ("page", "simulated_page"):
-        import_module(f"squeezefilm.study.report.{name}")
-    import_module("matplotlib.figure")
-    import_module("matplotlib.backends.backend_agg")
 
 
 def _drawn(drawing: Drawing, result: Any, keys: Sequence[str]) -> dict[str, Picture]:

@@ -276,3 +276,11 @@ def _page(
         f"{stamped(stamp, 'SHA-256 of design and observer')}.\n"
         f"{links(['simulated.json', 'trials.csv'])}.",
     )
+
+
+def load_drawing() -> None:
+    """Load what drawing takes, in a program, before there is anything to draw."""
+    import matplotlib.backends.backend_agg
+    import matplotlib.figure  # noqa: F401
+
+    from squeezefilm.study.report import page  # noqa: F401

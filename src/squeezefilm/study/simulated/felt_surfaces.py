@@ -8,7 +8,6 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core import quantities as si
@@ -101,7 +100,7 @@ def felt_surfaces(asked: list[Asked], tell: SayProgress) -> list[list[FeltSurfac
 
 def _load() -> None:
     """What a second process needs before it takes fingers."""
-    import_module("squeezefilm.physics.chain.rendered_texture")
+    import squeezefilm.physics.chain.rendered_texture  # noqa: F401
 
 
 def _name(feel: Callable[..., FeltSurface], surface: Stimulus | Grating, rest: Any) -> str:

@@ -9,7 +9,8 @@ import pytest
 from squeezefilm.core import second_process
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.page_style import STYLE, FigureOf, picture_sections
-from squeezefilm.study.report.pictures import load_drawing, pictures, png_files
+from squeezefilm.study.report.pictures import pictures, png_files
+from squeezefilm.study.report.simulated_page import load_drawing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
