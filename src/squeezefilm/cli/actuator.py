@@ -43,9 +43,9 @@ def analyze_actuator(asked: Any) -> None:
 
 def _flag(options: type, name: str) -> str:
     """The option as it is typed."""
-    for get_argument in get_args(get_type_hints(options, include_extras=True)[name]):
-        if isinstance(get_argument, OptionInfo):
-            for said in (get_argument.default, *(get_argument.param_decls or ())):
+    for mark in get_args(get_type_hints(options, include_extras=True)[name]):
+        if isinstance(mark, OptionInfo):
+            for said in (mark.default, *(mark.param_decls or ())):
                 if isinstance(said, str) and said.startswith("--"):
                     return said
     return f"--{name.replace('_', '-')}"

@@ -78,7 +78,7 @@ def glimpse(requirements: Requirements, seen: Glimpse) -> dict[str, Any]:
         "screened": seen.screened,
         "solved": seen.solved,
         "screened_front": _thinned(seen.screened_front),
-        "front": [plate(requirements, design) for design in seen.front],
+        "front": [plate(requirements, evaluated) for evaluated in seen.front],
         "reference": reference(requirements, seen.reference),
     }
 
@@ -108,7 +108,7 @@ def result(found: DesignSearch) -> dict[str, Any]:
     return {
         "screened": len(found.screened),
         "solved": found.plates_solved,
-        "front": [plate(asked, design.evaluated, design.made) for design in found.front],
+        "front": [plate(asked, member.evaluated, member.made) for member in found.front],
         "reference": reference(asked, found.reference),
         "chosen": None if chosen is None else chosen.name,
         "beats": [one.name for one in found.beats_reference],

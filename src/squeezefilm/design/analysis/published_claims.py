@@ -170,11 +170,7 @@ def measured_of_preset(preset: str, quantity: str) -> float:
 def missed_by(model: str) -> tuple[Claim, ...] | None:
     """The measured directions that a friction model misses, by the verdicts on record; None for a
     model that they were not asked of."""
-    asked = [
-        all_claim
-        for all_claim in read_claims().all_claims
-        if all_claim.model and all_claim.model == model
-    ]
+    asked = [claim for claim in read_claims().all_claims if claim.model and claim.model == model]
     if not asked:
         return None
     return tuple(one for one in asked if one.says and one.verdict == "does not hold")

@@ -67,7 +67,7 @@ class DesignSearch(Result):
     @functools.cached_property
     def objectives(self) -> si.FloatArray:
         """The objectives of the front (SI), shape (members of the front, objectives)."""
-        return objectives_of(self.requirements, [design.evaluated for design in self.front])
+        return objectives_of(self.requirements, [member.evaluated for member in self.front])
 
     @property
     def chosen(self) -> FrontMember | None:
@@ -93,7 +93,7 @@ class DesignSearch(Result):
     @functools.cached_property
     def plates_on_front(self) -> int:
         """How many plates the front has, each at one voltage or more."""
-        return _plates(design.evaluated for design in self.front)
+        return _plates(member.evaluated for member in self.front)
 
     @property
     def plates_better(self) -> int:
@@ -118,8 +118,8 @@ class DesignSearch(Result):
             return ()
         own = np.array(self.reference.objectives(self.requirements.objectives))
         return tuple(
-            design
-            for design, row in zip(self.front, self.objectives, strict=True)
+            member
+            for member, row in zip(self.front, self.objectives, strict=True)
             if dominates(row, own)
         )
 
@@ -152,10 +152,10 @@ class DesignSearch(Result):
     def member(self, name: str) -> FrontMember:
         """The plate of the front with a short name, or with the beginning of one. Raises
         `InputError` for a name that none has, or several."""
-        found = [design for design in self.front if design.name.startswith(name)] if name else []
+        found = [each for each in self.front if each.name.startswith(name)] if name else []
         if len(found) == 1:
             return found[0]
-        known = ", ".join(design.name for design in self.front) or "none"
+        known = ", ".join(each.name for each in self.front) or "none"
         raise InputError(
             f"the front has {'several plates' if found else 'no plate'} '{name}'. It has: {known}"
         )
@@ -180,7 +180,7 @@ class DesignSearch(Result):
             "plates_solved": self.plates_solved,
             "plates_feasible": self.plates_feasible,
             "plates_on_front": self.plates_on_front,
-            "front": [_row(self.requirements, design) for design in self.front],
+            "front": [_row(self.requirements, member) for member in self.front],
             "chosen": None if chosen is None else chosen.name,
             "reference": None
             if self.reference is None
@@ -217,7 +217,7 @@ class DesignSearch(Result):
         }
 
     def _table(self) -> Any:
-        return [_row(self.requirements, design) for design in self.front]
+        return [_row(self.requirements, member) for member in self.front]
 
 
 @dataclass(frozen=True)
@@ -250,7 +250,7 @@ def glimpse_of(
 
 
 def _plates(designs: Iterable[Evaluated]) -> int:
-    return len(plates_of(design.design for design in designs))
+    return len(plates_of(evaluated.design for evaluated in designs))
 
 
 def _numbers(one: Evaluated) -> dict[str, Any]:

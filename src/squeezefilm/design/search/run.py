@@ -296,7 +296,7 @@ class SearchRun:
             took = sum(one.seconds for one in self._seen["solved"].values()) / solved
             rest = (self._asked.solved - solved) * took / self._asked.jobs
             left = f", {about(rest)} left at most"
-        on_front = len(plates_of(design.design for design in self._front()))
+        on_front = len(plates_of(evaluated.design for evaluated in self._front()))
         self._tell(
             f"solving {what}: {solved} of at most {self._asked.solved} plates, "
             f"{on_front} on the front{left}"
@@ -388,7 +388,8 @@ class SearchRun:
             screened=screened,
             solved=tuple(self._seen["solved"].values()),
             front=tuple(
-                FrontMember(design, self._made.get(design.design)) for design in self._front()
+                FrontMember(evaluated, self._made.get(evaluated.design))
+                for evaluated in self._front()
             ),
             reference=self._reference,
             limits=limit_reasons(requirements, screened),

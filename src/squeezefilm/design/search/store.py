@@ -76,9 +76,7 @@ class DesignStore:
 
     def __init__(self, requirements: Requirements, folder: Path | None, member: int = 0) -> None:
         self._requirements, self._member = requirements, member
-        self._hashes = {
-            get_argument: asked_hash(requirements, get_argument) for get_argument in get_args(Level)
-        }
+        self._hashes = {level: asked_hash(requirements, level) for level in get_args(Level)}
         self._lines = None if folder is None else Lines(folder / FILE)
         self._known: dict[tuple[Design, Level], Evaluated] = {}
         self._made: dict[Design, Made] = {}

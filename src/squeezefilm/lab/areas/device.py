@@ -85,10 +85,10 @@ class DeviceArea:
 
         ports = [
             {
-                "drive": f"serial:{comport.device}",
-                "text": f"{comport.device}: {comport.description}",
+                "drive": f"serial:{port.device}",
+                "text": f"{port.device}: {port.description}",
             }
-            for comport in list_ports.comports()
+            for port in list_ports.comports()
         ]
         return {"type": "drives", "ports": ports}
 

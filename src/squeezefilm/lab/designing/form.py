@@ -246,16 +246,14 @@ def _text(value: Any, unit: si.Unit | None) -> str:
 def stated(hint: Any) -> Any:
     """What a value may be where it is stated: `X` of ``X | None``; a quantity knows itself."""
     if typing.get_origin(hint) in (Union, types.UnionType) and si.unit_of(hint) is None:
-        return next(
-            get_argument for get_argument in typing.get_args(hint) if get_argument is not type(None)
-        )
+        return next(member for member in typing.get_args(hint) if member is not type(None))
     return hint
 
 
 def choices(hint: Any) -> list[str] | None:
     """The words that a value may be, where it is one of a few."""
     if typing.get_origin(hint) is Literal:
-        return [str(get_argument) for get_argument in typing.get_args(hint)]
+        return [str(word) for word in typing.get_args(hint)]
     if hint is bool:
         return ["true", "false"]
     return None

@@ -385,4 +385,4 @@ def devices() -> list[str]:
     """What may present a sitting's surfaces beside nothing: the twin, and the ports there are."""
     from serial.tools import list_ports
 
-    return ["twin", *sorted(f"serial:{comport.device}" for comport in list_ports.comports())]
+    return ["twin", *sorted(f"serial:{port.device}" for port in list_ports.comports())]

@@ -81,7 +81,7 @@ def answers_to_solve(display: Display, observations: tuple[Observation, ...]) ->
 
 
 def design_sizes(parameters: int) -> tuple[int, int]:
-    """Number of plates are solved over the priors, and how many more where the data point."""
+    """Number of plates solved over the priors, and of those solved where the data point."""
     return max(8 * parameters, least_points(parameters)), 4 * parameters + HELD_OUT
 
 

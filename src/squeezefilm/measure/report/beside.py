@@ -9,8 +9,10 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
+from squeezefilm.core.kit.numbers import HZ, SPEED, N, printable, shown
 from squeezefilm.measure.fits.friction.friction_curve import LEVELS, CurveComparison
 from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
+from squeezefilm.measure.fits.friction.friction_scores import NO_PHYSICS
 from squeezefilm.measure.fits.friction.populations import (
     MEAN_FRICTION,
     RIVALS,
@@ -25,9 +27,6 @@ from squeezefilm.physics.perception.observer import TUNED_AT, load_observer
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-from squeezefilm.core.kit.numbers import HZ, SPEED, N, printable, shown
-from squeezefilm.measure.fits.friction.friction_scores import NO_PHYSICS
 
 MODELS_HEAD = ("model", "off by", "in spreads", "answered", "fitted")
 TOTALS_HEAD = ("model", "off by", "log score, mean ± s.e.", "fitted")
@@ -103,7 +102,7 @@ def _number(value: float | None, digits: int) -> str:
 
 
 def inside_words(compared: CurveComparison) -> str:
-    """Number of points lie in our interval."""
+    """Number of points that lie in the interval of the default, in words."""
     within, asked = compared.points_inside
     level = si.percent(compared.band.level)
     return (
@@ -113,7 +112,7 @@ def inside_words(compared: CurveComparison) -> str:
 
 
 def covered_words(compared: FolderComparison) -> str:
-    """Number of fingers and papers lie in our interval."""
+    """Number of fingers and papers that lie in the interval of the default, in words."""
     within, units, (low, high) = compared.units_covered
     return (
         f"{within} of {units} fingers or papers lie in the interval of the default, at least 90 % "
@@ -296,7 +295,7 @@ def coverage_figure(compared: FolderComparison) -> Figure:
 
 @style.drawn
 def people_figure(compared: PopulationComparison) -> Figure:
-    """Number of people have less than a value, and where the models are."""
+    """Share of people below each value, and the values of the models."""
     unit, scale = _SHOWN.get(compared.unit, (compared.unit, 1.0))
     figure = style.new_figure(
         f"{compared.quantity}: {compared.measured.size} measured",

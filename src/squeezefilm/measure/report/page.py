@@ -3,14 +3,17 @@ and `measure fit` print."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, write_folder
-from squeezefilm.core.kit.numbers import printable
+from squeezefilm.core.kit.numbers import printable, shown
 from squeezefilm.core.kit.page_style import (
     bullets,
     page,
@@ -19,25 +22,19 @@ from squeezefilm.core.kit.page_style import (
     stamped,
     text_table,
 )
+from squeezefilm.core.kit.terminal import bullets as printed_bullets
+from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.core.results import stamp, to_json
 from squeezefilm.measure.fits.by_kind import Fit
+from squeezefilm.measure.fits.estimate import LEVEL, Adequacy, Estimate
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
+from squeezefilm.measure.report.beside import MODELS_HEAD, inside_words, model_rows
 from squeezefilm.measure.report.figures import recording_figure
 from squeezefilm.measure.report.fit_figures import fit_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-import dataclasses
-import math
-from collections.abc import Iterator, Mapping
-
-from squeezefilm.core import quantities as si
-from squeezefilm.core.kit.numbers import shown
-from squeezefilm.core.kit.terminal import bullets as printed_bullets
-from squeezefilm.core.kit.terminal import heading, plain_console, table
-from squeezefilm.measure.fits.estimate import LEVEL, Adequacy, Estimate
-from squeezefilm.measure.report.beside import MODELS_HEAD, inside_words, model_rows
 
 _KNOWN = ("m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "S", "H", "m/V", "m/s", "N/m")
 
@@ -104,7 +101,7 @@ def estimate_rows(fit: Fit) -> list[tuple[str, ...]]:
 
 
 def _digits(value: float, error: float) -> int:
-    """Number of significant digits of a value show two of its standard error."""
+    """Number of digits of a value that show two digits of its standard error."""
     if not (math.isfinite(value) and math.isfinite(error)) or value == 0 or error <= 0:
         return _LEAST_DIGITS
     wanted = math.floor(math.log10(abs(value))) - math.floor(math.log10(error)) + 2

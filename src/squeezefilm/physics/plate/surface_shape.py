@@ -164,7 +164,7 @@ class SolvedSurface(SurfaceShape):
 
     def __getstate__(self) -> dict[str, object]:
         """Without its splines, which are made anew where they are asked for."""
-        return {name: var for name, var in vars(self).items() if name != "_splines"}
+        return {name: value for name, value in vars(self).items() if name != "_splines"}
 
 
 @dataclass(frozen=True, eq=False)

@@ -145,7 +145,7 @@ def _remove_export(folder: Path) -> None:
     """Erase an earlier export. The mark goes last, so that an interrupted removal can be
     repeated. Raises what `own_files` raises."""
     mark = folder / _MARK
-    for path in sorted(own_files(folder), key=lambda own_file: own_file == mark):
+    for path in sorted(own_files(folder), key=lambda file: file == mark):
         erase_file(path)
     for path in sorted((p for p in folder.rglob("*") if p.is_dir()), reverse=True):
         path.rmdir()

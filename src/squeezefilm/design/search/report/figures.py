@@ -239,7 +239,7 @@ def _screening_axes(
 def settings(found: DesignSearch) -> Figure:
     """What was chosen along the front: each variable over the first objective."""
     spaces = found.requirements.spaces
-    of_front = sorted({design.evaluated.design.shape for design in found.front})
+    of_front = sorted({member.evaluated.design.shape for member in found.front})
     free = {variable.name: variable for shape in of_front for variable in spaces[shape].free}
     if not found.front or not free:
         return style.message_figure(
@@ -272,9 +272,9 @@ def _settings_axes(axes: Axes, found: DesignSearch, variable: Variable) -> None:
     goal = criterion_of(requirements.objectives[0])
     factor, _ = scaled(found.objectives[:, 0], goal.unit)
     members = [
-        (factor * float(x), design)
-        for x, design in zip(found.objectives[:, 0], found.front, strict=True)
-        if variable.name in design.evaluated.design.settings
+        (factor * float(x), member)
+        for x, member in zip(found.objectives[:, 0], found.front, strict=True)
+        if variable.name in member.evaluated.design.settings
     ]
     if isinstance(variable, Choice):
         names = {

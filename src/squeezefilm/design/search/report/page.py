@@ -65,8 +65,8 @@ def write_design(found: DesignSearch, folder: Path, *, fabrication: str = "") ->
     """
     folder = require_folder(folder)
     files: dict[str, str | bytes] = {
-        f"{PLATES}/{design.name}.toml": plate_file(found.requirements, design.evaluated.design)
-        for design in found.front
+        f"{PLATES}/{member.name}.toml": plate_file(found.requirements, member.evaluated.design)
+        for member in found.front
     }
     files |= {DATA: json_text(found.summary()), TABLE: front_csv(found)}
     files[PAGE] = design_page(found, fabrication=fabrication)
@@ -167,18 +167,18 @@ def _svg(found: DesignSearch, item: FigureOf) -> str:
     figure = item.draw(found)
     svg = style.svg(figure, item.key, " ".join(figure.get_suptitle().split()))
     titles = {
-        design.name: escape(
-            f"{design.name}: {chosen_words(found.requirements, design.evaluated.design)}; "
+        member.name: escape(
+            f"{member.name}: {chosen_words(found.requirements, member.evaluated.design)}; "
             + ", ".join(
                 f"{head} {text}"
                 for head, text in zip(
                     front_head(found.requirements),
-                    front_row(found.requirements, design),
+                    front_row(found.requirements, member),
                     strict=True,
                 )
             )
         )
-        for design in found.front
+        for member in found.front
     }
     return re.sub(
         rf'<g id="{item.key}-{MARKED}([0-9a-f]+)-\d+">',
@@ -193,17 +193,17 @@ def _front_table(found: DesignSearch) -> str:
     requirements = found.requirements
     head = ["name", "what was chosen", *front_head(requirements)]
     rows, kinds = [], []
-    for design in found.front:
-        chosen = design is found.chosen
+    for member in found.front:
+        chosen = member is found.chosen
         # Where the marks of the figure lead to.
         anchor = (
-            f'<a id="front-row-{design.name}" href="{PLATES}/{design.name}.toml">{design.name}</a>'
+            f'<a id="front-row-{member.name}" href="{PLATES}/{member.name}.toml">{member.name}</a>'
         )
         rows.append(
             [
                 anchor + (" ◀ to build" if chosen else ""),
-                as_html(chosen_words(requirements, design.evaluated.design)),
-                *map(as_html, front_row(requirements, design)),
+                as_html(chosen_words(requirements, member.evaluated.design)),
+                *map(as_html, front_row(requirements, member)),
             ]
         )
         kinds.append("assumed" if chosen else "")
@@ -319,7 +319,7 @@ def _errors(found: DesignSearch) -> str:
 
 
 def _files(found: DesignSearch) -> str:
-    plates = [f"{PLATES}/{design.name}.toml" for design in found.front]
+    plates = [f"{PLATES}/{member.name}.toml" for member in found.front]
     return (
         f"<p>{links((DATA, TABLE, *plates))}</p>"
         "<p>A plate's file is a display like any other: <code>squeezefilm analyze "

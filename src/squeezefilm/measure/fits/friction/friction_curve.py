@@ -81,7 +81,7 @@ class CurveComparison:
 
     @property
     def points_inside(self) -> tuple[int, int]:
-        """Number of points lie in the interval, and how many could."""
+        """Number of points in the interval, and of those that could be."""
         asked = [point for point in self.inside if point is not None]
         return sum(asked), len(asked)
 

@@ -50,7 +50,7 @@ class FolderComparison:
 
     @property
     def units_covered(self) -> tuple[int, int, tuple[float, float]]:
-        """Number of units (fingers or papers) have their curves in the default's interval, of how
+        """Number of units (fingers or papers) with their curves in the default's interval, of how
         many, and the 95 % interval of that share (Clopper and Pearson)."""
         from scipy.stats import binomtest
 

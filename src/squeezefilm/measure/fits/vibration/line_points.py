@@ -37,7 +37,7 @@ class LineWaves:
 
     @property
     def count(self) -> int:
-        """Number of numbers bend the columns."""
+        """Number of numbers that bend the columns."""
         own = 2 if self.complex else 1
         return own + (own if self.drift else 0)
 

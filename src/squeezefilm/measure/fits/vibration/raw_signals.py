@@ -125,7 +125,7 @@ def _averaged(
 
 
 def _resolution(averaged: RawSignalsFit) -> float:
-    """Number of frequencies lie within the half-power band of the strongest resonance; infinite
+    """Number of frequencies within the half-power band of the strongest resonance; infinite
     where there is none."""
     f = averaged.response.frequency
     circle = modal_circle(f, np.asarray(averaged.response.displacement_per_volt))

@@ -69,7 +69,7 @@ class Slabs:
     def __getstate__(self) -> dict[str, Any]:
         # Megabytes that are made anew in milliseconds, where anybody multiplies by them.
         made_anew = ("sections", "patterns", "_sliced", "_alike")
-        return {name: var for name, var in vars(self).items() if name not in made_anew}
+        return {name: value for name, value in vars(self).items() if name not in made_anew}
 
     def _number(self) -> None:
         x = self.model.x
