@@ -201,6 +201,16 @@ def write_whole(path: Path, content: str | bytes) -> None:
         ) from error
 
 
+def write_new(path: Path, content: str | bytes) -> None:
+    """Write a file that is not there yet, as `write_whole`.
+
+    Raises `InputError` where something has its name, or as `write_whole`.
+    """
+    if os.path.lexists(path):
+        raise InputError(f"{path} exists already; give another name or remove it")
+    write_whole(path, content)
+
+
 def sync_folder(folder: Path) -> None:
     """Force a folder's names onto the disk: only then does a new file survive a power cut.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,7 +19,7 @@ from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import FREQUENCY, ROUGHNESS
 from squeezefilm.core.materials import Gas
-from squeezefilm.core.results import Result, write_whole
+from squeezefilm.core.results import Result, write_new, write_whole
 from squeezefilm.physics.contact.finger.fingertip import Finger
 from squeezefilm.physics.plate.heat.thermal import Thermal
 from squeezefilm.physics.plate.layout import Actuator
@@ -333,7 +332,4 @@ def save_display(display: Display, path: str | Path) -> None:
     Raises:
         InputError: a file that exists already or cannot be written.
     """
-    text = text_of(display, display.provenance)
-    if os.path.lexists(path):
-        raise InputError(f"{path} exists already; give another name or remove it")
-    write_whole(Path(path), text)
+    write_new(Path(path), text_of(display, display.provenance))

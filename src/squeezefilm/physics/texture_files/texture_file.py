@@ -19,7 +19,6 @@ a misspelt key or type is refused with file, line and key. A picture in a file o
 
 from __future__ import annotations
 
-import os
 import typing
 from dataclasses import dataclass
 from pathlib import Path
@@ -31,7 +30,7 @@ from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.config.load import load, load_text
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.core.results import write_whole
+from squeezefilm.core.results import write_new
 from squeezefilm.physics.render.texture import gates as pattern_gates
 from squeezefilm.physics.render.texture import image as pattern_image
 from squeezefilm.physics.render.texture import levels
@@ -109,7 +108,4 @@ def save_texture(texture: TextureFile | Composable, path: str | Path) -> None:
     Raises:
         InputError: a file that exists already or cannot be written, or a text that is too long.
     """
-    text = texture_text(texture)
-    if os.path.lexists(path):
-        raise InputError(f"{path} exists already; give another name or remove it")
-    write_whole(Path(path), text)
+    write_new(Path(path), texture_text(texture))

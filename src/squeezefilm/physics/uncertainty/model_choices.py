@@ -18,7 +18,7 @@ from squeezefilm.core.distributions import Normal
 from squeezefilm.physics.contact.asperities import AsperityLaw
 from squeezefilm.physics.contact.rough_contact import LEAST_GAP, ContactLaw, RoughContact
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.uncertainty.parameters import Knowledge, Origin, Parameter, name_of
+from squeezefilm.physics.uncertainty.parameters import Knowledge, Origin, Parameter
 
 AMPLITUDE_SHARE, FRICTION_OFFSET = "joint.amplitude_share", "joint.friction_offset"
 """The amplitude per volt relative to the solved one, and what is added to the law's friction."""
@@ -79,11 +79,6 @@ class Choice:
         ends = np.cumsum([option.weight for option in self.options])
         at = np.searchsorted(ends, np.asarray(share) * ends[-1], side="right")
         return [self.options[k].name for k in np.minimum(at, len(self.options) - 1).tolist()]
-
-    @property
-    def said(self) -> str:
-        """Its name for people."""
-        return name_of(self.path)
 
     @property
     def spread(self) -> tuple[str, ...]:

@@ -52,7 +52,7 @@ _NAMES = {
 }
 
 
-def name_of(path: str) -> str:
+def parameter_name(path: str) -> str:
     """The name for people of an uncertain value by its dotted path."""
     if path.startswith("surfaces."):
         return "roughness of the surface"
@@ -76,11 +76,6 @@ class Parameter:
     source: str
     knowledge: Knowledge = "measurable"
     steps: int | None = None
-
-    @property
-    def said(self) -> str:
-        """Its name for people."""
-        return name_of(self.path)
 
     @si.checked_numbers
     def drawn(self, share: si.DimensionlessArray) -> list[float]:

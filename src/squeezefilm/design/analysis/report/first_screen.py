@@ -10,6 +10,7 @@ from squeezefilm.core.kit.numbers import HZ, A, M, Row, W, shown, signed, span
 from squeezefilm.design.analysis.curves import PAPER_CRITERION
 from squeezefilm.design.analysis.verdict import NOTICED_DIFFERENCE, probability_words
 from squeezefilm.design.plate.mode_doubts import why_undriven
+from squeezefilm.physics.uncertainty.parameters import parameter_name
 
 if TYPE_CHECKING:
     from squeezefilm.design.analysis.analyze import Analysis
@@ -148,12 +149,15 @@ def _next_step(analysis: Analysis) -> str:
     if undriven or p.vibration_amplitude == 0:
         return "Give it a voltage and a mode that it drives (squeezefilm modes lists them)."
     if unsure is None:
-        return "Ask for an interval of the friction (--samples 16)."
+        return "Ask for an interval of the friction, by 16 samples."
     for influence in unsure.influences:
         if influence.parameter.knowledge == "measurable":
             share = si.percent(max(influence.total, 0.0))
-            name = f"{influence.parameter.said} ({influence.parameter.path})"
-            return f"Measure the {name}: {share} of the variance of µ′/µ comes from it."
+            path = influence.parameter.path
+            return (
+                f"Measure the {parameter_name(path)} ({path}): {share} of the variance of µ′/µ "
+                "comes from it."
+            )
     return "Nothing that can be measured would make the friction surer."
 
 

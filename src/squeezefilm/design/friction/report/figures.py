@@ -14,6 +14,7 @@ from squeezefilm.core.kit.model_looks import look_of
 from squeezefilm.core.kit.numbers import SPEED, M, N, shown
 from squeezefilm.core.kit.page_style import FigureOf, drawn_figures, picture_files
 from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+from squeezefilm.physics.uncertainty.parameters import parameter_name
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -115,7 +116,7 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
         if influence.parameter.knowledge == "measurable"
     )
     figure = style.new_figure(
-        f"{unsure.sentence}; to know it better, measure the {first.parameter.said}",
+        f"{unsure.sentence}; to know it better, measure the {parameter_name(first.parameter.path)}",
         f"{unsure.model}, {unsure.refused.evaluations} draws",
         4.8,
     )
@@ -149,7 +150,7 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
             label=name,
             **look,
         )
-    right.set_yticks(rows, [i.parameter.said for i in ranked])
+    right.set_yticks(rows, [parameter_name(i.parameter.path) for i in ranked])
     right.set(xlabel="share of the variance of µ′/µ (%)", xlim=(0, None))
     right.grid(visible=False, axis="y")
     style.legend_below(right, columns=1)
