@@ -1,4 +1,4 @@
-"""Ctrl-C and the processes that another one started.
+"""Ctrl-C and the processes that another one started, and their end with it.
 
 A terminal sends Ctrl-C (SIGINT) to every process of a program, and a new Python would meet it with
 a traceback for as long as it loads. So a process is started with SIGINT held back
@@ -8,7 +8,10 @@ a traceback for as long as it loads. So a process is started with SIGINT held ba
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 import signal
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
@@ -34,3 +37,16 @@ def hear_interrupts() -> None:
     """Let SIGINT through, one that came since this process was started too."""
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+
+
+def end_with_parent() -> None:
+    """End this process with the one that started it, however that ends: work for
+    nobody would go on otherwise."""
+    threading.Thread(target=_wait_for_parent, daemon=True).start()
+
+
+def _wait_for_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

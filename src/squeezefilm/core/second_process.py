@@ -26,7 +26,7 @@ from typing import Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.blas_threads import one_blas_thread
-from squeezefilm.core.interrupts import interrupts_held
+from squeezefilm.core.interrupts import end_with_parent, interrupts_held
 
 _PATIENCE: si.Second = 60.0
 """Longest wait for a piece that the other process has begun, before it is done here."""
@@ -177,15 +177,8 @@ def _processors() -> int:
 def _begin(prepare: Callable[[], object]) -> None:
     """Make ready in the second process, which ends with the first however that ends."""
     _PRESENT.set(None)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    end_with_parent()
     _load(prepare)
-
-
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    assert parent is not None
-    parent.join()
-    os._exit(0)
 
 
 def _load(prepare: Callable[[], object]) -> None:

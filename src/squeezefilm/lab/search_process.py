@@ -13,7 +13,7 @@ import time
 from collections.abc import Iterator, Sequence
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
@@ -28,9 +28,6 @@ from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.tolerance import Made
 from squeezefilm.lab.told_process import Tell, ToldProcess, telling
 from squeezefilm.lab.worker import LARGEST_MEMORY, prepare
-
-if TYPE_CHECKING:
-    from squeezefilm.design.search.found import Glimpse
 
 MOST_POINTS = 600
 """Of the screened front that are drawn; of a longer one as many, evenly."""

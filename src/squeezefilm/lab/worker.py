@@ -12,7 +12,6 @@ import contextlib
 import multiprocessing
 import os
 import signal
-import threading
 import time
 from collections.abc import Callable
 from contextvars import ContextVar
@@ -23,7 +22,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
-from squeezefilm.core.interrupts import interrupts_held
+from squeezefilm.core.interrupts import end_with_parent, interrupts_held
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
@@ -270,14 +269,6 @@ def _newer() -> SupersededError:
     return SupersededError("newer work took its place")
 
 
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        # The server was killed; a solve for nobody would go on otherwise.
-        os._exit(1)
-
-
 def _work(line: Connection) -> None:
     """Answer one piece of work after the other, until the line is closed."""
     global _line
@@ -306,7 +297,7 @@ def _answered(work: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[boo
 def prepare() -> None:
     """Make this process one that computes: for a server that may be killed, within limits, its
     warnings unsaid."""
-    threading.Thread(target=_end_with_parent, daemon=True).start()
+    end_with_parent()
     for library in ("OMP", "OPENBLAS", "MKL"):
         os.environ.setdefault(f"{library}_NUM_THREADS", "1")
     _limit_memory()

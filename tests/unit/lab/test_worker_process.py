@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from squeezefilm.core import interrupts
 from squeezefilm.core.errors import SqueezefilmError, SqueezefilmWarning
 from squeezefilm.lab import worker
 
@@ -113,7 +114,7 @@ def test_a_process_is_prepared_for_a_server_that_may_be_killed(
         threads.append(how)
         return SimpleNamespace(start=lambda: threads.append("started"))
 
-    monkeypatch.setattr(worker, "threading", SimpleNamespace(Thread=thread))
+    monkeypatch.setattr(interrupts, "threading", SimpleNamespace(Thread=thread))
     monkeypatch.setattr(worker, "_limit_memory", lambda: limited.append("memory"))
     for name in ("OMP", "OPENBLAS", "MKL"):
         monkeypatch.delenv(f"{name}_NUM_THREADS", raising=False)
@@ -123,7 +124,7 @@ def test_a_process_is_prepared_for_a_server_that_may_be_killed(
         with warnings.catch_warnings(record=True) as seen:
             warnings.warn("answers carry it", SqueezefilmWarning, stacklevel=1)
         assert seen == []
-    assert threads == [{"target": worker._end_with_parent, "daemon": True}, "started"]
+    assert threads == [{"target": interrupts._wait_for_parent, "daemon": True}, "started"]
     assert limited == ["memory"]
     assert os.environ["OMP_NUM_THREADS"] == os.environ["OPENBLAS_NUM_THREADS"] == "1"
     # What somebody chose stays.
@@ -135,11 +136,11 @@ def test_a_process_is_prepared_for_a_server_that_may_be_killed(
 def test_a_process_ends_with_its_parent_if_it_has_one(monkeypatch: pytest.MonkeyPatch) -> None:
     done: list[Any] = []
     parent = SimpleNamespace(join=lambda: done.append("joined"))
-    monkeypatch.setattr(worker.os, "_exit", lambda status: done.append(status))
+    monkeypatch.setattr(interrupts.os, "_exit", lambda status: done.append(status))
     for found in (None, parent):
         mine = SimpleNamespace(parent_process=lambda found=found: found)
-        monkeypatch.setattr(worker, "multiprocessing", mine)
-        worker._end_with_parent()
+        monkeypatch.setattr(interrupts, "multiprocessing", mine)
+        interrupts._wait_for_parent()
     assert done == ["joined", 1]
 
 

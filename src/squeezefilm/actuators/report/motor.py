@@ -24,7 +24,6 @@ from squeezefilm.core.kit.terminal import bullets, show_rows
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.actuators.analysis.motor import MotorAnalysis
     from squeezefilm.actuators.motor.averaged import AveragedMotor
     from squeezefilm.actuators.motor.closed_loop import TrackedForce
     from squeezefilm.actuators.motor.curves import MotorMap

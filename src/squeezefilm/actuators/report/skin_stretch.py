@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from squeezefilm.actuators.analysis.skin_stretch import ShownWave, SkinStretchAnalysis
+    from squeezefilm.actuators.analysis.skin_stretch import ShownWave
 
 _ANSWERS = {
     "deflection_on_skin_m": "deflection on the skin",

@@ -10,9 +10,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import multiprocessing
-import os
 import signal
-import threading
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
@@ -21,7 +19,7 @@ from types import TracebackType
 from typing import Annotated, Any
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.interrupts import hear_interrupts, interrupts_held
+from squeezefilm.core.interrupts import end_with_parent, hear_interrupts, interrupts_held
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.design.sweep.tasks import (
     A,
@@ -150,14 +148,7 @@ def _prepare() -> None:
     with contextlib.suppress(ValueError):
         signal.signal(signal.SIGINT, signal.SIG_DFL)
     hear_interrupts()
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        parent.join()
-        os._exit(1)
+    end_with_parent()
 
 
 @contextmanager

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.design.sweep.axes import Axis
-    from squeezefilm.design.sweep.swept import Column, Sweep
 
 MOST_PANELS = 6
 _SAID = {"followed": "the solved plate, modes followed by their shapes"}
