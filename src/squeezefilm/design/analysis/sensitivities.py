@@ -274,8 +274,12 @@ class _Bench:
                 there = beam_response(actuator)
                 f = there.mode.frequency / self.beam.mode.frequency - 1
                 a = there.amplitude_per_volt / self.beam.amplitude_per_volt - 1
+                share = actuator.quality_factor / self.display.actuator.quality_factor
                 if actuator.substrate.quality_factor is None:
-                    quality *= actuator.quality_factor / self.display.actuator.quality_factor
+                    quality *= share
+                else:
+                    # The solved plate's losses are its materials', the beam's the assembly's.
+                    a = (1 + a) / share - 1
             # The film is asked at the frequency described: another one takes another table.
             amplitude = (1 + a) * before.amplitude_per_volt
             mode = dataclasses.replace(before, amplitude_per_volt=amplitude, quality_factor=quality)

@@ -289,10 +289,11 @@ class Mixture:
         return self._parts[key]
 
     def mode(self, draw: Draw) -> WorkingMode:
-        """The working mode of a draw: as described, but for its quality factor."""
+        """The working mode of a draw: as predicted, its quality factor changed in proportion to
+        the assembly's (materials with losses of their own give the mode another one)."""
         mode = self.prediction.mode
-        quality = getattr(draw.display.actuator, "quality_factor", mode.quality_factor)
-        return dataclasses.replace(mode, quality_factor=float(quality))
+        share = draw.display.actuator.quality_factor / self.display.actuator.quality_factor
+        return dataclasses.replace(mode, quality_factor=share * mode.quality_factor)
 
     def power(self, felt: Touch, drawn_voltage: si.Volt | None = None) -> si.Watt | None:
         """What plate and finger take of the drive (W, mean), cold: lost in the materials of the

@@ -62,10 +62,6 @@ class FreeAmplitude:
         nominal = self.nominal.actuator
         if self.prediction.voltage is None or here == nominal:
             return 1.0
-        if dataclasses.replace(here, quality_factor=nominal.quality_factor) == nominal:
-            # At resonance, in proportion; a stator's amplitude is measured, whatever its Q.
-            measured = isinstance(here, AnnularStator)
-            return 1.0 if measured else here.quality_factor / nominal.quality_factor
         values = _values(here, nominal, self._paths)
         share = math.prod(self._moved(path, value) for path, value in values)
         if isinstance(here, RectangularPlate):
@@ -98,6 +94,9 @@ class FreeAmplitude:
         nominal = attrgetter(path)(actuator)
         if value == nominal:
             return 1.0
+        if path == "quality_factor":
+            # At resonance, in proportion; a stator's amplitude is measured, whatever its Q.
+            return 1.0 if isinstance(actuator, AnnularStator) else value / nominal
         if path not in self._curves:
             less, more = (
                 math.log(self._per_volt(with_values(actuator, {path: share * nominal})))

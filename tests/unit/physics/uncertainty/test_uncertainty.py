@@ -14,6 +14,7 @@ import pytest
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.distributions import Uniform
 from squeezefilm.core.errors import InputError, OutOfRangeError
+from squeezefilm.core.presets import display_names
 from squeezefilm.core.quantities import Unit
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.contact.asperities import AsperityLaw
@@ -543,6 +544,30 @@ def test_a_hard_pressed_finger_has_no_interval(stator: Display) -> None:
     found, why = interval_or_reason(stator, hard, samples=8)
     assert found is None
     assert "pressed through its asperities" in why
+
+
+def test_a_mode_keeps_its_own_losses_in_a_draw() -> None:
+    """Glass has losses of its own: the solved mode's Q is not the assembly's, and a draw scales
+    it."""
+    display = load_display("touchpad-glass")
+    point = predict(display, theory="timoshenko")
+    own = dataclasses.replace(point.mode, quality_factor=411.0)
+    mixture = Mixture(display, dataclasses.replace(point, mode=own), driven=True)
+    assert mixture.mode(mixture.made({}, {})).quality_factor == 411.0
+    worse = mixture.made({"actuator.quality_factor": 70.0}, {})
+    assert mixture.mode(worse).quality_factor == pytest.approx(0.7 * 411)
+    assert mixture.free(worse.display) / mixture.free(display) == pytest.approx(0.7)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", display_names())
+def test_what_a_display_is_described_as_lies_within_its_intervals(name: str) -> None:
+    display = load_display(name)
+    found = uncertain_friction(display, predict(display), samples=16)
+    assert found.interval[0] <= found.nominal <= found.interval[1]
+    if found.power_interval is not None:
+        assert found.power is not None
+        assert found.power_interval[0] <= found.power <= found.power_interval[1]
 
 
 def test_the_free_amplitude_follows_voltage_quality_and_dimensions(
