@@ -62,8 +62,9 @@ class Plates:
         display = paper_display()
         scores = NormalScores(calibration_parameters(display))
         nothing = tuple(Observation(name, 1.0, 1.0) for name in NOISE)
-        solves = Solves(display, scores, nothing, lambda _: None)
-        solves.add(prior_scores(len(scores.parameters), count, seed), "benches")
+        solves = Solves(display, scores, nothing)
+        points = prior_scores(len(scores.parameters), count, seed)
+        solves.add(points, "benches", lambda _, __: None)
         return cls(display, solves.problem(nothing))
 
     def posed(self, observations: tuple[Observation, ...]) -> PlateProblem:
@@ -187,7 +188,7 @@ class Fingers:
         display = paper_display()
         mixture = finger_mixture(display, predict(display))
         points = np.random.default_rng(seed).random((count, len(mixture.inputs)))
-        curves = friction_of_points(mixture, points, cls.WHERE, lambda _: None)
+        curves = friction_of_points(mixture, points, cls.WHERE, lambda _, __: None)
         return cls(points, curves, mixture)
 
     def discrepancy(self, random: np.random.Generator) -> np.ndarray:

@@ -4,7 +4,7 @@ works."""
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 SayProgress = Callable[[str], None]
@@ -61,10 +61,12 @@ class Pace:
 
     def share(self, first: float, last: float) -> ShareProgress | None:
         """Whom a part of the work tells, which goes from one fraction of the whole to another."""
-        tell = self.tell
-        if tell is None:
-            return None
-        return lambda text, fraction: tell(text, first + (last - first) * fraction)
+        return None if self.tell is None else within(self.tell, first, last)
+
+
+def within(tell: ShareProgress, first: float, last: float) -> ShareProgress:
+    """A listener to a part of some work, which goes from one fraction of the whole to another."""
+    return lambda text, fraction: tell(text, first + (last - first) * fraction)
 
 
 NO_HURRY = Pace()
@@ -84,6 +86,36 @@ def said_with_time_left(
         say(text + _left(clock() - begun, fraction))
 
     return tell
+
+
+class Steps:
+    """Work in steps, which are told in words with the time that is left of all of them.
+
+    `seconds` is how long each step is expected to take, in order. What is left of the present one
+    is told from the shares that it took so far, and of those after it what is expected.
+    """
+
+    def __init__(
+        self,
+        say: SayProgress,
+        seconds: Sequence[float],
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._say, self._seconds, self._clock = say, list(seconds), clock
+
+    def next(self) -> ShareProgress:
+        """The listener to the next step; those before it are over."""
+        expected, begun = self._seconds.pop(0), self._clock()
+
+        def tell(text: str, fraction: float) -> None:
+            passed, left = self._clock() - begun, sum(self._seconds)
+            if fraction >= _TOO_EARLY:
+                left += passed * (1 - fraction) / fraction
+            else:
+                left += max(expected - passed, 0.0)
+            self._say(text if left < _TOO_SHORT else f"{text} ({about(left)} left)")
+
+        return tell
 
 
 _TOO_EARLY, _TOO_SHORT = 0.05, 1.0

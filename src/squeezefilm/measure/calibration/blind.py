@@ -20,7 +20,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.hard_limits import DESCRIPTION_BYTES
-from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.progress import SayProgress, ShareProgress, Steps
 from squeezefilm.core.regular_file import read_json, read_regular_text
 from squeezefilm.core.results import stamp, to_json, write_whole
 from squeezefilm.measure.calibration.calibration import Calibration
@@ -48,6 +48,8 @@ from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 
 KIND = "squeezefilm blind prediction"
 _SOLVED, _FRICTION = 32, 256
+# Seconds of one solved plate, and of one drawn finger.
+_PLATE_TAKES, _DRAW_TAKES = 1.5, 0.008
 _TAILS = ((1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2)
 
 
@@ -171,15 +173,18 @@ def predicted(
         raise InputError("nothing is to be predicted; name at least one answer")
     for seen in what:
         _ = _asked_friction(seen) if seen.answer == FRICTION else asked_by(seen)
-    tell = progress or (lambda _: None)
     display = source if isinstance(source, Display) else calibrated_display(source)
     how = (
         f"plates drawn from the spreads in the description of {display.name}"
         if isinstance(source, Display)
         else f"the calibration of {display.name} on {len(source.observations)} observations"
     )
-    rows = _of_friction(display, [seen for seen in what if seen.answer == FRICTION], seed, tell) | (
-        _of_plate(display, what, seed, tell)
+    of_friction = [seen for seen in what if seen.answer == FRICTION]
+    drawn = isinstance(source, Display) and len(of_friction) < len(what)
+    seconds = _FRICTION * _DRAW_TAKES if of_friction else 0.0, _SOLVED * _PLATE_TAKES * drawn
+    steps = Steps(progress or (lambda _: None), seconds)
+    rows = _of_friction(display, of_friction, seed, steps.next()) | (
+        _of_plate(display, what, seed, steps.next())
         if isinstance(source, Display)
         else _of_calibration(source, what)
     )
@@ -223,7 +228,7 @@ def _of_calibration(source: Calibration, what: Sequence[Observation]) -> dict[in
 
 
 def _of_plate(
-    display: Display, what: Sequence[Observation], seed: int, tell: SayProgress
+    display: Display, what: Sequence[Observation], seed: int, tell: ShareProgress
 ) -> dict[int, si.FloatArray]:
     """Answers of plates drawn from the display's spreads, with what a model may be off by."""
     wanted = [one for one in what if one.answer != FRICTION]
@@ -235,7 +240,7 @@ def _of_plate(
     paths = [parameter.path for parameter in scores.parameters]
     drawn = []
     for number, row in enumerate(rows, 1):
-        tell(f"plate {number} of {len(rows)}")
+        tell(f"plate {number} of {len(rows)}", (number - 1) / len(rows))
         made = with_calibrated(display, dict(zip(paths, row.tolist(), strict=True)))
         drawn.append(solved_answers(made.actuator, asked).values)
     random = np.random.default_rng(seed)
@@ -252,7 +257,7 @@ def _of_plate(
 
 
 def _of_friction(
-    display: Display, wanted: Sequence[Observation], seed: int, tell: SayProgress
+    display: Display, wanted: Sequence[Observation], seed: int, tell: ShareProgress
 ) -> dict[int, si.FloatArray]:
     """µ′/µ of draws of finger and laws, with the laws' error: what a calibration found of it, or
     what is believed of laws nobody compared with anything."""

@@ -11,7 +11,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.distributions import Distribution
 from squeezefilm.core.errors import InputError, SqueezefilmError
-from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.progress import SayProgress, ShareProgress, Steps
 from squeezefilm.measure.calibration.calibration import (
     CalibratedValue,
     Calibration,
@@ -23,6 +23,7 @@ from squeezefilm.measure.calibration.friction_likelihood import FrictionLikeliho
 from squeezefilm.measure.calibration.friction_posterior import (
     DRAWS,
     FEWEST,
+    ROUNDS,
     FrictionDraws,
     FrictionPosterior,
     finger_mixture,
@@ -37,7 +38,12 @@ from squeezefilm.measure.calibration.identified import (
     identification,
     ranked,
 )
-from squeezefilm.measure.calibration.plate_fit import WORKING, PlateFit, fitted_plate
+from squeezefilm.measure.calibration.plate_fit import (
+    WORKING,
+    PlateFit,
+    design_sizes,
+    fitted_plate,
+)
 from squeezefilm.measure.calibration.priors import calibration_parameters, with_calibrated
 from squeezefilm.measure.calibration.solved_answers import FRICTION, MODE_FREQUENCY
 from squeezefilm.measure.fits.estimate import Observation
@@ -53,6 +59,9 @@ from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 
 _JOINT = 1024
 _BEFORE = 256
+_TOLD = 64
+# Seconds of one solved plate, one drawn finger, and one drawn finger on its plate.
+_PLATE_TAKES, _DRAW_TAKES, _TOUCH_TAKES = 1.5, 0.008, 0.02
 _TAILS = ((1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2)
 
 
@@ -93,7 +102,6 @@ def calibrate(
     every = tuple(observations)
     if not every:
         raise InputError("nothing was observed; give at least one observation")
-    tell = progress or (lambda _: None)
     of_friction = tuple(seen for seen in every if seen.answer == FRICTION)
     of_plate = tuple(seen for seen in every if seen.answer != FRICTION)
     likelihood = FrictionLikelihood(of_friction)
@@ -101,18 +109,26 @@ def calibrate(
     if of_plate and isinstance(display.actuator, AnnularStator):
         calibration_parameters(display)
     plate = None
+    chosen = calibration_parameters(display, parameters) if of_plate else ()
+    size = effort.plates or design_sizes(len(chosen))
+    seconds = (
+        sum(size) * _PLATE_TAKES if of_plate else 0.0,
+        _BEFORE * _TOUCH_TAKES,
+        effort.finger_draws * (1 + ROUNDS / 2) * _DRAW_TAKES if of_friction else 0.0,
+        effort.joint_draws * _TOUCH_TAKES,
+        effort.joint_draws * _DRAW_TAKES,
+    )
+    steps = Steps(progress or (lambda _: None), seconds)
+    tell = steps.next()
     if of_plate:
-        chosen = calibration_parameters(display, parameters)
-        plate = fitted_plate(
-            display, chosen, of_plate, seed=seed, size=effort.plates, progress=progress
-        )
+        plate = fitted_plate(display, chosen, of_plate, seed=seed, size=size, progress=tell)
     calibrated = display if plate is None else with_calibrated(display, plate.middle)
-    tell("friction as described")
+    tell = steps.next()
+    tell("friction as described", 0.0)
     before = friction_before(display, seed)
-    finger = _fitted_finger(calibrated, likelihood, effort, seed, tell)
-    tell("friction with what was measured")
-    made = _joint(finger, plate, effort.joint_draws, seed)
-    return _calibration(display, calibrated, every, plate, finger, before, made, seed, tell)
+    finger = _fitted_finger(calibrated, likelihood, effort, seed, steps.next())
+    made = _joint(finger, plate, effort.joint_draws, seed, steps.next())
+    return _calibration(display, calibrated, every, plate, finger, before, made, seed, steps.next())
 
 
 def friction_before(display: Display, seed: int) -> FrictionInterval | None:
@@ -140,7 +156,7 @@ class _Finger(NamedTuple):
 
 
 def _fitted_finger(
-    display: Display, likelihood: FrictionLikelihood, effort: Effort, seed: int, tell: SayProgress
+    display: Display, likelihood: FrictionLikelihood, effort: Effort, seed: int, tell: ShareProgress
 ) -> _Finger:
     prediction = predict(display)
     mixture = finger_mixture(display, prediction)
@@ -162,7 +178,9 @@ class _Made(NamedTuple):
 
 
 @as_drawn()
-def _joint(finger: _Finger, plate: PlateFit | None, count: int, seed: int) -> _Made:
+def _joint(
+    finger: _Finger, plate: PlateFit | None, count: int, seed: int, tell: ShareProgress
+) -> _Made:
     """Draws of plate and finger at once, with what comes of them at the display's voltage."""
     from scipy.special import ndtri
 
@@ -181,6 +199,8 @@ def _joint(finger: _Finger, plate: PlateFit | None, count: int, seed: int) -> _M
             for _, a, q in zip(*answers, strict=True)
         ]
     for number, draw in enumerate(finger.mixture.draws(finger.points)):
+        if number % _TOLD == 0:
+            tell(f"friction with what was measured, draw {number + 1} of {count}", number / count)
         try:
             felt[number] = _felt(finger.mixture, draw, modes[number], float(free[number]))
         except SqueezefilmError:
@@ -224,7 +244,7 @@ def _calibration(
     before: FrictionInterval | None,
     made: _Made,
     seed: int,
-    tell: SayProgress,
+    tell: ShareProgress,
 ) -> Calibration:
     joint, refused = made.joint, float(np.mean(~np.isfinite(made.joint.friction)))
     after = None
@@ -233,7 +253,6 @@ def _calibration(
         after = FrictionInterval(middle, (low, high), float(np.nanmedian(made.with_finger)))
     misfits = [] if plate is None else [plate.posterior.misfit]
     misfits += [] if finger.posterior is None else [finger.posterior.misfit]
-    tell("what to measure next")
     errors = {} if plate is None else _errors(plate)
     return Calibration(
         described=described,
@@ -245,7 +264,9 @@ def _calibration(
         misfits=tuple(misfits),
         before=before,
         after=after,
-        next_measurements=() if after is None else _next(finger, joint, made, observations, seed),
+        next_measurements=()
+        if after is None
+        else _next(finger, joint, made, observations, seed, tell),
         emulator_errors=errors,
         solves=0 if plate is None else plate.solves,
         seed=seed,
@@ -339,7 +360,12 @@ def _identified(plate: PlateFit | None, finger: _Finger) -> Identification:
 
 
 def _next(
-    finger: _Finger, joint: Joint, made: _Made, observations: tuple[Observation, ...], seed: int
+    finger: _Finger,
+    joint: Joint,
+    made: _Made,
+    observations: tuple[Observation, ...],
+    seed: int,
+    tell: ShareProgress,
 ) -> tuple[NextMeasurement, ...]:
     """Candidates that were not measured yet, ranked."""
     from scipy.special import ndtr
@@ -358,7 +384,11 @@ def _next(
     amplitude = float(np.nanmedian(made.with_finger))
     # The error of the law at the first is that in the joint draws, by the seed.
     where = (Touching(amplitude), Touching(amplitude / 2))
-    curves = friction_of_points(finger.mixture, finger.points, where, lambda _: None)
+
+    def next_told(_: str, share: float) -> None:
+        tell("what to measure next", share)
+
+    curves = friction_of_points(finger.mixture, finger.points, where, next_told)
     if finger.draws is not None:
         curves = finger.draws.with_error(curves, where, seed)
     curves = np.where(np.isfinite(curves), curves, 1.0)

@@ -21,7 +21,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import OutOfRangeError, SqueezefilmError
 from squeezefilm.core.kept.store import Kept
-from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.progress import ShareProgress, within
 from squeezefilm.core.results import to_json
 from squeezefilm.measure.calibration.discrepancy import Misfit
 from squeezefilm.measure.calibration.friction_likelihood import (
@@ -78,7 +78,7 @@ def friction_of_points(
     mixture: Mixture,
     points: si.DimensionlessArray,
     where: tuple[Touching, ...],
-    tell: SayProgress,
+    tell: ShareProgress,
 ) -> si.DimensionlessArray:
     """`friction_of` at points of the mixture's unit cube, shape (points, conditions).
 
@@ -103,7 +103,7 @@ def friction_of_points(
         kept = _KEPT.get(question)
         if kept is None:
             if first % (4 * _CHUNK) == 0:
-                tell(f"friction of draw {first + 1} of {len(points)}")
+                tell(f"friction of draw {first + 1} of {len(points)}", first / len(points))
             kept = np.concatenate(
                 [friction_of(mixture, draw, where) for draw in mixture.draws(piece)]
             )
@@ -166,14 +166,6 @@ class FrictionDraws:
     scales: si.DimensionlessArray
     curves: si.DimensionlessArray
 
-    def at(
-        self, where: tuple[Touching, ...], seed: int, progress: SayProgress | None = None
-    ) -> si.DimensionlessArray:
-        """µ′/µ under other conditions with the law's error, shape (draws, conditions)."""
-        mixture = self.posterior.mixture
-        curves = friction_of_points(mixture, self.points, where, progress or (lambda _: None))
-        return self.with_error(curves, where, seed)
-
     def with_error(
         self, friction: si.DimensionlessArray, where: tuple[Touching, ...], seed: int
     ) -> si.DimensionlessArray:
@@ -216,7 +208,7 @@ def friction_posterior(
     *,
     seed: int,
     draws: Annotated[int, si.AtLeast(32)] = DRAWS,
-    progress: SayProgress | None = None,
+    progress: ShareProgress | None = None,
 ) -> FrictionPosterior:
     """The posterior of finger and laws: some 5 to 10 ms for each of `draws` (a power of two) and of
     as many again in `ROUNDS` rounds. Raises `OutOfRangeError` as `weighted`; interrupted it goes on
@@ -225,15 +217,16 @@ def friction_posterior(
     from scipy.special import logsumexp, ndtr, ndtri
     from scipy.stats import qmc
 
-    tell = progress or (lambda _: None)
+    tell = progress or (lambda _, __: None)
     random = np.random.default_rng(seed)
     more_draws = draws // 2
     points = qmc.Sobol(len(mixture.inputs), rng=seed).random(draws)
-    curves = friction_of_points(mixture, points, likelihood.where, tell)
+    ends = [share / (2 + ROUNDS) for share in range(2, 3 + ROUNDS)]
+    curves = friction_of_points(mixture, points, likelihood.where, within(tell, 0.0, ends[0]))
     posterior = weighted(mixture, likelihood, points, curves)
     # Draws of every round count by the mixture of all that was drawn from.
     proposals: list[tuple[int, si.FloatArray | None, si.FloatArray | None]] = [(draws, None, None)]
-    for _ in range(ROUNDS):
+    for number in range(ROUNDS):
         scores = ndtri(np.clip(points, 1e-9, 1 - 1e-9))
         weight = posterior.weights.sum(axis=1)
         middle = weight @ scores
@@ -247,7 +240,8 @@ def friction_posterior(
         proposals.append((more_draws, middle, spread))
         more = ndtr(fresh)
         points = np.vstack([points, more])
-        curves = np.vstack([curves, friction_of_points(mixture, more, likelihood.where, tell)])
+        part = within(tell, *ends[number : number + 2])
+        curves = np.vstack([curves, friction_of_points(mixture, more, likelihood.where, part)])
         scores = ndtri(np.clip(points, 1e-9, 1 - 1e-9))
         total = sum(count for count, _, _ in proposals)
         parts = []

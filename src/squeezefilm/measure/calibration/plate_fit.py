@@ -11,7 +11,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, SqueezefilmError
-from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.progress import ShareProgress, within
 from squeezefilm.measure.calibration.emulator import HELD_OUT, emulator_of, least_points
 from squeezefilm.measure.calibration.plate_posterior import (
     PlatePosterior,
@@ -34,6 +34,7 @@ from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.uncertainty.parameters import Parameter
 
 _MOST_LOST = 0.25
+_SOLVES = 0.95  # of the time; the rest is that of the posterior
 _SMALL = 0.3  # of a standard error; so much adds a twentieth to it
 WORKING = (Asked("resonance_frequency"), Asked("amplitude_per_volt"), Asked("quality_factor"))
 """What friction needs of a plate."""
@@ -101,9 +102,8 @@ class Solves:
         display: Display,
         scores: NormalScores,
         observations: tuple[Observation, ...],
-        tell: SayProgress,
     ) -> None:
-        self.display, self.scores, self.tell = display, scores, tell
+        self.display, self.scores = display, scores
         self.asked = answers_to_solve(display, observations)
         observed = {asked_by(seen) for seen in observations}
         self._needed = np.array([answer in observed or answer in WORKING for answer in self.asked])
@@ -114,13 +114,11 @@ class Solves:
         self.lost = 0
         self.example = ""
 
-    def add(self, points: si.DimensionlessArray, said: str) -> None:
+    def add(self, points: si.DimensionlessArray, said: str, tell: ShareProgress) -> None:
         """Solve plates at scores; one that has no such mode is left out and counted."""
         paths = [parameter.path for parameter in self.scores.parameters]
-        for number, (point, row) in enumerate(
-            zip(points, self.scores.values(points), strict=True), 1
-        ):
-            self.tell(f"{said}: plate {number} of {len(points)}")
+        for number, (point, row) in enumerate(zip(points, self.scores.values(points), strict=True)):
+            tell(f"{said}: plate {number + 1} of {len(points)}", number / len(points))
             try:
                 display = with_calibrated(self.display, dict(zip(paths, row.tolist(), strict=True)))
                 solved = solved_answers(display.actuator, self.asked)
@@ -170,7 +168,7 @@ def fitted_plate(
     *,
     seed: int,
     size: tuple[int, int] | None = None,
-    progress: SayProgress | None = None,
+    progress: ShareProgress | None = None,
 ) -> PlateFit:
     """The posterior of a plate's or disc's parameters.
 
@@ -179,13 +177,15 @@ def fitted_plate(
     each, kept on disk as they come. Raises `InputError` where
     nothing was observed, an observation has no answer, or a tenth of the plates has no such mode.
     """
-    tell = progress or (lambda _: None)
+    tell = progress or (lambda _, __: None)
     scores = NormalScores(parameters)
     first, second = size or design_sizes(len(parameters))
-    solves = Solves(display, scores, observations, tell)
-    solves.add(prior_scores(len(parameters), first, seed), "over the priors")
+    half = _SOLVES * first / (first + second)
+    solves = Solves(display, scores, observations)
+    points = prior_scores(len(parameters), first, seed)
+    solves.add(points, "over the priors", within(tell, 0.0, half))
     solves.require_enough()
-    tell("emulator")
+    tell("emulator", half)
     problem = solves.problem(observations)
     posterior = sampled_posterior(problem, seed=seed, steps=600)
     if second and _rough(problem):
@@ -193,10 +193,10 @@ def fitted_plate(
         chosen = posterior.scores[random.choice(len(posterior.scores), second, replace=False)]
         # A little wider, so that the emulator does not end where the posterior does.
         chosen = chosen + random.normal(0, 0.25, chosen.shape)
-        solves.add(chosen, "where the data point")
-        tell("emulator")
+        solves.add(chosen, "where the data point", within(tell, half, _SOLVES))
+        tell("emulator", _SOLVES)
         problem = solves.problem(observations)
-    posterior = sampled_posterior(problem, seed=seed, progress=progress)
+    posterior = sampled_posterior(problem, seed=seed, progress=within(tell, _SOLVES, 1.0))
     made = predictive(problem, posterior, seed=seed)
     return PlateFit(problem, posterior, made, len(solves.points) + solves.lost)
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, optional
-from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.progress import ShareProgress
 from squeezefilm.measure.calibration.discrepancy import (
     KINDS,
     READ_ALONE,
@@ -238,7 +238,7 @@ def sampled_posterior(
     *,
     seed: int,
     steps: Annotated[int, si.AtLeast(100)] = STEPS,
-    progress: SayProgress | None = None,
+    progress: ShareProgress | None = None,
 ) -> PlatePosterior:
     """The posterior of a plate's parameters and of the discrepancy's scales.
 
@@ -249,8 +249,8 @@ def sampled_posterior(
 
     if not problem.observations:
         raise InputError("nothing of the plate was observed; give at least one observation of it")
-    tell = progress or (lambda _: None)
-    tell("least squares")
+    tell = progress or (lambda _, __: None)
+    tell("least squares", 0.0)
     best = best_fit(problem, seed=seed)
     count, random = best.size + len(KINDS), np.random.default_rng(seed)
     walkers = 2 * max(2 * count, 16)
@@ -272,7 +272,7 @@ def sampled_posterior(
     state = emcee.State(start, random_state=np.random.RandomState(seed % 2**32).get_state())
     parts = 10
     for part in range(parts):
-        tell(f"posterior, {100 * part // parts} %")
+        tell(f"posterior, {100 * part // parts} %", part / parts)
         state = sampler.run_mcmc(state, (steps + BURN_IN) // parts)
     chain = sampler.get_chain(discard=BURN_IN)
     time = float(np.max(emcee.autocorr.integrated_time(chain, quiet=True, tol=0)))
