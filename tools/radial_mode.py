@@ -10,7 +10,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError
-from squeezefilm.measure.fits.ceramic.ceramic_prior import compliances
+from squeezefilm.measure.fits.ceramic.constants import compliances
 from squeezefilm.measure.fits.ceramic.disc import DiscConstants
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.sweep_reading import SweepPeaks, sweep_peaks

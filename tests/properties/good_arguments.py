@@ -285,7 +285,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "wanted": np.array([1e-4, 1e-3, 0.0]),
         "held": np.array([0.5, 0.5, 0.0]),
     },
-    "measure.fits.ceramic.ceramic_prior.compliances": {"p": np.linspace(-1.0, 1.0, 14)},
+    "measure.fits.ceramic.constants.compliances": {"p": np.linspace(-1.0, 1.0, 14)},
     "measure.fits.circuit.branches.poles": {
         "frequency": np.linspace(29e3, 31e3, 41),
         "response": 1 / (30e3 - np.linspace(29e3, 31e3, 41) + 200j),

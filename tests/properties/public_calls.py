@@ -40,7 +40,7 @@ ROOMS = {
     "measure.recordings.kinds",
     "measure.fits.circuit.branches",
     "design.sweep.sweep",
-    "measure.fits.ceramic.ceramic_prior",
+    "measure.fits.ceramic.constants",
     "measure.fits.vibration.driven_shape",
 }
 _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]

@@ -2,7 +2,7 @@
 
 import pytest
 
-from squeezefilm.core.progress import NO_HURRY, Deadline, Pace, Steps, about, said_with_time_left
+from squeezefilm.core.progress import NO_HURRY, Deadline, Pace, about, said_with_time_left
 
 
 class Clock:
@@ -64,25 +64,6 @@ def test_the_time_left_follows_from_what_was_done() -> None:
         "fine mesh (25 %, about 60 s left)",
         "response (90 %, about 7 s left)",
         "done",
-    ]
-
-
-def test_the_time_left_of_steps_is_their_own_pace_and_what_is_expected_of_the_later() -> None:
-    said, clock = [], Clock()
-    steps = Steps(said.append, (10.0, 60.0), clock)
-    tell = steps.next()
-    tell("plates", 0.0)
-    clock.now += 20.0
-    tell("plates", 0.5)
-    tell = steps.next()
-    clock.now += 30.0
-    tell("draws", 0.0)
-    tell("draws", 1.0)
-    assert said == [
-        "plates (about 70 s left)",
-        "plates (about 80 s left)",
-        "draws (about 30 s left)",
-        "draws",
     ]
 
 

@@ -20,7 +20,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.hard_limits import DESCRIPTION_BYTES
-from squeezefilm.core.progress import SayProgress, ShareProgress, Steps
+from squeezefilm.core.progress import SayProgress, ShareProgress
 from squeezefilm.core.regular_file import read_json, read_regular_text
 from squeezefilm.core.results import stamp, to_json, write_whole
 from squeezefilm.measure.calibration.calibration import Calibration
@@ -39,6 +39,7 @@ from squeezefilm.measure.calibration.solved_answers import (
     question,
     solved_answers,
 )
+from squeezefilm.measure.calibration.steps import DRAW_TAKES, PLATE_TAKES, Steps
 from squeezefilm.measure.calibration.written_display import calibrated_display
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.chain.prediction import predict
@@ -48,8 +49,6 @@ from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 
 KIND = "squeezefilm blind prediction"
 _SOLVED, _FRICTION = 32, 256
-# Seconds of one solved plate, and of one drawn finger.
-_PLATE_TAKES, _DRAW_TAKES = 1.5, 0.008
 _TAILS = ((1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2)
 
 
@@ -181,7 +180,7 @@ def predicted(
     )
     of_friction = [seen for seen in what if seen.answer == FRICTION]
     drawn = isinstance(source, Display) and len(of_friction) < len(what)
-    seconds = _FRICTION * _DRAW_TAKES if of_friction else 0.0, _SOLVED * _PLATE_TAKES * drawn
+    seconds = _FRICTION * DRAW_TAKES if of_friction else 0.0, _SOLVED * PLATE_TAKES * drawn
     steps = Steps(progress or (lambda _: None), seconds)
     rows = _of_friction(display, of_friction, seed, steps.next()) | (
         _of_plate(display, what, seed, steps.next())

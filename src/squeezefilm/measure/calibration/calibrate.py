@@ -11,7 +11,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.distributions import Distribution
 from squeezefilm.core.errors import InputError, SqueezefilmError
-from squeezefilm.core.progress import SayProgress, ShareProgress, Steps
+from squeezefilm.core.progress import SayProgress, ShareProgress
 from squeezefilm.measure.calibration.calibration import (
     CalibratedValue,
     Calibration,
@@ -46,6 +46,7 @@ from squeezefilm.measure.calibration.plate_fit import (
 )
 from squeezefilm.measure.calibration.priors import calibration_parameters, with_calibrated
 from squeezefilm.measure.calibration.solved_answers import FRICTION, MODE_FREQUENCY
+from squeezefilm.measure.calibration.steps import DRAW_TAKES, PLATE_TAKES, Steps
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.touch import touch
@@ -60,8 +61,7 @@ from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 _JOINT = 1024
 _BEFORE = 256
 _TOLD = 64
-# Seconds of one solved plate, one drawn finger, and one drawn finger on its plate.
-_PLATE_TAKES, _DRAW_TAKES, _TOUCH_TAKES = 1.5, 0.008, 0.02
+_TOUCH_TAKES = 0.02  # seconds of a drawn finger on its plate
 _TAILS = ((1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2)
 
 
@@ -112,11 +112,11 @@ def calibrate(
     chosen = calibration_parameters(display, parameters) if of_plate else ()
     size = effort.plates or design_sizes(len(chosen))
     seconds = (
-        sum(size) * _PLATE_TAKES if of_plate else 0.0,
+        sum(size) * PLATE_TAKES if of_plate else 0.0,
         _BEFORE * _TOUCH_TAKES,
-        effort.finger_draws * (1 + ROUNDS / 2) * _DRAW_TAKES if of_friction else 0.0,
+        effort.finger_draws * (1 + ROUNDS / 2) * DRAW_TAKES if of_friction else 0.0,
         effort.joint_draws * _TOUCH_TAKES,
-        effort.joint_draws * _DRAW_TAKES,
+        effort.joint_draws * DRAW_TAKES,
     )
     steps = Steps(progress or (lambda _: None), seconds)
     tell = steps.next()

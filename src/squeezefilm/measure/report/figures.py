@@ -139,11 +139,6 @@ def _bench(figure: Figure, bench: kinds.FrictionBench) -> None:
     rows[2].set_xlabel("time (s)")
 
 
-def _curve(figure: Figure, curve: kinds.FrictionCurve) -> None:
-    axes = figure.subplots()
-    measured_points(axes, curve)
-
-
 FRICTION_WORDS: Mapping[str, str] = {
     "friction_force": "friction force (N)",
     "friction_coefficient": "coefficient of friction",
@@ -178,16 +173,6 @@ def _scatter(figure: Figure, x: si.FloatArray, y: si.FloatArray, words: tuple[st
     axes.set(xlabel=words[0], ylabel=words[1], xlim=(0, None), ylim=(0, None))
 
 
-def _decays(figure: Figure, decays: kinds.FrictionDecays) -> None:
-    words = ("τ (µm): µ = µ0 exp(−a²/2τ²)", "coefficient of friction at rest µ0")
-    _scatter(figure, 1e6 * decays.decay_amplitude, decays.friction_coefficient, words)
-
-
-def _touches(figure: Figure, touches: kinds.FingertipImpedances) -> None:
-    words = ("damping (N s/m)", "moving mass (g)")
-    _scatter(figure, touches.damping, 1e3 * touches.mass, words)
-
-
 def _detection(figure: Figure, measured: kinds.DetectionThresholds) -> None:
     words = ("spatial period (mm)", "amplitude of the friction coefficient detected")
     _scatter(figure, 1e3 * measured.period, measured.amplitude, words)
@@ -214,8 +199,24 @@ _OF_KIND: Mapping[type, tuple[str, Callable[[Figure, Any], None]]] = {
     kinds.RingDown: ("a ring-down", _ring_down),
     kinds.RawSignals: ("raw signals", _signals),
     kinds.FrictionBench: ("a friction bench", _bench),
-    kinds.FrictionCurve: ("a friction curve", _curve),
-    kinds.FrictionDecays: ("published fits of friction", _decays),
-    kinds.FingertipImpedances: ("impedances of fingertips", _touches),
+    kinds.FrictionCurve: (
+        "a friction curve",
+        lambda figure, curve: measured_points(figure.subplots(), curve),
+    ),
+    kinds.FrictionDecays: (
+        "published fits of friction",
+        lambda figure, decays: _scatter(
+            figure,
+            1e6 * decays.decay_amplitude,
+            decays.friction_coefficient,
+            ("τ (µm): µ = µ0 exp(−a²/2τ²)", "coefficient of friction at rest µ0"),
+        ),
+    ),
+    kinds.FingertipImpedances: (
+        "impedances of fingertips",
+        lambda figure, touches: _scatter(
+            figure, touches.damping, 1e3 * touches.mass, ("damping (N s/m)", "moving mass (g)")
+        ),
+    ),
     kinds.DetectionThresholds: ("detection thresholds", _detection),
 }

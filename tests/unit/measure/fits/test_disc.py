@@ -14,7 +14,7 @@ from radial_mode import (
     predict_radial_mode,
 )
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.ceramic.ceramic_prior import PARAMETERS, ceramic_prior, compliances
+from squeezefilm.measure.fits.ceramic.constants import PARAMETERS, ceramic_prior, compliances
 from squeezefilm.measure.fits.ceramic.disc import (
     Combination,
     DiscConstants,

@@ -12,9 +12,11 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import VACUUM_PERMITTIVITY
-from squeezefilm.measure.fits.ceramic.ceramic_prior import PARAMETERS, ceramic_prior, compliances
 from squeezefilm.measure.fits.ceramic.constants import (
+    PARAMETERS,
     CeramicConstants,
+    ceramic_prior,
+    compliances,
     constants_of,
     resonance_peaks,
 )
