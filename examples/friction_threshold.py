@@ -35,15 +35,12 @@ def main() -> dict[str, float]:
         shape="weibull",
         axis="log",
         prior=prior,
-        replicates=199,
     )
     threshold = fit.function.threshold
-    for kind in ("posterior", "bootstrap"):
-        low, high = getattr(fit, f"{kind}_interval")["threshold"]
-        print(f"threshold {threshold:.3f} ({low:.3f} to {high:.3f} by {kind})")
+    low, high = fit.posterior_interval["threshold"]
+    print(f"threshold {threshold:.3f} ({low:.3f} to {high:.3f})")
     for note in fit.notes:
         print(f"note: {note}")
-    low, high = fit.posterior_interval["threshold"]
     d_prime = 2**0.5 * NormalDist().inv_cdf(float(fit.function(threshold)))
     print(f"d' at the threshold is {d_prime:.2f}")
     sf.plot(fit).savefig("friction_threshold.png")

@@ -54,6 +54,13 @@ def two_interval_model(
     return PlacementModel(parameters, differences, answers, chances, _lapse_prior(lapses))
 
 
+def differencing_rate(d_prime: float, criterion: float) -> float:
+    """Share of "different" to a difference, where that of the percepts decides (Macmillan and
+    Creelman 2005, chapter 9); its false alarms are those of d′ = 0."""
+    root = math.sqrt(2.0)
+    return float(ndtr((d_prime - criterion) / root) + ndtr((-d_prime - criterion) / root))
+
+
 @si.checked_numbers
 def same_different_model(
     differences: Annotated[si.FloatArray, si.AtLeast(0.0)],

@@ -21,9 +21,7 @@ PEOPLE = {
     "same-different": "same or different", "magnitude": "magnitude estimation",
     "same-different, adaptive": "same or different, adaptive series",
 }  # fmt: skip
-RUNS_OF_PART, PEOPLES_STUDIES = 125, {"magnitude": 2000}
-_LINE = re.compile(r"(.*): ([\w ]+), (\w+): ([\d.]+), median length (\S+)")
-Row = dict[str, tuple[float, float]]
+PEOPLES_STUDIES = {"magnitude": 2000}
 
 
 def printed(test: str, path: Path = ANSWERS) -> list[str]:
@@ -34,34 +32,6 @@ def printed(test: str, path: Path = ANSWERS) -> list[str]:
         if one["test"].split("::")[1].startswith(test):
             last[one["test"]] = one["printed"]
     return [line for text in last.values() for line in text.splitlines()]
-
-
-def coverages() -> dict[tuple[str, str], tuple[int, Row]]:
-    """Runs, and share and length by parameter, of each run and kind of interval."""
-    found: dict[tuple[str, str, str], list[tuple[float, float]]] = {}
-    for line in printed("test_intervals_that_ask_again_hold_the_truth"):
-        match = _LINE.fullmatch(line)
-        assert match is not None, line
-        name, kind, parameter, share, length = match.groups()
-        found.setdefault((name, kind, parameter), []).append((float(share), float(length)))
-    rows: dict[tuple[str, str], tuple[int, Row]] = {}
-    for (name, kind, parameter), parts in found.items():
-        share, length = (sum(one) / len(parts) for one in zip(*parts, strict=True))
-        runs = RUNS_OF_PART * len(parts)
-        rows.setdefault((name, kind), (runs, {}))[1][parameter] = share, length
-    return rows
-
-
-def interval_rows() -> list[str]:
-    """Rows of the table of adaptive runs."""
-    rows = []
-    for (name, kind), (runs, of) in sorted(coverages().items()):
-        cells = " | ".join(
-            f"{100 * of[one][0]:.1f} % ({of[one][1]:.2g})"
-            for one in ("threshold", "width", "lapse_rate")
-        )
-        rows.append(f"| {name} | {runs} | {kind} | {cells} |")
-    return rows
 
 
 def people_rows() -> list[str]:
@@ -95,7 +65,6 @@ def power_rows() -> list[str]:
 def written(page: str) -> str:
     """The page with these rows below each head."""
     for head, rows in (
-        ("| adaptive run | runs |", interval_rows()),
         ("| task | studies |", people_rows()),
         ("| task | found where", power_rows()),
     ):

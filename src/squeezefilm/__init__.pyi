@@ -491,7 +491,6 @@ if TYPE_CHECKING:
         decimal_comma: bool = ...,
         mixed: bool = ...,
         resamples: int = ...,
-        reruns: int = ...,
         seed: int = ...,
         progress: Tell | None = ...,
     ) -> dict[str, StudyAnalysis]:

@@ -20,7 +20,7 @@ from squeezefilm.study.identification.proportions import (
     recentred_interval,
 )
 from squeezefilm.study.identification.sensitivity import ordered_sensitivity
-from squeezefilm.study.psychometric.discrimination import just_noticeable_difference, sensitivity
+from squeezefilm.study.psychometric.discrimination import sensitivity
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.tasks.population import PersonLikelihood, Population
 
@@ -48,12 +48,11 @@ def counts(draw):
     counts(),
     st.sampled_from([None, 0.0, 0.5]),
     st.sampled_from(["linear", "log"]),
-    st.sampled_from([0, 39]),
     levels,
 )
-@example(([0, 0, 0, 0, 4], [10, 8, 6, 3, 4]), None, "linear", 39, 0.95)
-@example(([20, 18, 10, 3, 0], [20] * 5), 0.5, "linear", 0, 0.95)
-def test_a_fitted_function_lies_in_its_intervals(answers, guess_rate, axis, replicates, level):
+@example(([0, 0, 0, 0, 4], [10, 8, 6, 3, 4]), None, "linear", 0.95)
+@example(([20, 18, 10, 3, 0], [20] * 5), 0.5, "linear", 0.95)
+def test_a_fitted_function_lies_in_its_intervals(answers, guess_rate, axis, level):
     positive, trials = answers
     fit = fit_psychometric(
         np.arange(1.0, len(trials) + 1.0),
@@ -61,24 +60,14 @@ def test_a_fitted_function_lies_in_its_intervals(answers, guess_rate, axis, repl
         trials,
         guess_rate=guess_rate,
         axis=axis,
-        replicates=replicates,
+        replicates=0,
         level=level,
     )
-    intervals = [fit.posterior_interval, fit.bootstrap_interval]
-    for interval in intervals:
-        for name, (low, high) in interval.items():
-            assert low <= getattr(fit.function, name) <= high, name
-    if guess_rate == 0.5 or fit.falls:
-        return
-    for by, interval in zip(("posterior", "bootstrap"), intervals, strict=True):
-        if interval:
-            found = just_noticeable_difference(fit, 2.0, by)
-            for name in ("equality", "difference", "weber_fraction"):
-                low, high = getattr(found, f"{name}_interval")
-                assert low <= getattr(found, name) <= high, name
+    for name, (low, high) in fit.posterior_interval.items():
+        assert low <= getattr(fit.function, name) <= high, name
 
 
-models = st.sampled_from(["yes-no", "two-interval", "differencing", "independent-observation"])
+models = st.sampled_from(["yes-no", "two-interval", "differencing"])
 
 
 @given(st.integers(1, 20), st.integers(1, 20), st.data(), models, levels, st.integers(0, 9))

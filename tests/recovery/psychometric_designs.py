@@ -12,13 +12,13 @@ import numpy as np
 
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.adaptive.rerun import Procedure, rerun_intervals
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 from squeezefilm.study.psychometric.fit import PsychometricFit, fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior
 
 PARAMETERS = ("threshold", "width", "lapse_rate")
 Answers = tuple[FloatArray, FloatArray]
+Procedure = StaircaseRule | AdaptiveDesign
 Experiment = Callable[[PsychometricFunction, np.random.Generator], Answers]
 
 LINEAR = np.arange(1.0, 9.0)
@@ -51,7 +51,7 @@ def staircases(trials: int) -> tuple[Procedure, ...]:
 
 
 def adaptive(procedures: tuple[Procedure, ...]) -> Experiment:
-    """Trial by trial, as a study does it: not by the kernel that simulates runs for intervals."""
+    """Trial by trial, as a study does it."""
 
     def answers(truth: PsychometricFunction, random: np.random.Generator) -> Answers:
         shown: list[tuple[float, bool]] = []
@@ -68,23 +68,20 @@ def adaptive(procedures: tuple[Procedure, ...]) -> Experiment:
 
 @dataclass(frozen=True)
 class Recovery:
-    """A truth, an experiment on it, the prior of the fit (None: from the stimuli), and what chose
-    the stimuli."""
+    """A truth, an experiment on it, and the prior of the fit (None: from the stimuli)."""
 
     truth: PsychometricFunction
     experiment: Experiment
     prior: PsychometricPrior | None = None
-    procedures: tuple[Procedure, ...] = ()
 
-    def fit(self, seed: int, replicates: int) -> PsychometricFit:
+    def fit(self, seed: int) -> PsychometricFit:
         intensity, positive = self.experiment(self.truth, np.random.default_rng(seed))
         return fit_psychometric(
             intensity, positive, shape=self.truth.shape, axis=self.truth.axis,
-            guess_rate=self.truth.guess_rate, prior=self.prior, replicates=replicates, seed=seed,
+            guess_rate=self.truth.guess_rate, prior=self.prior, replicates=0,
         )  # fmt: skip
 
 
-COARSE = (20, 12, 3)
 PERSON = PsychometricFunction("logistic", 5.0, 3.0, 0.5, 0.03)
 RECOVERIES: dict[str, Recovery] = {
     "two-interval, 320 constant stimuli": Recovery(
@@ -97,14 +94,10 @@ RECOVERIES: dict[str, Recovery] = {
         PsychometricFunction("weibull", 3.0, 1.0, 0.25, 0.02, "log"), constant(LOGARITHMIC, 30)
     ),
     "two-interval, 200 stimuli chosen by entropy": Recovery(
-        PERSON, adaptive(entropy(200)), WIDE_PRIOR, entropy(200)
-    ),
-    # A coarser grid chooses five times as quickly, so that 500 intervals can be simulated.
-    "two-interval, 200 stimuli chosen by entropy on a coarse grid": Recovery(
-        PERSON, adaptive(entropy(200, COARSE)), WIDE_PRIOR, entropy(200, COARSE)
+        PERSON, adaptive(entropy(200)), WIDE_PRIOR
     ),
     "two-interval, 200 stimuli on staircases": Recovery(
-        PERSON, adaptive(staircases(200)), WIDE_PRIOR, staircases(200)
+        PERSON, adaptive(staircases(200)), WIDE_PRIOR
     ),
 }
 
@@ -117,26 +110,17 @@ class Coverage:
     length: float
 
 
-def coverage(
-    recovery: Recovery, runs: int, replicates: int, first: int = 0, reruns: int = 0
-) -> dict[tuple[str, str], Coverage]:
-    """Coverage by kind of interval and parameter; "asked again" is of so many re-run replicates."""
-    rows: dict[tuple[str, str], list[tuple[bool, float]]] = {}
-    for seed in range(first, first + runs):
-        fit = recovery.fit(seed, replicates)
-        kinds = {"posterior": fit.posterior_interval, "bootstrap": fit.bootstrap_interval}
-        if reruns:
-            kinds["asked again"] = rerun_intervals(
-                fit, recovery.procedures, replicates=reruns, seed=seed
-            )
-        for kind, intervals in kinds.items():
-            for name, (low, high) in intervals.items():
-                inside = low <= getattr(recovery.truth, name) <= high
-                rows.setdefault((kind, name), []).append((inside, high - low))
+def coverage(recovery: Recovery, runs: int) -> dict[str, Coverage]:
+    """Coverage of the posterior intervals by parameter."""
+    rows: dict[str, list[tuple[bool, float]]] = {}
+    for seed in range(runs):
+        for name, (low, high) in recovery.fit(seed).posterior_interval.items():
+            inside = low <= getattr(recovery.truth, name) <= high
+            rows.setdefault(name, []).append((inside, high - low))
     return {
-        key: Coverage(
+        name: Coverage(
             float(np.mean([inside for inside, _ in row])),
             float(np.median([length for _, length in row])),
         )
-        for key, row in rows.items()
+        for name, row in rows.items()
     }

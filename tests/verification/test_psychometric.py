@@ -10,7 +10,11 @@ from scipy.optimize import minimize
 from scipy.special import betaincinv, ndtr
 
 from squeezefilm.study.psychometric import kernel
-from squeezefilm.study.psychometric.bootstrap import PenalisedLikelihood, simulate_bootstrap
+from squeezefilm.study.psychometric.bootstrap import (
+    PenalisedLikelihood,
+    share_as_large,
+    simulated_deviances,
+)
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import (
     SHAPES,
@@ -186,19 +190,19 @@ def test_draws_have_the_marginals() -> None:
         assert share == pytest.approx(0.3, abs=5 * math.sqrt(0.21 / 20_000))
 
 
-def test_with_many_trials_the_two_kinds_of_interval_agree() -> None:
+def test_deviances_of_many_trials_are_chi_squared() -> None:
     truth = PsychometricFunction("gaussian", 4.5, 4.0, 0.0, 0.05)
-    trials = np.full(8, 4000.0)
-    counts = np.random.default_rng(5).binomial(4000, truth(LEVELS))
-    fit = fit_psychometric(
-        LEVELS, counts, trials, shape="gaussian", guess_rate=0.0, replicates=1999, seed=2
-    )
-    assert fit.bootstrap is not None
-    for name in ("threshold", "width", "lapse_rate"):
-        ours, other = fit.posterior_interval[name], fit.bootstrap_interval[name]
-        assert other == pytest.approx(ours, abs=0.08 * (ours[1] - ours[0]))
+    low, high = PsychometricPrior.for_stimuli(LEVELS).bounds("linear")
+    low[3] = high[3] = 0.0
+    trials, free = np.full(8, 4000.0), np.array([True, True, True, False])
+    likelihood = PenalisedLikelihood(
+        kernel.GAUSSIAN, free, low, high, np.array([1.0, 10.0, 1.0, 1.0]),
+        LEVELS, np.round(trials * truth(LEVELS)), trials,
+    )  # fmt: skip
+    best = np.array([4.5, math.log(4.0), 0.05, 0.0])
     # 8 places less 3 parameters.
-    assert np.mean(fit.bootstrap.deviances) == pytest.approx(5.0, abs=5 * math.sqrt(10 / 1999))
+    deviances = simulated_deviances(likelihood, best, 1999, 2)
+    assert np.mean(deviances) == pytest.approx(5.0, abs=5 * math.sqrt(10 / 1999))
 
 
 def test_goodness_of_fit_refuses_a_wrong_function() -> None:
@@ -225,7 +229,8 @@ def test_goodness_of_fit_is_uniform_where_the_model_holds() -> None:
         best, _ = likelihood.maximum(start)
         value = kernel.log_density(kernel.LOGISTIC, best, np.ones(4), LEVELS, counts, TRIALS)
         deviance = 2 * (kernel.saturated(counts, TRIALS) - value)
-        values.append(simulate_bootstrap(likelihood, best, 99, seed).goodness_of_fit(deviance))
+        again = simulated_deviances(likelihood, best, 99, seed)
+        values.append(share_as_large(again, deviance))
     assert np.mean(values) == pytest.approx(0.5, abs=4 * math.sqrt(1 / 12 / 200))
     share = np.mean(np.array(values) <= 0.1)
     assert share == pytest.approx(0.1, abs=4 * math.sqrt(0.09 / 200))

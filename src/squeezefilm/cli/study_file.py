@@ -211,14 +211,7 @@ def analyze(
             help="Mixed models of statsmodels too, of match-to-sample (needs the extra 'study').",
         ),
     ] = False,
-    reruns: Annotated[
-        int,
-        typer.Option(
-            help="Thresholds of adaptive series in two intervals also by so many simulated runs of "
-            "them, like 199: seconds a person; 0 for none."
-        ),
-    ] = 0,
-    seed: Annotated[int, typer.Option(help="Seed of bootstraps and simulated runs.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of bootstraps.")] = 0,
     as_json: AsJson = False,
 ) -> None:
     """Analyse what was recorded: thresholds, sensitivity, exponents or confusions, with
@@ -242,7 +235,6 @@ def analyze(
             values=columns_of(values, "values"),
             decimal_comma=decimal_comma,
             mixed=mixed,
-            reruns=reruns,
             seed=seed,
             progress=step,
         )

@@ -17,7 +17,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.adaptive.kernel import EXACT, information
+from squeezefilm.study.adaptive.placement import information
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import (
     Axis,
@@ -125,17 +125,6 @@ class BayesianAdaptive:
         return self._weights.reshape(self.design.cells).copy()
 
     @property
-    def chances(self) -> si.DimensionlessArray:
-        """ψ of every cell of the grid at every stimulus, as the kernel takes it: shape
-        (1, cells, stimuli), the lapse rate running fastest over the cells."""
-        return self._table[None]
-
-    @property
-    def nuisance(self) -> int:
-        """How many cells in a row differ by what is integrated out."""
-        return 1 if self.design.interest == "all" else self.design.cells[2]
-
-    @property
     def entropy(self) -> float:
         """Entropy of the posterior of what is of interest (nat)."""
         weights = self.probability
@@ -155,7 +144,9 @@ class BayesianAdaptive:
     def expected_information(self) -> si.FloatArray:
         """Mutual information of the next answer and what is of interest (nat), shape (stimuli,)."""
         told = np.empty(len(self.design.stimuli))
-        information(self._weights, self.chances, self.nuisance, 0.0, EXACT, told)
+        # The lapse rate runs fastest over the cells.
+        nuisance = 1 if self.design.interest == "all" else self.design.cells[2]
+        information(self._weights, self._table[None], nuisance, told)
         return told
 
     def next_stimulus(self) -> float:

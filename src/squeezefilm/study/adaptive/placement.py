@@ -16,8 +16,8 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import compiled
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.adaptive.kernel import EXACT, information
 
 
 @si.checked_numbers
@@ -147,7 +147,7 @@ class Placement:
     def expected_information(self) -> si.FloatArray:
         """Mutual information of the next answer and what is of interest (nat), shape (stimuli,)."""
         told = np.empty(len(self.model.stimuli))
-        information(self._weights, self._chances, self.model.nuisance, 0.0, EXACT, told)
+        information(self._weights, self._chances, self.model.nuisance, told)
         return told
 
     def next_stimulus(self) -> int:
@@ -185,3 +185,54 @@ class Placement:
     def _require_room(self) -> None:
         if self.finished:
             raise InputError(f"all {self.trials} trials have been made; start another")
+
+
+@compiled(error_model="numpy")
+def _term(p: float) -> float:
+    """−p ln p."""
+    return -p * math.log(p) if p > 0.0 else 0.0
+
+
+@compiled(error_model="numpy")
+def information(
+    weights: si.FloatArray, chances: si.FloatArray, nuisance: int, told: si.FloatArray
+) -> None:
+    """Mutual information (nat) of the next answer and what is of interest, of every stimulus.
+
+    `weights` (cells,) sum to 1; `chances` (answers − 1, cells, stimuli) are the probabilities of
+    all answers but the last. Of every `nuisance` cells in a row only the sum is of interest. Fills
+    `told` (stimuli,).
+    """
+    answers, cells, stimuli = chances.shape
+    total = np.zeros((answers, stimuli))
+    joint = np.empty((answers, stimuli))
+    told[:] = 0.0
+    whole = 0.0
+    for first in range(0, cells, nuisance):
+        share = 0.0
+        for cell in range(first, first + nuisance):
+            share += weights[cell]
+        if share <= 0.0:
+            continue
+        whole += share
+        joint[:] = 0.0
+        for answer in range(answers):
+            here = joint[answer]
+            for cell in range(first, first + nuisance):
+                weight, chance = weights[cell], chances[answer, cell]
+                for at in range(stimuli):
+                    here[at] += weight * chance[at]
+        for at in range(stimuli):
+            rest, known = share, 0.0
+            for answer in range(answers):
+                rest -= joint[answer, at]
+                total[answer, at] += joint[answer, at]
+                known += _term(joint[answer, at] / share)
+            told[at] -= share * (known + _term(rest / share))
+    for at in range(stimuli):
+        rest, guessed = 1.0, 0.0
+        for answer in range(answers):
+            p = total[answer, at] / whole
+            rest -= p
+            guessed += _term(p)
+        told[at] = told[at] / whole + guessed + _term(rest)

@@ -1,4 +1,4 @@
-"""Fitting a psychometric function: its best value, two kinds of interval, goodness of fit."""
+"""Fitting a psychometric function: its best value, credible intervals, goodness of fit."""
 
 from __future__ import annotations
 
@@ -16,13 +16,9 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.bootstrap import (
-    Bootstrap,
-    Experiment,
-    Experiments,
     PenalisedLikelihood,
-    SamePlaces,
-    inverted_interval,
-    simulate_bootstrap,
+    share_as_large,
+    simulated_deviances,
 )
 from squeezefilm.study.psychometric.estimate import holding
 from squeezefilm.study.psychometric.function import (
@@ -61,9 +57,6 @@ class PsychometricFit(Result):
         posterior_interval: credible interval by parameter, in the parameter's unit: the central
             one, opened to the fitted value where that lies in a tail, as it does at the bound of a
             prior. It holds at least `level`.
-        bootstrap: None without replicates.
-        bootstrap_interval: confidence interval by parameter, in its unit; empty without
-            replicates.
         deviance: from the saturated model.
         deviance_p: probability of a deviance as large if the function is the truth, simulated;
             None without replicates. Without meaning where most places have a trial or two.
@@ -82,8 +75,6 @@ class PsychometricFit(Result):
     level: si.Dimensionless
     posterior: PsychometricPosterior
     posterior_interval: dict[str, Interval]
-    bootstrap: Bootstrap | None
-    bootstrap_interval: dict[str, Interval]
     deviance: float
     deviance_p: si.Dimensionless | None
     bounded_by_prior: tuple[str, ...]
@@ -125,7 +116,6 @@ class PsychometricFit(Result):
             "fitted": list(self.fitted),
             "interval_level": self.level,
             "posterior_interval": {k: list(v) for k, v in self.posterior_interval.items()},
-            "bootstrap_interval": {k: list(v) for k, v in self.bootstrap_interval.items()},
             "deviance": self.deviance,
             "deviance_p": self.deviance_p,
             "trials": int(self.trials.sum()),
@@ -172,8 +162,9 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
             alternatives); None to fit it, as for a yes/no task.
         prior: without one, `PsychometricPrior.for_stimuli`.
         level: of the intervals, between 0 and 1.
-        replicates: of the bootstrap; 0 for none.
-        seed: of the bootstrap.
+        replicates: of the answers that are simulated for `deviance_p`; 0 for none, else at least
+            39.
+        seed: of those answers.
 
     Raises:
         InputError: data that are no counts, of unlike shape or empty, or a value outside its
@@ -187,19 +178,17 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
     places, k, n = _by_place(asked.intensity, asked.positive, asked.trials)
     prior = PsychometricPrior.for_stimuli(places, axis) if asked.prior is None else asked.prior
     answered = Answered(code, axis, prior, guess_rate, on_axis(places, axis), k, n)
-    likelihood = penalised(answered)
+    likelihood = _penalised(answered)
     starts = coarse_maxima(answered)
     best, _ = max((likelihood.maximum(start) for start in starts), key=lambda found: found[1])
     posterior = grid_posterior(answered, best)
     fitted = PARAMETERS if guess_rate is None else PARAMETERS[: kernel.GUESS]
     likeliest = kernel.log_density(code, best, np.ones(4), answered.x, k, n)
     deviance = max(2.0 * (kernel.saturated(k, n) - likeliest), 0.0)
-    bootstrap, p, confidence = None, None, {}
+    p = None
     if asked.replicates:
-        bootstrap = simulate_bootstrap(likelihood, best, asked.replicates, asked.seed)
-        p = bootstrap.goodness_of_fit(deviance)
-        again = SamePlaces(likelihood, bootstrap.shares)
-        confidence = confidence_intervals(likelihood, best, again, fitted, level, axis)
+        again = simulated_deviances(likelihood, best, asked.replicates, asked.seed)
+        p = share_as_large(again, deviance)
     function = _function(asked.shape, axis, best)
     return PsychometricFit(
         function=function,
@@ -211,13 +200,11 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
         level=level,
         posterior=posterior,
         posterior_interval={
-            name: opened(function, name, posterior.interval(name, level)) for name in fitted
+            name: _opened(function, name, posterior.interval(name, level)) for name in fitted
         },
-        bootstrap=bootstrap,
-        bootstrap_interval=confidence,
         deviance=deviance,
         deviance_p=p,
-        bounded_by_prior=_bounded(prior, posterior, confidence),
+        bounded_by_prior=_bounded(prior, posterior),
         falling_p=falling_probability(answered.x, k, n),
     )
 
@@ -244,13 +231,13 @@ def falling_probability(
     return float(ndtr(float(away @ (positive - trials * share)) / np.sqrt(spread)))
 
 
-def opened(function: PsychometricFunction, name: str, interval: Interval) -> Interval:
+def _opened(function: PsychometricFunction, name: str, interval: Interval) -> Interval:
     """The interval of a parameter of a function, opened to its value there."""
     low, high = holding(getattr(function, name), *interval)
     return float(low), float(high)
 
 
-def penalised(answered: Answered) -> PenalisedLikelihood:
+def _penalised(answered: Answered) -> PenalisedLikelihood:
     """The likelihood of the answers with the priors of the rates, within the whole prior."""
     a, rate = answered, answered.guess_rate
     low, high = a.prior.bounds(a.axis)
@@ -271,51 +258,16 @@ def _function(shape: Shape, axis: Axis, theta: si.FloatArray) -> PsychometricFun
     return PsychometricFunction(shape, threshold, width, guess, lapse, axis)
 
 
-def likelihood_of(fit: PsychometricFit) -> tuple[PenalisedLikelihood, si.FloatArray]:
-    """The likelihood that was fitted, with its priors, and the kernel's θ of the fit."""
-    function, axis = fit.function, fit.function.axis
-    guess_rate = None if "guess_rate" in fit.fitted else function.guess_rate
-    code = shape_code(function.shape, axis)
-    x = on_axis(fit.intensity, axis)
-    answered = Answered(code, axis, fit.prior, guess_rate, x, fit.positive, fit.trials)
-    place = float(on_axis(function.threshold, axis))
-    rates = function.lapse_rate, function.guess_rate
-    return penalised(answered), np.array([place, np.log(function.width), *rates])
-
-
-def confidence_intervals(
-    likelihood: PenalisedLikelihood,
-    best: si.FloatArray,
-    experiment: Experiment,
-    fitted: tuple[str, ...],
-    level: si.Dimensionless,
-    axis: Axis,
-) -> dict[str, Interval]:
-    """Of each fitted parameter the values that simulated experiments do not refuse, in its unit."""
-    found, experiments = {}, Experiments(likelihood.code, experiment)
-    for name in fitted:
-        place = PARAMETERS.index(name)
-        low, high = inverted_interval(likelihood, best, experiments, place, level)
-        if name == "width" or (name == "threshold" and axis == "log"):
-            low, high = float(np.exp(low)), float(np.exp(high))
-        found[name] = low, high
-    return found
-
-
-def _bounded(
-    prior: PsychometricPrior, posterior: PsychometricPosterior, confidence: dict[str, Interval]
-) -> tuple[str, ...]:
+def _bounded(prior: PsychometricPrior, posterior: PsychometricPosterior) -> tuple[str, ...]:
     names = []
     for name in ("threshold", "width"):
         low, high = getattr(prior, name)
         edges, marginal = posterior.edges[PARAMETERS.index(name)], posterior.marginal(name)
         # A posterior that has not died away at the bound is cut by it.
         density = marginal / np.diff(edges)
-        cut = (np.isclose(edges[0], low) and density[0] > 0.05 * density.max()) or (
+        if (np.isclose(edges[0], low) and density[0] > 0.05 * density.max()) or (
             np.isclose(edges[-1], high) and density[-1] > 0.05 * density.max()
-        )
-        at_bound = name in confidence and bool(np.any(np.isclose(confidence[name], (low, high))))
-        if cut or at_bound:
+        ):
             names.append(name)
     return tuple(names)
 

@@ -1,4 +1,4 @@
-"""The compiled parts of psychometric functions: shapes, likelihood, maximum, bootstrap, grid.
+"""The compiled parts of psychometric functions: shapes, likelihood, maximum, refits, grid.
 
 A row of parameters θ is threshold m, ln width, lapse rate and guess rate, on the axis on which
 the shape is defined (the stimulus or its natural logarithm). A row `beta` holds the two
@@ -250,66 +250,18 @@ def refit(
     x: si.FloatArray,
     n: si.FloatArray,
     answers: si.FloatArray,
-    estimates: si.FloatArray,
     deviances: si.FloatArray,
 ) -> None:
     """Fit every row of simulated `answers` (replicates, places), starting from `best`.
 
-    Fills `estimates` (replicates, 4) and `deviances` from the saturated model (replicates,).
+    Fills `deviances` from the saturated model (replicates,).
     """
     flat = np.ones(4)
     for row in range(answers.shape[0]):
         k = answers[row]
         theta = best.copy()
         maximise(model, theta, x, k, n)
-        estimates[row] = theta
         deviances[row] = 2.0 * (saturated(k, n) - log_density(model.shape, theta, flat, x, k, n))
-
-
-@compiled(error_model="numpy")
-def profile_drops(
-    model: Model,
-    held: si.FloatArray,
-    parameter: int,
-    x: si.FloatArray,
-    k: si.FloatArray,
-    n: si.FloatArray,
-    used: si.IntArray,
-    drops: si.FloatArray,
-) -> None:
-    """Twice the fall of ln density when one parameter is held at its value in θ, `held`.
-
-    For every simulated experiment: places, answers and trials in the first `used` columns of a row
-    of `x`, `k` and `n` (replicates, places). Fills `drops` (replicates,).
-    """
-    some = model.free.copy()
-    some[parameter] = False
-    less = Model(model.shape, some, model.low, model.high, model.beta)
-    for row in range(x.shape[0]):
-        size = used[row]
-        where, right, trials = x[row, :size], k[row, :size], n[row, :size]
-        under = held.copy()
-        bottom = maximise(less, under, where, right, trials)
-        # From the constrained maximum the free one can only climb.
-        top = maximise(model, under, where, right, trials)
-        drops[row] = 2.0 * (top - bottom)
-
-
-@compiled(error_model="numpy")
-def log_likelihoods(
-    shape: int,
-    theta: si.FloatArray,
-    x: si.FloatArray,
-    k: si.FloatArray,
-    n: si.FloatArray,
-    used: si.IntArray,
-) -> si.FloatArray:
-    """ln likelihood of every simulated experiment, rows as in `profile_drops`, under θ."""
-    flat, found = np.ones(4), np.empty(x.shape[0])
-    for row in range(x.shape[0]):
-        size = used[row]
-        found[row] = log_density(shape, theta, flat, x[row, :size], k[row, :size], n[row, :size])
-    return found
 
 
 @compiled(error_model="numpy")

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from squeezefilm.study.identification.screening import Screening
     from squeezefilm.study.psychometric.estimate import Estimate
     from squeezefilm.study.tasks.analyze import StudyAnalysis
-    from squeezefilm.study.tasks.findings import PersonEstimate, TaskAnalysis
+    from squeezefilm.study.tasks.findings import TaskAnalysis
 
 Rows = list[tuple[str, str, str]]
 _SURE = 0.05
@@ -351,20 +351,10 @@ def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
             f"{scale * person.estimate.value:.3g}{unit}",
             f"{scale * person.estimate.low:.3g} to {scale * person.estimate.high:.3g}{unit}",
             f"{person.trials}",
-            _person_remark(person, scale, unit),
+            "not bounded by the answers alone" if person.unbounded else "",
         )
         for person in analysis.persons
     ]
-
-
-def _person_remark(person: PersonEstimate, scale: float, unit: str) -> str:
-    said = ["not bounded by the answers alone"] if person.unbounded else []
-    if (again := person.asked_again) is not None:
-        low, high = scale * again.low, scale * again.high
-        said.append(
-            f"by simulated reruns: {scale * again.value:.3g} ({low:.3g} to {high:.3g}){unit}"
-        )
-    return "; ".join(said)
 
 
 def exploration_head(analysis: StudyAnalysis) -> tuple[str, ...]:

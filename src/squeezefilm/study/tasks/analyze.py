@@ -34,10 +34,7 @@ from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers, recorded_answers
 from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.tasks.asked_again import asked_again, require_rerun
-from squeezefilm.study.tasks.findings import (
-    TaskAnalysis,
-)
+from squeezefilm.study.tasks.findings import TaskAnalysis
 from squeezefilm.study.tasks.magnitude import require_magnitudes
 from squeezefilm.study.tasks.measures import measured
 from squeezefilm.study.tasks.methods import methods_text
@@ -56,7 +53,6 @@ def analyze_study(
     decimal_comma: bool = False,
     mixed: bool = False,
     resamples: int = 1000,
-    reruns: int = 0,
     seed: int = 0,
     progress: Tell | None = None,
 ) -> dict[str, StudyAnalysis]:
@@ -64,18 +60,16 @@ def analyze_study(
 
     `store` is the study, or the path of its file; with a `design` the path of a CSV that another
     program recorded of it, whose `columns`, `values` and `decimal_comma` are read as
-    `read_answers` says. Main trials are
-    analysed; practice and familiarisation are left out, catch trials say who attended. Results say
-    whose answers they are. `mixed` adds statsmodels' mixed models to match-to-sample, whose stimuli
-    must each have the grating of their own period among the answers; `resamples` are its
-    bootstraps'. `reruns` (39 or more) adds thresholds of adaptive series in two intervals by so
-    many simulated runs of them, `seed` is theirs too (`tasks.asked_again`).
+    `read_answers` says. Main trials are analysed; practice and familiarisation are left out, catch
+    trials say who attended. Results say whose answers they are. `mixed` adds statsmodels' mixed
+    models to match-to-sample, whose stimuli must each have the grating of their own period among
+    the answers; `resamples` are its bootstraps', `seed` is that of all resampling.
 
     Raises:
-        InputError: stimuli that have no right answer, no answer yet, or reruns of what has none.
+        InputError: stimuli that have no right answer, or no answer yet.
         RecordError: the file is damaged.
     """
-    how: dict[str, Any] = {"mixed": mixed, "resamples": resamples, "reruns": reruns, "seed": seed}
+    how: dict[str, Any] = {"mixed": mixed, "resamples": resamples, "seed": seed}
     if design is not None and not isinstance(store, StudyStore):
         if design.task == "match-to-sample":
             stimuli_and_answers(design)
@@ -101,7 +95,6 @@ def analyze_answers(
     assumed: tuple[str, ...] = (),
     mixed: bool = False,
     resamples: int = 1000,
-    reruns: int = 0,
     level: si.Dimensionless = 0.95,
     seed: int = 0,
     progress: Tell | None = None,
@@ -109,24 +102,15 @@ def analyze_answers(
     """The same of answers in memory, like those of simulated participants, which `assumed` says
     what they rest on. Displays without a main trial are left out.
 
-    Raises `InputError` for a task of match-to-sample without a right answer to each stimulus, and
-    for `reruns` of a design without what could be run again.
+    Raises `InputError` for a task of match-to-sample without a right answer to each stimulus.
     """
-    require_rerun(answers.design, reruns)
     tell = progress or (lambda _: None)
     found: dict[str, StudyAnalysis] = {}
     for number, display in enumerate(answers.design.displays):
-        main = answers.main(number)
-        if not main.trials:
+        if not answers.main(number).trials:
             continue
         how = _How(f"{name}, {display}", number, assumed, mixed, resamples, level, seed, tell)
-        one = _screened(answers, how)
-        if reruns:
-            # Of two intervals alone, see `require_rerun`.
-            assert isinstance(one, TaskAnalysis)
-            persons = asked_again(main, one.persons, reruns, level, seed, tell)
-            one = dataclasses.replace(one, persons=persons)
-        found[display] = one
+        found[display] = _screened(answers, how)
     return found
 
 

@@ -24,15 +24,12 @@ class PersonEstimate:
     """One person's Weber fraction or exponent.
 
     `unbounded` says that the answers alone do not bound it: an end of the interval is the prior's.
-    `asked_again` is the threshold of adaptive series with an interval by simulated runs of them
-    (`tasks.asked_again`); None unless it was asked for.
     """
 
     person: str
     estimate: Estimate
     trials: int
     unbounded: bool
-    asked_again: Estimate | None = None
 
 
 @dataclass(frozen=True, slots=True)

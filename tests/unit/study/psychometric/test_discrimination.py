@@ -1,33 +1,25 @@
-"""d′ and just noticeable differences: what is refused, and how intervals follow the counts."""
+"""d′: what is refused, and how intervals follow the counts."""
 
 from __future__ import annotations
 
 import math
 
-import numpy as np
 import pytest
 from scipy.special import ndtr, ndtri
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.psychometric.discrimination import (
-    alternatives_d_prime,
-    correct_of_alternatives,
     corrected_proportion,
-    differencing_rates,
     differencing_sensitivity,
-    independent_observation_sensitivity,
-    just_noticeable_difference,
     sensitivity,
     two_interval_sensitivity,
     yes_no_sensitivity,
 )
-from squeezefilm.study.psychometric.fit import fit_psychometric
 
 OF_RATES = (
     yes_no_sensitivity,
     two_interval_sensitivity,
     differencing_sensitivity,
-    independent_observation_sensitivity,
 )
 
 
@@ -41,33 +33,17 @@ def test_rates_of_none_or_all_are_refused(of) -> None:  # type: ignore[no-untype
             of(0.5, end)
 
 
-def test_counts_and_alternatives_that_are_none_are_refused() -> None:
+def test_counts_that_are_none_are_refused() -> None:
     assert corrected_proportion(0, 1) == 0.25
     for count, trials, says in ((0, 0, "trials"), (-1, 3, "count"), (4, 3, "count")):
         with pytest.raises(InputError, match=says):
             corrected_proportion(count, trials)
-    with pytest.raises(InputError, match="alternatives"):
-        correct_of_alternatives(1.0, 1)
-    assert correct_of_alternatives(20.0, 2) == pytest.approx(1.0)
-    for beyond in (-20.1, 20.1):
-        with pytest.raises(InputError, match="d_prime"):
-            correct_of_alternatives(beyond, 2)
-    for share in (0.0, 1.0):
-        with pytest.raises(InputError, match="correct"):
-            alternatives_d_prime(share, 3)
-    # Nobody is so bad: at d′ = −20 a share of 1e-60 or so is right.
-    with pytest.raises(InputError, match="needs a d′ beyond ±20; check the counts"):
-        alternatives_d_prime(1e-300, 2)
-    for d_prime, criterion, says in ((-0.1, 1.0, "d_prime"), (1.0, -0.1, "criterion")):
-        with pytest.raises(InputError, match=says):
-            differencing_rates(d_prime, criterion)
-    assert differencing_rates(0.0, 0.0) == pytest.approx((1.0, 1.0))
 
 
 def test_criteria_and_models_are_named() -> None:
     # −(z(H) + z(F))/2, in standard deviations.
     middle = -0.5 * float(ndtri(0.8) + ndtri(0.4))
-    for of in (yes_no_sensitivity, two_interval_sensitivity, independent_observation_sensitivity):
+    for of in (yes_no_sensitivity, two_interval_sensitivity):
         assert of(0.8, 0.4).criterion == pytest.approx(middle)
     # Of differences: F = 2 Φ(−k/√2).
     for hit in (0.8, 0.4, 0.3):
@@ -78,25 +54,17 @@ def test_criteria_and_models_are_named() -> None:
         "yes/no",
         "two-interval forced choice",
         "same/different, differencing",
-        "same/different, independent observations",
     ]
     assert differencing_sensitivity(0.3, 0.4).model == names[2]
-    # An independent observer of d′: p = Φ(d′/2)² + Φ(−d′/2)² without bias.
-    side = float(ndtr(0.7))
-    p = side**2 + (1 - side) ** 2
-    assert independent_observation_sensitivity(p, 1 - p).d_prime == pytest.approx(1.4)
 
 
-@pytest.mark.parametrize(
-    "model", ["yes-no", "two-interval", "differencing", "independent-observation"]
-)
+@pytest.mark.parametrize("model", ["yes-no", "two-interval", "differencing"])
 def test_more_trials_narrow_the_interval_about_the_same_d_prime(model: str) -> None:
     few = sensitivity(16, 20, 6, 20, model, draws=400, seed=3)
     many = sensitivity(1600, 2000, 600, 2000, model, draws=400, seed=3)
     assert few.interval[0] < few.sensitivity.d_prime < few.interval[1]
     assert many.interval[1] - many.interval[0] < 0.2 * (few.interval[1] - few.interval[0])
-    of = dict(zip(("yes-no", "two-interval", "differencing", "independent-observation"), OF_RATES,
-                  strict=True))[model]  # fmt: skip
+    of = dict(zip(("yes-no", "two-interval", "differencing"), OF_RATES, strict=True))[model]
     assert few.sensitivity == of(16.5 / 21, 6.5 / 21)
     narrow = sensitivity(16, 20, 6, 20, model, level=0.5, draws=400, seed=3)
     assert narrow.level == 0.5
@@ -126,29 +94,3 @@ def test_settings_of_an_interval_that_are_refused() -> None:
     assert sensitivity(5, 10, 2, 10, "yes-no", draws=39).level == 0.95
     with pytest.raises(InputError, match="model"):
         sensitivity(5, 10, 2, 10, "yes/no")
-
-
-def test_a_difference_is_a_quarter_to_three_quarters_with_the_intervals_of_the_width() -> None:
-    levels = np.linspace(1.5, 2.5, 5)
-    fit = fit_psychometric(
-        levels, [1, 4, 10, 17, 20], [20] * 5, guess_rate=0.1, replicates=39, seed=1
-    )
-    for by in ("posterior", "bootstrap"):
-        found = just_noticeable_difference(fit, 2.0, by)
-        intervals = fit.posterior_interval if by == "posterior" else fit.bootstrap_interval
-        # Logistic: from 25 to 75 % are 2 ln 3 of the 2 ln 19 from 5 to 95 %.
-        per_width = 0.5 * math.log(3) / math.log(19)
-        assert found.difference == pytest.approx(per_width * fit.function.width)
-        for end in (0, 1):
-            assert found.difference_interval[end] == pytest.approx(
-                per_width * intervals["width"][end]
-            )
-            assert found.weber_fraction_interval[end] == pytest.approx(
-                found.difference_interval[end] / 2.0
-            )
-        assert found.equality_interval == intervals["threshold"]
-        assert (found.standard, found.by, found.level) == (2.0, by, fit.level)
-    with pytest.raises(InputError, match="standard"):
-        just_noticeable_difference(fit, 0.0)
-    with pytest.raises(InputError, match="by = 'other' gives no intervals"):
-        just_noticeable_difference(fit, 2.0, "other")

@@ -11,14 +11,10 @@ from scipy import stats
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.bootstrap import (
-    Bootstrap,
-    Experiments,
     PenalisedLikelihood,
-    SamePlaces,
-    inverted_interval,
-    simulate_bootstrap,
+    share_as_large,
+    simulated_deviances,
 )
-from squeezefilm.study.psychometric.discrimination import just_noticeable_difference
 from squeezefilm.study.psychometric.fit import falling_probability, fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricPrior
 from squeezefilm.study.psychometric.posterior import Answered, PsychometricPosterior, coarse_maxima
@@ -66,16 +62,16 @@ def test_a_rate_that_is_known_may_be_none_at_all_or_a_half() -> None:
 def test_on_a_logarithmic_axis_all_goes_with_the_unit_of_intensity() -> None:
     answers = ([3, 5, 8, 9, 10], [10] * 5)
     one, other = (
-        fit_psychometric(unit * 2.0**LEVELS, *answers, axis="log", replicates=39)
+        fit_psychometric(unit * 2.0**LEVELS, *answers, axis="log", replicates=0)
         for unit in (1.0, 1000.0)
     )
     assert other.function.threshold == pytest.approx(1000 * one.function.threshold, rel=1e-6)
     assert other.function.width == pytest.approx(one.function.width, rel=1e-5)
-    for by in ("posterior_interval", "bootstrap_interval"):
-        low, high = getattr(one, by)["threshold"]
-        assert low <= one.function.threshold <= high
-        assert getattr(other, by)["threshold"] == pytest.approx((1000 * low, 1000 * high), rel=2e-3)
-        assert getattr(other, by)["width"] == pytest.approx(getattr(one, by)["width"], rel=2e-3)
+    first, second = one.posterior_interval, other.posterior_interval
+    low, high = first["threshold"]
+    assert low <= one.function.threshold <= high
+    assert second["threshold"] == pytest.approx((1000 * low, 1000 * high), rel=2e-3)
+    assert second["width"] == pytest.approx(first["width"], rel=2e-3)
 
 
 def test_the_prior_of_stimuli_is_as_wide_as_it_says() -> None:
@@ -168,42 +164,19 @@ def test_searches_start_from_each_sixth_of_the_widths(guess_rate: float | None) 
         assert starts[:, 3] == pytest.approx(0.5)
 
 
-def _likelihood(k: list[float], prior: PsychometricPrior) -> PenalisedLikelihood:
-    low, high = prior.bounds("linear")
+def test_simulated_deviances_are_counted() -> None:
+    deviances = np.array([1.0, 2.0, 3.0, 4.0])
+    # The data count as one of the simulations, and a tie as one as large.
+    assert share_as_large(deviances, 2.5) == pytest.approx(3 / 5)
+    assert share_as_large(deviances, 2.0) == pytest.approx(4 / 5)
+    assert share_as_large(deviances, 9.0) == pytest.approx(1 / 5)
+    low, high = PsychometricPrior((0.0, 6.0), (0.4, 12.0)).bounds("linear")
     low[3] = high[3] = 0.0
     free, beta = np.array([True, True, True, False]), np.array([1.0, 10.0, 1.0, 1.0])
-    n = np.full(5, 20.0)
-    return PenalisedLikelihood(kernel.LOGISTIC, free, low, high, beta, LEVELS, np.array(k), n)
-
-
-@pytest.mark.parametrize("k", [[0.0, 2.0, 10.0, 18.0, 20.0], [0.0, 0.0, 20.0, 20.0, 20.0]])
-def test_an_interval_holds_the_best_value_and_stays_within_the_prior(k: list[float]) -> None:
-    prior = PsychometricPrior((0.0, 6.0), (0.4, 12.0))
-    likelihood = _likelihood(k, prior)
-    best, _ = likelihood.maximum(np.array([3.0, math.log(2.0), 0.02, 0.0]))
-    shares = simulate_bootstrap(likelihood, best, 39, 1).shares
-    again = Experiments(likelihood.code, SamePlaces(likelihood, shares))
-    for at in range(3):
-        low, high = inverted_interval(likelihood, best, again, at, 0.9)
-        assert likelihood.low[at] <= low <= best[at] + 1e-6
-        assert best[at] - 1e-6 <= high <= likelihood.high[at]
-        wider = inverted_interval(likelihood, best, again, at, 0.99)
-        assert wider[0] <= low + 1e-3
-        assert wider[1] >= high - 1e-3
-    # No lapse was seen, so that none is not refused.
-    assert inverted_interval(likelihood, best, again, 2, 0.9)[0] == pytest.approx(0.0, abs=1e-9)
-
-
-def test_a_bootstraps_test_is_counted() -> None:
-    estimates = np.arange(101.0)[:, None] + np.array([0.0, 1000.0, 2000.0, 3000.0])
-    found = Bootstrap(np.zeros(4), estimates, np.array([1.0, 2.0, 3.0, 4.0]), np.zeros((101, 2)))
-    # The data count as one of the simulations, and a tie as one as large.
-    assert found.goodness_of_fit(2.5) == pytest.approx(3 / 5)
-    assert found.goodness_of_fit(2.0) == pytest.approx(4 / 5)
-    assert found.goodness_of_fit(9.0) == pytest.approx(1 / 5)
-    likelihood = _likelihood([0.0, 2.0, 10.0, 18.0, 20.0], PsychometricPrior((0, 6), (0.4, 12)))
+    k, n = np.array([0.0, 2.0, 10.0, 18.0, 20.0]), np.full(5, 20.0)
+    likelihood = PenalisedLikelihood(kernel.LOGISTIC, free, low, high, beta, LEVELS, k, n)
     with pytest.raises(InputError, match="replicates = 38"):
-        simulate_bootstrap(likelihood, np.array([3.0, 0.7, 0.02, 0.0]), 38, 1)
+        simulated_deviances(likelihood, np.array([3.0, 0.7, 0.02, 0.0]), 38, 1)
 
 
 @pytest.mark.parametrize("known", [0.0, 0.1, 0.25, 1 / 3, 0.5])
@@ -225,8 +198,6 @@ def test_falling_answers_are_said_to_fall_wherever_a_fit_is_shown(guess_rate: fl
     assert said in repr(fit)
     assert said in fit._repr_html_()
     assert said in fit.summary()["notes"][0]
-    with pytest.raises(InputError, match=said):
-        just_noticeable_difference(fit, 3.0)
     turned = fit_psychometric(LEVELS, trials - positive, trials, guess_rate=None, replicates=0)
     assert not turned.falls
     assert not any(said in note for note in turned.notes)

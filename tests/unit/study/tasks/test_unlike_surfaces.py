@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.task_models import differencing_rate
 from tests.unit.study.design.test_matching import shapes
 
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import conditions
-from squeezefilm.study.psychometric.discrimination import differencing_rates
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.planned_precision import person_values
 from squeezefilm.study.tasks.analyze import analyze_answers
@@ -32,8 +32,8 @@ def answers(people: int, repetitions: int, seed: int) -> Answers:
     shown = np.array([[names.index(one) for one in pair] for pair in pairs] * people)
     different = shown[:, 0] != shown[:, 1]
     other = np.where(shown[:, 0] != 0, shown[:, 0], shown[:, 1])
-    rates = {name: differencing_rates(d, CRITERION)[0] for name, d in TRUE.items()}
-    alarm = differencing_rates(1.0, CRITERION)[1]
+    rates = {name: differencing_rate(d, CRITERION) for name, d in TRUE.items()}
+    alarm = differencing_rate(0.0, CRITERION)
     p = np.array(
         [rates[names[k]] if apart else alarm for k, apart in zip(other, different, strict=True)]
     )
