@@ -127,8 +127,8 @@ def plate_kernels() -> Iterator[tuple[str, Callable[[], object]]]:
     f = np.linspace(32.5e3, 34.5e3, 200)
     yield "the plate's mode (8,0)", lambda: plate.solve_modes(paper, mode=(8, 0))
     yield "200 points of its response", lambda: plate.harmonic_response(paper, f)
-    people = study.DirichletParticipants(study.ordered_observer(1.5), 12, 20.0)
-    yield "a study of 1 000 simulated", lambda: people(1000, np.random.default_rng(1))
+    random = np.random.default_rng(1)
+    yield "a study of 1 000 simulated", lambda: study.simulated_counts(1000, random)
 
 
 ROOMS = (film_kernels, contact_kernels, render_kernels, plate_kernels)

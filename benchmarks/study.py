@@ -27,20 +27,29 @@ from pathlib import Path
 
 import numpy as np
 import pandas
+from scipy.special import ndtr
 
 from squeezefilm.study.identification.analysis import analyze_identification
-from squeezefilm.study.identification.power import DirichletParticipants, ordered_observer
 
 LABELS = ("0.4 mm", "2 mm", "4 mm", "8 mm", "10 mm")
 PEOPLE, TRIALS_PER_STIMULUS, RESAMPLES = 10_000, 12, 1000
 PEER_RESAMPLES = 10
 
 
+def simulated_counts(people: int, random: np.random.Generator) -> np.ndarray:
+    """Matrices (people, answers, stimuli) of people who vary about an unbiased observer of ordered
+    stimuli 1.5 d′ apart."""
+    place = 1.5 * np.arange(len(LABELS))
+    criteria = np.concatenate([[-np.inf], 0.5 * (place[1:] + place[:-1]), [np.inf]])
+    shares = np.diff(ndtr(criteria[:, None] - place), axis=0)
+    own = [random.dirichlet(20.0 * column, people) for column in shares.T]
+    return np.stack([random.multinomial(TRIALS_PER_STIMULUS, one) for one in own], axis=-1)
+
+
 def trials() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """Participant, stimulus, choice and response time (s), one row a trial, in random order."""
     random = np.random.default_rng(1)
-    simulate = DirichletParticipants(ordered_observer(1.5), TRIALS_PER_STIMULUS, 20.0)
-    counts = simulate(PEOPLE, random)
+    counts = simulated_counts(PEOPLE, random)
     who, choice, stimulus = (
         np.repeat(index, counts.ravel()) for index in np.indices(counts.shape).reshape(3, -1)
     )

@@ -489,7 +489,6 @@ if TYPE_CHECKING:
         columns: Mapping[str, str] | None = ...,
         values: Mapping[str, str] | None = ...,
         decimal_comma: bool = ...,
-        mixed: bool = ...,
         resamples: int = ...,
         seed: int = ...,
         progress: Tell | None = ...,

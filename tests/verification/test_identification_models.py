@@ -1,31 +1,22 @@
-"""d′ of ordered stimuli, the choice model, response times and mixed models recover what made the
-data."""
+"""d′ of ordered stimuli, the choice model and response times recover what made the data."""
 
 from __future__ import annotations
 
 import math
-import sys
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy import integrate, stats
-from tests.known_observers import even_errors
+from scipy import stats
+from tests.known_observers import even_errors, ordered_observer
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.choice_model import (
     choice_model,
     choice_probabilities,
-    perceptual_map,
 )
-from squeezefilm.study.identification.mixed_models import mixed_model
-from squeezefilm.study.identification.power import ordered_observer
-from squeezefilm.study.identification.response_times import (
-    ex_gaussian_density,
-    fit_ex_gaussian,
-    response_time_summary,
-)
+from squeezefilm.study.identification.response_times import response_time_summary
 from squeezefilm.study.identification.sensitivity import ordered_sensitivity
 
 
@@ -191,51 +182,12 @@ def test_stimuli_never_confused_are_infinitely_far() -> None:
     n = np.array([[9, 3, 0], [3, 9, 2], [0, 2, 9]])
     found = choice_model(n)
     assert found.distance[0, 2] == np.inf
-    with pytest.raises(InputError, match="pseudo_trials=1"):
-        perceptual_map(found.distance)
     assert np.all(np.isfinite(choice_model(n, 1.0).distance))
     with pytest.raises(InputError, match="never answered rightly"):
         choice_model(np.array([[0, 3], [3, 3]]))
 
 
-def test_points_of_a_plane_are_found_again() -> None:
-    points = np.array([[0, 0], [1, 0.5], [2, -0.5], [4, 0.2]])
-    distance = np.linalg.norm(points[:, None] - points[None], axis=-1)
-    found = perceptual_map(distance, 2)
-    again = np.linalg.norm(found.points[:, None] - found.points[None], axis=-1)
-    assert again == pytest.approx(distance)
-    assert found.explained == pytest.approx(1)
-    assert found.negative == pytest.approx(0, abs=1e-12)
-    assert found.points[-1, 0] > found.points[0, 0]
-
-
 # --- response times ------------------------------------------------------------------------------
-
-
-def test_ex_gaussian_density_is_one_and_agrees_with_scipy() -> None:
-    random = np.random.default_rng(1)
-    fit = fit_ex_gaussian(0.5 + 0.05 * random.standard_normal(500) + random.exponential(0.3, 500))
-    total, _ = integrate.quad(lambda t: float(ex_gaussian_density(t, fit)), -1, 8, limit=200)
-    assert total == pytest.approx(1, abs=1e-6)
-    t = np.linspace(0.1, 4, 50)
-    oracle = stats.exponnorm.pdf(t, fit.tail / fit.spread, fit.mean, fit.spread)
-    assert ex_gaussian_density(t, fit) == pytest.approx(oracle, rel=1e-8)
-
-
-def test_ex_gaussian_is_recovered() -> None:
-    random = np.random.default_rng(2)
-    times = 0.6 + 0.1 * random.standard_normal(50_000) + random.exponential(0.4, 50_000)
-    found = fit_ex_gaussian(times[times > 0])
-    assert found.values == 20_000
-    assert (found.mean, found.spread, found.tail) == pytest.approx((0.6, 0.1, 0.4), abs=0.012)
-    by_scipy = stats.exponnorm.logpdf(times, 4, 0.6, 0.1).mean()
-    assert found.log_likelihood == pytest.approx(by_scipy, abs=0.02)
-
-
-def test_units_of_time_do_not_matter() -> None:
-    times = np.random.default_rng(3).gamma(3, 0.2, 400) + 0.1
-    one, other = fit_ex_gaussian(times), fit_ex_gaussian(1000 * times)
-    assert other.tail == pytest.approx(1000 * one.tail, rel=1e-4)
 
 
 def test_summaries_of_times() -> None:
@@ -252,60 +204,3 @@ def test_summaries_of_times() -> None:
     assert math.isnan(b.low)
     with pytest.raises(InputError, match="above 0"):
         response_time_summary([0], [0], [0.0], ("a",))
-
-
-# --- mixed models --------------------------------------------------------------------------------
-
-
-def _people(
-    log_odds: np.ndarray, spread: float, people: int, trials: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    random = np.random.default_rng(12)
-    own = spread * random.standard_normal(people)
-    who = np.repeat(np.arange(people), trials * log_odds.size)
-    kind = np.tile(np.repeat(np.arange(log_odds.size), trials), people)
-    p = 1 / (1 + np.exp(-(log_odds[kind] + own[who])))
-    return who, kind, random.random(p.size) < p
-
-
-@pytest.mark.slow
-def test_mixed_models_recover_stimuli_and_spread() -> None:
-    true = np.array([-0.5, 0.5, 1.5])
-    found = mixed_model(*_people(true, 1.0, 80, 12), ("a", "b", "c"))
-    # The people drawn move all three together: their mean has an error of 1/√80.
-    assert found.log_odds == pytest.approx(true, abs=0.35)
-    assert np.diff(found.log_odds) == pytest.approx([1, 1], abs=0.35)
-    assert found.participant_spread == pytest.approx(1.0, abs=0.25)
-    # The mean over people lies nearer one half, by about √(1 + 0.346 spread²).
-    assert found.average_log_odds == pytest.approx(true / math.sqrt(1.346), abs=0.35)
-    assert np.all(np.abs(found.average_log_odds[[0, 2]]) < np.abs(found.log_odds[[0, 2]]))
-    assert found.correlation > 0.05
-
-
-@pytest.mark.slow
-def test_a_stimulus_always_right_is_said_to_be() -> None:
-    who, kind, right = _people(np.array([0.0, 1.0]), 0.5, 10, 6)
-    found = mixed_model(who, kind, right | (kind == 1), ("a", "b"))
-    assert found.separated == ("b",)
-    assert math.isnan(found.average_log_odds[1])
-    assert math.isfinite(found.log_odds[1])
-
-
-def test_without_statsmodels_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "statsmodels", None)
-    with pytest.raises(InputError, match=r"squeezefilm\[study\]"):
-        mixed_model([0, 1], [0, 0], [True, False], ("a",))
-
-
-def test_one_person_has_no_mixed_model() -> None:
-    with pytest.raises(InputError, match="at least 2 people"):
-        mixed_model([0, 0], [0, 0], [True, False], ("a",))
-
-
-def test_the_same_trials_have_the_same_mixed_model() -> None:
-    random = np.random.default_rng(4)
-    who, kind = np.repeat(np.arange(6), 20), np.tile(np.arange(4), 30)
-    right = random.random(120) < 0.6
-    first, second = (mixed_model(who, kind, right, ("a", "b", "c", "d")) for _ in range(2))
-    assert first.log_odds.tolist() == second.log_odds.tolist()
-    assert first.participant_spread == second.participant_spread

@@ -11,11 +11,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy import stats
-from tests.known_observers import REFERENCE_MATRICES, even_errors, transfer_of
+from tests.known_observers import (
+    REFERENCE_MATRICES,
+    DirichletParticipants,
+    even_errors,
+    ordered_observer,
+    transfer_of,
+)
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.information import information_transfer, jackknife
-from squeezefilm.study.identification.power import DirichletParticipants, ordered_observer
 from squeezefilm.study.identification.proportions import (
     recentred_interval,
     resampled_counts,

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from scipy import stats
-from tests.known_observers import even_errors
-
-from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.power import (
+from tests.known_observers import (
     DirichletParticipants,
     distinction,
+    even_errors,
     ordered_observer,
-    power_curve,
 )
+
+from squeezefilm.core.errors import InputError
+from squeezefilm.study.identification.power import above_0, distinction_scores, power_curve
 
 
 def _binomial(counts: np.ndarray) -> float:
@@ -52,7 +52,7 @@ def test_stimuli_felt_alike_are_found_different_at_the_level(preference: float) 
     rest = (1 - preference) / 2
     same = np.array([[preference] * 3, [rest] * 3, [rest] * 3])
     found = power_curve(
-        DirichletParticipants(same, 4, 1e9), lambda n: distinction(n, 1, 2).p_value, (12,),
+        DirichletParticipants(same, 4, 1e9), lambda n: distinction(n, 1, 2), (12,),
         studies=2000,
     )  # fmt: skip
     assert found.power[0] == pytest.approx(0.05, abs=3 * np.sqrt(0.05 * 0.95 / 2000) + 0.005)
@@ -60,18 +60,18 @@ def test_stimuli_felt_alike_are_found_different_at_the_level(preference: float) 
 
 def test_distinction_by_hand() -> None:
     one, other = np.array([[3, 1], [1, 3]]), np.array([[2, 2], [2, 2]])
-    found = distinction(np.array([one, other]), 0, 1)
-    # Scores 1 and 0: t = 0.5/(0.7071/√2) = 1.
-    assert (found.score, found.t, found.participants) == (0.5, pytest.approx(1.0), 2)
-    assert found.p_value == pytest.approx(0.25)
-    assert distinction(np.array([other, other]), 0, 1).p_value == 1.0
-    assert distinction(np.array([one, one]), 0, 1).p_value == 0.0
+    scores = distinction_scores(np.array([one, other]), 0, 1)
+    assert scores.tolist() == [1.0, 0.0]
+    # t = 0.5/(0.7071/√2) = 1.
+    assert above_0(scores) == pytest.approx((1.0, 0.25))
+    assert distinction(np.array([other, other]), 0, 1) == 1.0
+    assert distinction(np.array([one, one]), 0, 1) == 0.0
 
 
 @pytest.mark.slow
 def test_how_many_people_for_8_against_10_mm() -> None:
     people = DirichletParticipants(ordered_observer(1.2), 3, 20.0)
-    found = power_curve(people, lambda n: distinction(n, 3, 4).p_value, studies=300)
+    found = power_curve(people, lambda n: distinction(n, 3, 4), studies=300)
     assert found.needed in found.participants
     assert found.needed is not None
     assert found.needed_surely is None or found.needed_surely >= found.needed
@@ -85,10 +85,10 @@ def test_a_curve_is_the_same_in_pieces() -> None:
     people = DirichletParticipants(ordered_observer(1.0), 2, 10.0)
     said: list[tuple[int, int]] = []
     whole = power_curve(
-        people, lambda counts: distinction(counts, 3, 4).p_value, (12, 4, 8), studies=50,
+        people, lambda counts: distinction(counts, 3, 4), (12, 4, 8), studies=50,
         progress=lambda done, of: said.append((done, of)),
     )  # fmt: skip
-    part = power_curve(people, lambda counts: distinction(counts, 3, 4).p_value, (8,), studies=50)
+    part = power_curve(people, lambda counts: distinction(counts, 3, 4), (8,), studies=50)
     assert part.power[0] == whole.power[1]
     assert said == [(1, 3), (2, 3), (3, 3)]
 
@@ -101,5 +101,3 @@ def test_what_cannot_be_simulated_is_refused() -> None:
         power_curve(people, lambda _: 2.0, (4,), studies=10)
     with pytest.raises(InputError, match="two different ones"):
         distinction(people(4, np.random.default_rng(0)), 3, 3)
-    with pytest.raises(InputError, match="sum to 1"):
-        DirichletParticipants(np.full((5, 5), 0.3), 1, 10.0)

@@ -204,13 +204,6 @@ def analyze(
         Path | None,
         written_to("Folder for numbers, figures and a page per display."),
     ] = None,
-    mixed: Annotated[
-        bool,
-        typer.Option(
-            "--mixed",
-            help="Mixed models of statsmodels too, of match-to-sample (needs the extra 'study').",
-        ),
-    ] = False,
     seed: Annotated[int, typer.Option(help="Seed of bootstraps.")] = 0,
     as_json: AsJson = False,
 ) -> None:
@@ -234,7 +227,6 @@ def analyze(
             columns=columns_of(columns),
             values=columns_of(values, "values"),
             decimal_comma=decimal_comma,
-            mixed=mixed,
             seed=seed,
             progress=step,
         )

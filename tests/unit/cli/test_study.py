@@ -288,7 +288,7 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
     assert asked.given == (store,)
     assert asked.named == {
         "design": None, "columns": {}, "values": {}, "decimal_comma": False,
-        "mixed": False, "seed": 0,
+        "seed": 0,
     }  # fmt: skip
     assert shown.given == (found,)
     assert "  a step …" in done.stderr
@@ -296,10 +296,10 @@ def test_an_analysis_is_shown_and_written_a_page_per_display(
     assert written.calls == []
 
     out = tmp_path / "pages"
-    done = run("analyze", store, "--out", out, "--mixed", "--seed", "6")
+    done = run("analyze", store, "--out", out, "--seed", "6")
     assert asked.calls[-1][1] == {
         "design": None, "columns": {}, "values": {}, "decimal_comma": False,
-        "mixed": True, "seed": 6,
+        "seed": 6,
     }  # fmt: skip
     assert [given[:2] for given, _ in written.calls] == [(found, out)]
     assert done.stdout == f"page: {tmp_path / 'index.html'}\n"

@@ -26,7 +26,7 @@ EXTRAS = {
     "lab": ("cryptography", "starlette", "uvicorn", "websockets"),
     "lsl": ("pylsl",),
     "measure": ("emcee", "pyuff"),
-    "study": ("pyarrow", "statsmodels"),
+    "study": ("pyarrow",),
 }
 
 

@@ -162,7 +162,7 @@ export const RESULTS = {
   drift: { name: "drift", text: "Change from a person's first trial to their last, over people: learning, or tiring.", source: "least squares for each person, t over people" },
   catch_trials: { name: "catch trials", text: "Trials whose answer is plain to whoever attends; doubtful is who missed more than somebody who gets 95 % right would.", source: "binomial test; the 95 % are assumed" },
   d_prime: { name: "d′ of neighbours", symbol: "d′", text: "Distance of two neighbouring percepts over their spread.", source: "Braida & Durlach 1972 (10.1121/1.1912868)" },
-  response_time: { name: "response time", text: "Mean and spread of its normal part and mean of its exponential tail, all trials.", source: "ex-Gaussian distribution" },
+  response_time: { name: "response time", text: "Geometric mean over people, from when a surface may be answered to the answer.", source: "Student's interval of people's mean logarithms" },
 };
 
 export const GLOSSARY = { ...DISPLAY, ...SEARCH, ...MOTION, ...RESULTS };

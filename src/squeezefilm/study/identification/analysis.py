@@ -15,9 +15,7 @@ from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.study.identification.choice_model import (
     ChoiceModel,
-    PerceptualMap,
     choice_model,
-    perceptual_map,
 )
 from squeezefilm.study.identification.condition_means import ConditionMean, condition_means
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
@@ -27,7 +25,6 @@ from squeezefilm.study.identification.information import (
     InformationTransfer,
     information_transfer,
 )
-from squeezefilm.study.identification.mixed_models import MixedModel, mixed_model
 from squeezefilm.study.identification.proportions import (
     METHODS,
     ConfusionPosterior,
@@ -39,9 +36,7 @@ from squeezefilm.study.identification.proportions import (
     proportion_interval,
 )
 from squeezefilm.study.identification.response_times import (
-    ExGaussian,
     ResponseTimeSummary,
-    fit_ex_gaussian,
     response_time_summary,
 )
 from squeezefilm.study.identification.screening import Screening
@@ -79,10 +74,9 @@ class IdentificationAnalysis(Result):
         posterior: of every cell.
         information: transfer of the answers, with its interval over participants.
         sensitivity: d′ of stimuli in the order of the labels; None where it has none.
-        choice: the biased choice model, and `choice_map` its stimuli as points; None likewise.
-        response_times, ex_gaussian: empty and None without response times.
+        choice: the biased choice model; None likewise.
+        response_times: empty without response times.
         exploration: quantity (with unit in its key) → means by stimulus.
-        mixed: mixed models; None if not asked for.
         notes: what could not be computed, and why.
         seed: of all resampling.
         course: response times, drift and attention; None of trials without a design.
@@ -103,11 +97,8 @@ class IdentificationAnalysis(Result):
     information: InformationTransfer
     sensitivity: OrderedSensitivity | None
     choice: ChoiceModel | None
-    choice_map: PerceptualMap | None
     response_times: tuple[ResponseTimeSummary, ...]
-    ex_gaussian: ExGaussian | None
     exploration: Mapping[str, tuple[ConditionMean, ...]]
-    mixed: MixedModel | None
     notes: tuple[str, ...]
     seed: int
     course: Course | None = None
@@ -173,11 +164,8 @@ class IdentificationAnalysis(Result):
             "information": self.information,
             "sensitivity": self.sensitivity,
             "choice_model": self.choice,
-            "choice_map": self.choice_map,
             "response_times": self.response_times,
-            "ex_gaussian": self.ex_gaussian,
             "exploration": self.exploration,
-            "mixed_model": self.mixed,
             "course": self.course,
             "methods": self.methods,
             "screening": self.screening,
@@ -214,7 +202,6 @@ class IdentificationRequest:
     origin: str = "not stated"
     response_time: ArrayLike | None = None
     exploration: Mapping[str, ArrayLike] | None = None
-    mixed: bool = False
     level: si.Dimensionless = 0.95
     resamples: int = 1000
     seed: int = 0
@@ -232,7 +219,6 @@ def analyze_identification(asked: IdentificationRequest) -> IdentificationAnalys
         name, origin: of the study, and whose answers these are.
         response_time: in s, shape (trials,); NaN where none was taken.
         exploration: quantity with its unit, e.g. "mean_speed_m_per_s" → values by trial.
-        mixed: whether to fit mixed models too (needs the extra `study`, at most 50 000 trials).
         level: of all intervals, between 0 and 1.
         resamples: of people in bootstraps, and shuffles in the permutation test.
         seed: of all resampling.
@@ -280,26 +266,17 @@ def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
     tell("information transfer")
     information = information_transfer(counts, level, resamples, seed)
     tell("d′ and choice model")
-    sensitivity, choice_fit, points = _models(counts, matrix, asked, notes)
+    sensitivity, choice_fit = _models(counts, matrix, asked, notes)
     tell("response times and exploration")
     person = np.unique(np.asarray(asked.participant), return_inverse=True)[1]
     kind = np.asarray(asked.stimulus, dtype=np.int64)
     times: tuple[ResponseTimeSummary, ...] = ()
-    ex_gaussian = None
     if asked.response_time is not None:
         times = response_time_summary(person, kind, asked.response_time, names, level)
-        try:
-            ex_gaussian = fit_ex_gaussian(asked.response_time, seed)
-        except (InputError, ConvergenceError) as error:
-            notes.append(f"ex-Gaussian: {error}")
     explored = {
         key: condition_means(person, kind, values, names, level)
         for key, values in (asked.exploration or {}).items()
     }
-    fitted = None
-    if asked.mixed:
-        tell("mixed models")
-        fitted = mixed_model(person, kind, kind == np.asarray(asked.choice), names)
     tell("posterior")
     return IdentificationAnalysis(
         name=asked.name,
@@ -315,11 +292,8 @@ def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
         information=information,
         sensitivity=sensitivity,
         choice=choice_fit,
-        choice_map=points,
         response_times=times,
-        ex_gaussian=ex_gaussian,
         exploration=explored,
-        mixed=fitted,
         notes=tuple(notes),
         seed=seed,
     )
@@ -353,8 +327,8 @@ def _by_stimulus(matrix: ConfusionMatrix, level: float) -> tuple[StimulusCorrect
 
 def _models(
     counts: si.IntArray, matrix: ConfusionMatrix, asked: IdentificationRequest, notes: list[str]
-) -> tuple[OrderedSensitivity | None, ChoiceModel | None, PerceptualMap | None]:
-    sensitivity, choice, points = None, None, None
+) -> tuple[OrderedSensitivity | None, ChoiceModel | None]:
+    sensitivity, choice = None, None
     try:
         sensitivity = ordered_sensitivity(counts, asked.level, asked.resamples, asked.seed)
         if sensitivity.corrected:
@@ -373,7 +347,6 @@ def _models(
             notes.append(
                 "choice model: some stimuli were never confused; one trial per stimulus was added"
             )
-        points = perceptual_map(choice.distance, min(2, square.shape[0] - 1))
     except (InputError, ConvergenceError) as error:
         notes.append(f"choice model: {error}")
-    return sensitivity, choice, points
+    return sensitivity, choice

@@ -1,20 +1,19 @@
 """How many people a study needs, by simulating it: the share of studies that find the difference.
 
 The question "8 against 10 mm" is answered by a test over people of how well they tell the two
-stimuli apart (`distinction`). Studies are simulated with a seed of their own for each number of
-people, so a curve can be cut short, resumed and refined, and gives the same numbers.
+stimuli apart (`distinction_scores`). Studies are simulated with a seed of their own for each number
+of people, so that a curve gives the same numbers in pieces.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Any, Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
-from scipy.special import ndtr
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
@@ -32,93 +31,6 @@ class ParticipantSimulator(Protocol):
         ...
 
 
-@si.checked_numbers
-@dataclass(frozen=True, slots=True, eq=False)
-class DirichletParticipants:
-    """People whose answer probabilities vary about a common matrix (Dirichlet-multinomial).
-
-    Args:
-        probabilities: the common matrix, shape (answers, stimuli), columns sum to 1.
-        trials_per_stimulus: of each person; at least 1.
-        concentration: how alike people are: a column's probabilities are Dirichlet with
-            `concentration` times the common ones; above 0. The proportion correct of a stimulus
-            is then beta-binomial with overdispersion 1/(1 + concentration).
-
-    Raises:
-        InputError: columns that do not sum to 1, or values out of range.
-    """
-
-    probabilities: Annotated[si.FloatArray, si.AtLeast(0.0), si.AtMost(1.0)]
-    trials_per_stimulus: Annotated[int, si.AtLeast(1)]
-    concentration: Annotated[si.Dimensionless, si.Above(0.0)]
-
-    def __post_init__(self) -> None:
-        p = self.probabilities
-        if p.ndim != 2 or not np.allclose(p.sum(axis=0), 1.0):
-            raise InputError("every column of the answer probabilities must sum to 1")
-
-    def __call__(self, participants: int, random: np.random.Generator) -> si.IntArray:
-        """Counts of so many people, shape (participants, answers, stimuli)."""
-        answers, stimuli = self.probabilities.shape
-        counts = np.zeros((participants, answers, stimuli), dtype=np.int64)
-        for j, column in enumerate(self.probabilities.T):
-            some = column > 0
-            own = np.zeros((participants, answers))
-            own[:, some] = random.dirichlet(self.concentration * column[some], participants)
-            # Draws underflow to 0 everywhere only at concentrations of no use.
-            own /= own.sum(axis=1, keepdims=True)
-            counts[:, :, j] = random.multinomial(self.trials_per_stimulus, own)
-        return counts
-
-
-def ordered_observer(spacing: float, stimuli: int = 5) -> si.FloatArray:
-    """Answer probabilities of an unbiased observer of ordered stimuli, shape (answers, stimuli).
-
-    Stimulus j is felt as a normal deviate about j·`spacing` of unit spread, criteria lie midway
-    (Thurstone's model with equal variances); `spacing` is d′ of neighbours, above 0.
-    """
-    si.require("spacing", spacing, above=0.0)
-    place = spacing * np.arange(stimuli)
-    criteria = np.concatenate([[-np.inf], 0.5 * (place[1:] + place[:-1]), [np.inf]])
-    return np.asarray(np.diff(ndtr(criteria[:, None] - place[None, :]), axis=0))
-
-
-@dataclass(frozen=True, slots=True)
-class Distinction:
-    """How well people tell two stimuli apart.
-
-    Attributes:
-        score: mean over people of [p(a|A) − p(a|B)] + [p(b|B) − p(b|A)], p(x|Y) the share of
-            answers x to stimulus Y; 0 if the two are felt alike whatever the preference for an
-            answer, 2 if never confused and always named.
-        t: its mean over its standard error (Student's t, people − 1 degrees of freedom).
-        p_value: one-sided; 1 where all people have the same score 0, 0 where the same above 0.
-        participants: with trials of both.
-    """
-
-    score: si.Dimensionless
-    t: si.Dimensionless
-    p_value: si.Dimensionless
-    participants: int
-
-
-def distinction(counts: ArrayLike, first: int, second: int) -> Distinction:
-    """Test over people whether stimuli `first` and `second` are told apart.
-
-    Args:
-        counts: every participant's matrix, shape (participants, k, k).
-        first, second: numbers of the stimuli, and of their answers.
-
-    Raises:
-        InputError: numbers out of range or equal, or fewer than two people with trials of both.
-    """
-    score = distinction_scores(counts, first, second)
-    if score.size < 2:
-        raise InputError("a test over people needs at least 2 with trials of both stimuli")
-    t, p = above_0(score)
-    return Distinction(float(score.mean()), t, p, score.size)
-
-
 def above_0(scores: si.FloatArray) -> tuple[si.Dimensionless, si.Dimensionless]:
     """t and p of Student's one-sided test that people's mean score is above 0; p is 1 where all
     have 0, and 0 where all have the same above it, with t NaN."""
@@ -130,8 +42,13 @@ def above_0(scores: si.FloatArray) -> tuple[si.Dimensionless, si.Dimensionless]:
 
 
 def distinction_scores(counts: ArrayLike, first: int, second: int) -> si.DimensionlessArray:
-    """Each person's score, as `Distinction` has its mean; people without trials of both are left
-    out. Raises `InputError` for numbers out of range or equal."""
+    """How well each person tells two stimuli apart, by counts (participants, answers, stimuli):
+    [p(a|A) − p(a|B)] + [p(b|B) − p(b|A)], p(x|Y) the share of answers x to stimulus Y.
+
+    0 if the two are felt alike whatever the preference for an answer, 2 if never confused and
+    always named. People without trials of both are left out. Raises `InputError` for numbers out
+    of range or equal.
+    """
     whole = whole_counts(counts)
     k = min(whole.shape[1:]) if whole.ndim == 3 else 0
     if not (0 <= first < k and 0 <= second < k and first != second):
@@ -184,7 +101,7 @@ def power_curve(
     """Simulate studies of several sizes and count those whose test is significant.
 
     Args:
-        simulate: draws people (`DirichletParticipants`, or anything like it).
+        simulate: draws people.
         test: what was drawn of a study's people → p value.
         participants: numbers of people, each at least 2.
         studies: per number; at least 10.

@@ -187,9 +187,9 @@ def sensitivity(analysis: IdentificationAnalysis) -> Figure:
 
 @style.drawn
 def similarities(analysis: IdentificationAnalysis) -> Figure:
-    """Similarities of the choice model, biases of answers, and the stimuli as points."""
-    fit, points = analysis.choice, analysis.choice_map
-    if fit is None or points is None:
+    """Similarities of the choice model, and biases of answers."""
+    fit = analysis.choice
+    if fit is None:
         return style.message_figure("No choice model", _note(analysis, "choice model"))
     names = [style.plain(name, 12) for name in analysis.matrix.stimuli]
     off = np.where(np.eye(len(names), dtype=bool), -1.0, fit.similarity)
@@ -202,18 +202,8 @@ def similarities(analysis: IdentificationAnalysis) -> Figure:
         f", {added if fit.pseudo_trials else _deviance(fit)}",
         4.6,
     )
-    grid = figure.add_gridspec(2, 2, width_ratios=[1.1, 1], height_ratios=[1, 1])
-    left, right = figure.add_subplot(grid[:, 0]), figure.add_subplot(grid[0, 1])
-    bars = figure.add_subplot(grid[1, 1])
+    left, bars = figure.subplots(1, 2, width_ratios=[1.1, 1])
     _draw_similarity(left, fit.similarity, names)
-    second = points.points[:, 1] if points.points.shape[1] > 1 else np.zeros(len(names))
-    right.plot(points.points[:, 0], second, "-", color=style.METAL, lw=1.2)
-    right.plot(points.points[:, 0], second, **style.ESTIMATE)
-    for name, a, b in zip(names, points.points[:, 0], second, strict=True):
-        right.annotate(name, (a, b), (0, 7), textcoords="offset points", ha="center", fontsize=9)
-    right.set_title(f"distances −ln η as points ({100 * points.explained:.0f} % of them)")
-    right.set_aspect("equal", adjustable="datalim")
-    right.margins(0.18)
     bars.bar(np.arange(len(names)), 100 * fit.bias, **style.BARS)
     bars.axhline(100 / len(names), **style.GUIDE)
     bars.set_xticks(np.arange(len(names)), names)

@@ -205,9 +205,7 @@ def _task(analysis: Any) -> str:
 
 
 def _identification(analysis: Any) -> str:
-    return section("Confusions in numbers", _confusion(analysis)) + (
-        section("Mixed models", _mixed(analysis)) if analysis.mixed is not None else ""
-    )
+    return section("Confusions in numbers", _confusion(analysis))
 
 
 def _screening(analysis: StudyAnalysis) -> str:
@@ -268,31 +266,3 @@ def _cell(analysis: IdentificationAnalysis, i: int, j: int) -> str:
     low, high = 100 * analysis.posterior.low[i, j], 100 * analysis.posterior.high[i, j]
     share = "–" if percent != percent else f"{percent:.0f} %"
     return f"{share} ({count}; {low:.0f} to {high:.0f})"
-
-
-def _mixed(analysis: IdentificationAnalysis) -> str:
-    fit = analysis.mixed
-    assert fit is not None
-    rows = [
-        (
-            name,
-            f"{100 * one:.0f} %",
-            f"{odds:.2f} ± {error:.2f}",
-            "none (always or never right)" if mean != mean else f"{100 * mean:.0f} %",
-        )
-        for name, one, odds, error, mean in zip(
-            fit.names,
-            fit.proportion_correct,
-            fit.log_odds,
-            fit.log_odds_error,
-            fit.average_proportion_correct,
-            strict=True,
-        )
-    ]
-    spread = f"{fit.participant_spread:.2f}"
-    bounds = f"{fit.participant_spread_low:.2f} to {fit.participant_spread_high:.2f}"
-    return text_table(
-        f"{fit.model}. Participants spread by {spread} in log-odds ({bounds})",
-        ("Stimulus", "A typical person", "Log-odds", "Mean over people"),
-        rows,
-    )

@@ -25,7 +25,7 @@ _ACROSS = 4
 
 @style.drawn
 def response_times(analysis: StudyAnalysis) -> Figure:
-    """Response times by stimulus, and the ex-Gaussian of all."""
+    """Response times by stimulus."""
     found = analysis.response_times
     if not found:
         return style.message_figure("No response times", "No response time was given.")
@@ -42,26 +42,11 @@ def response_times(analysis: StudyAnalysis) -> Figure:
         f"{data_of(analysis)}; geometric means over people with {100 * slow.level:g} % t intervals",
         4.0,
     )
-    left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
-    style.estimates(left, ((item.geometric_mean, item.low, item.high) for item in found))
-    named_ticks(left, [item.name for item in found])
-    left.set(ylabel="response time (s)", xlabel="stimulus")
-    left.set_ylim(0, None)
-    left.set_title("each stimulus")
-    fit = analysis.ex_gaussian
-    if fit is None:
-        right.set_axis_off()
-        right.text(0, 0.5, "no ex-Gaussian: too few times", transform=right.transAxes)
-        return figure
-    from squeezefilm.study.identification.response_times import ex_gaussian_density
-
-    end = fit.mean + 3 * fit.spread + 5 * fit.tail
-    t = np.linspace(0, end, 400)
-    right.plot(t, ex_gaussian_density(t, fit), color=style.BLUE)
-    right.fill_between(t, 0, ex_gaussian_density(t, fit), color=style.BAND)
-    right.axvline(fit.mean + fit.tail, color=style.ORANGE, lw=1.2, ls=(0, (4, 2)))
-    right.set(xlabel="response time (s)", ylabel="density (1/s)", xlim=(0, end), ylim=(0, None))
-    right.set_title(f"all: μ {fit.mean:.2g} s, σ {fit.spread:.2g} s, τ {fit.tail:.2g} s")
+    axes = figure.subplots()
+    style.estimates(axes, ((item.geometric_mean, item.low, item.high) for item in found))
+    named_ticks(axes, [item.name for item in found])
+    axes.set(ylabel="response time (s)", xlabel="stimulus")
+    axes.set_ylim(0, None)
     return figure
 
 

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
     from squeezefilm.study.identification.course import Course
     from squeezefilm.study.identification.proportions import Interval
-    from squeezefilm.study.identification.response_times import ExGaussian
     from squeezefilm.study.identification.screening import Screening
     from squeezefilm.study.psychometric.estimate import Estimate
     from squeezefilm.study.tasks.analyze import StudyAnalysis
@@ -188,14 +187,7 @@ def key_rows(analysis: StudyAnalysis) -> Rows:
         rows += _task_rows(analysis)
     else:
         rows += _identification_rows(analysis)
-    if analysis.ex_gaussian is not None:
-        rows.append(_time_row(analysis.ex_gaussian))
     return rows + result_rows(analysis) + course_rows(analysis.course)
-
-
-def _time_row(fit: ExGaussian) -> tuple[str, str, str]:
-    texts = [shown(value, si.Unit("s"), 3) for value in (fit.mean, fit.spread, fit.tail)]
-    return "Response time μ, σ, τ", ", ".join(texts), "ex-Gaussian, all trials"
 
 
 def course_rows(course: Course | None) -> Rows:

@@ -13,7 +13,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
-from squeezefilm.core.errors import ConvergenceError, InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.identification.analysis import (
     IdentificationAnalysis,
@@ -24,9 +24,7 @@ from squeezefilm.study.identification.analysis import (
 from squeezefilm.study.identification.condition_means import ConditionMean, condition_means
 from squeezefilm.study.identification.course import course_of
 from squeezefilm.study.identification.response_times import (
-    ExGaussian,
     ResponseTimeSummary,
-    fit_ex_gaussian,
     response_time_summary,
 )
 from squeezefilm.study.identification.screening import Screening, judged_people, rule_of
@@ -51,7 +49,6 @@ def analyze_study(
     columns: Mapping[str, str] | None = None,
     values: Mapping[str, str] | None = None,
     decimal_comma: bool = False,
-    mixed: bool = False,
     resamples: int = 1000,
     seed: int = 0,
     progress: Tell | None = None,
@@ -61,15 +58,15 @@ def analyze_study(
     `store` is the study, or the path of its file; with a `design` the path of a CSV that another
     program recorded of it, whose `columns`, `values` and `decimal_comma` are read as
     `read_answers` says. Main trials are analysed; practice and familiarisation are left out, catch
-    trials say who attended. Results say whose answers they are. `mixed` adds statsmodels' mixed
-    models to match-to-sample, whose stimuli must each have the grating of their own period among
-    the answers; `resamples` are its bootstraps', `seed` is that of all resampling.
+    trials say who attended. Results say whose answers they are. Stimuli of
+    match-to-sample must each have the grating of their own period among the answers; `resamples`
+    are its bootstraps', `seed` is that of all resampling.
 
     Raises:
         InputError: stimuli that have no right answer, or no answer yet.
         RecordError: the file is damaged.
     """
-    how: dict[str, Any] = {"mixed": mixed, "resamples": resamples, "seed": seed}
+    how: dict[str, Any] = {"resamples": resamples, "seed": seed}
     if design is not None and not isinstance(store, StudyStore):
         if design.task == "match-to-sample":
             stimuli_and_answers(design)
@@ -93,7 +90,6 @@ def analyze_answers(
     name: str,
     *,
     assumed: tuple[str, ...] = (),
-    mixed: bool = False,
     resamples: int = 1000,
     level: si.Dimensionless = 0.95,
     seed: int = 0,
@@ -109,7 +105,7 @@ def analyze_answers(
     for number, display in enumerate(answers.design.displays):
         if not answers.main(number).trials:
             continue
-        how = _How(f"{name}, {display}", number, assumed, mixed, resamples, level, seed, tell)
+        how = _How(f"{name}, {display}", number, assumed, resamples, level, seed, tell)
         found[display] = _screened(answers, how)
     return found
 
@@ -121,7 +117,6 @@ class _How:
     name: str
     display: int
     assumed: tuple[str, ...]
-    mixed: bool
     resamples: int
     level: float
     seed: int
@@ -197,7 +192,6 @@ def _identified(main: Answers, how: _How) -> IdentificationRequest:
         origin=main.origin,
         response_time=times if np.isfinite(times).any() else None,
         exploration=main.exploration,
-        mixed=how.mixed,
         level=how.level,
         resamples=how.resamples,
         seed=how.seed,
@@ -229,7 +223,7 @@ def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
     tell("response times and drift")
     condition, names = _conditions(main)
     course = course_of(answers, display)
-    times, ex_gaussian = _times(main, condition, names, level, seed, found.notes)
+    times = _times(main, condition, names, level)
     explored = _explored(main, condition, names, level)
     unbounded = [person.person for person in found.persons if person.unbounded]
     notes = [*found.notes]
@@ -257,7 +251,6 @@ def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
         functions=found.functions,
         is_adaptive=bool((main.series >= 0).any()),
         response_times=times,
-        ex_gaussian=ex_gaussian,
         course=course,
         exploration=explored,
         assumed=how.assumed,
@@ -288,24 +281,14 @@ def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
 
 
 def _times(
-    main: Answers,
-    condition: si.IntArray,
-    names: tuple[str, ...],
-    level: float,
-    seed: int,
-    notes: list[str],
-) -> tuple[tuple[ResponseTimeSummary, ...], ExGaussian | None]:
+    main: Answers, condition: si.IntArray, names: tuple[str, ...], level: float
+) -> tuple[ResponseTimeSummary, ...]:
     # A time of 0 is what a clock of milliseconds makes of a slip of the hand.
     times = np.where(main.response_time > 0, main.response_time, np.nan)
     if not np.isfinite(times).any():
-        return (), None
+        return ()
     person = np.unique(main.participant, return_inverse=True)[1]
-    summaries = response_time_summary(person, condition, times, names, level)
-    try:
-        return summaries, fit_ex_gaussian(times, seed)
-    except (InputError, ConvergenceError) as error:
-        notes.append(f"ex-Gaussian: {error}")
-        return summaries, None
+    return response_time_summary(person, condition, times, names, level)
 
 
 def _explored(

@@ -13,7 +13,7 @@ from squeezefilm.physics.perception.stimuli import Varied
 from squeezefilm.study.design.tasks.task import Task
 from squeezefilm.study.identification.condition_means import ConditionMean
 from squeezefilm.study.identification.course import Course
-from squeezefilm.study.identification.response_times import ExGaussian, ResponseTimeSummary
+from squeezefilm.study.identification.response_times import ResponseTimeSummary
 from squeezefilm.study.identification.screening import Screening
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.tasks.population import PopulationEstimate
@@ -89,7 +89,7 @@ class TaskAnalysis(Result):
         is_adaptive: whether series chose the comparisons: `conditions` are then eighths of the
             trials by their difference, which is their value (same-different: what it makes of
             the reference).
-        response_times, ex_gaussian: by condition and of all; empty and None without times.
+        response_times: by condition; empty without times.
         course: drift and attention.
         exploration: quantity (with unit in its key) → means by condition.
         assumed: what simulated answers rest on; empty for people.
@@ -116,7 +116,6 @@ class TaskAnalysis(Result):
     functions: Mapping[str, PersonFunction]
     is_adaptive: bool
     response_times: tuple[ResponseTimeSummary, ...]
-    ex_gaussian: ExGaussian | None
     course: Course
     exploration: Mapping[str, tuple[ConditionMean, ...]]
     assumed: tuple[str, ...]
@@ -156,7 +155,6 @@ class TaskAnalysis(Result):
             "more": self.more,
             "functions": self.functions,
             "response_times": self.response_times,
-            "ex_gaussian": self.ex_gaussian,
             "course": self.course,
             "exploration": self.exploration,
             "assumed": self.assumed,

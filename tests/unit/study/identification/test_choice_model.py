@@ -11,7 +11,6 @@ from scipy import stats
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.choice_model import (
     choice_model,
-    perceptual_map,
 )
 
 
@@ -93,51 +92,3 @@ def test_counts_that_the_model_has_no_place_for(counts: np.ndarray, says: str) -
         choice_model(counts)
     with pytest.raises(InputError, match="pseudo_trials"):
         choice_model(np.diag([3, 3]), -1.0)
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-def test_the_first_axis_rises_along_the_stimuli_whichever_way_they_lie(sign: int) -> None:
-    # Uneven steps far from nought, so that a sum without the middle taken off would be misled.
-    places = sign * np.array([7.0, 7.5, 9.0, 9.2, 13.0])
-    found = perceptual_map(np.abs(places[:, None] - places), 1)
-    assert found.points[:, 0] == pytest.approx(sign * (places - places.mean()))
-    assert (found.explained, found.negative) == pytest.approx((1.0, 0.0), abs=1e-9)
-    turned = perceptual_map(np.abs(places[:, None] - places)[::-1, ::-1], 1)
-    assert turned.points[-1, 0] > turned.points[0, 0]
-
-
-def test_a_map_says_how_much_of_the_distances_it_shows() -> None:
-    # Corners of a rectangle 4 by 2: its two axes hold 4 · 2² and 4 · 1².
-    points = np.array([[-2, -1], [-2, 1], [2, -1], [2, 1]], dtype=float)
-    d = np.linalg.norm(points[:, None] - points[None], axis=-1)
-    assert perceptual_map(d, 1).explained == pytest.approx(16 / 20)
-    assert perceptual_map(d, 3).explained == pytest.approx(1.0)
-    # Three of which the far two are farther apart than by way of the third.
-    d = np.array([[0.0, 1.0, 3.0], [1.0, 0.0, 1.0], [3.0, 1.0, 0.0]])
-    centre = np.eye(3) - 1 / 3
-    values = np.linalg.eigvalsh(-0.5 * centre @ d**2 @ centre)
-    found = perceptual_map(d, 2)
-    assert found.negative == pytest.approx(-values[values < 0].sum() / values[values > 0].sum())
-    assert found.explained == pytest.approx(1.0)
-    assert found.points[:, 1] == pytest.approx(0.0, abs=1e-6)
-
-
-def test_points_all_in_one_place_are_shown_whole() -> None:
-    found = perceptual_map(np.zeros((3, 3)), 2)
-    assert (found.explained, found.negative) == (1.0, 0.0)
-    assert found.points.shape == (3, 2)
-    assert np.all(found.points == 0)
-
-
-def test_distances_that_are_none_are_refused() -> None:
-    with pytest.raises(InputError, match=r"distances of shape \(2, 3\) are not square"):
-        perceptual_map(np.ones((2, 3)))
-    with pytest.raises(InputError, match="are not square"):
-        perceptual_map(np.ones(3), 1)
-    with pytest.raises(InputError, match="must be symmetric"):
-        perceptual_map([[0.0, 1.0, 2.0], [1.5, 0.0, 1.0], [2.0, 1.0, 0.0]])
-    three = np.ones((3, 3)) - np.eye(3)
-    for dimensions in (0, 3):
-        with pytest.raises(InputError, match=f"dimensions = {dimensions} must be 1 to 2"):
-            perceptual_map(three, dimensions)
-    assert perceptual_map(three, 1).points.shape == (3, 1)

@@ -1,4 +1,4 @@
-"""Response times: summaries by hand, ex-Gaussians that are refused, and the density's limits."""
+"""Response times: summaries by hand, and what is refused."""
 
 from __future__ import annotations
 
@@ -9,12 +9,7 @@ import pytest
 from scipy import stats
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.response_times import (
-    ExGaussian,
-    ex_gaussian_density,
-    fit_ex_gaussian,
-    response_time_summary,
-)
+from squeezefilm.study.identification.response_times import response_time_summary
 
 NAMES = ("a", "b", "c")
 # Person, condition, time: three people, the third without "b"; nobody has "c".
@@ -68,31 +63,3 @@ def test_rows_that_are_none_are_refused(rows: tuple[list, list, list], says: str
     for level in (0.0, 1.0):
         with pytest.raises(InputError, match="level"):
             response_time_summary(PERSON, KIND, TIMES, NAMES, level)
-
-
-def test_ten_times_that_differ_are_enough() -> None:
-    times = np.array([0.5, 0.55, 0.6, 0.62, 0.65, 0.7, 0.8, 0.95, 1.3, 2.0])
-    found = fit_ex_gaussian(np.append(times, math.nan))
-    assert found.values == 10
-    # μ + τ is the mean at the likeliest.
-    assert found.mean + found.tail == pytest.approx(times.mean(), rel=1e-3)
-    density = ex_gaussian_density(times, found)
-    assert found.log_likelihood == pytest.approx(float(np.log(density).mean()), abs=1e-9)
-    assert fit_ex_gaussian(times.reshape(2, 5)) == found
-    for few, many in ((times[:9], 9), (np.full(12, 0.7), 12)):
-        with pytest.raises(InputError, match=f"{many} response times .*have no ex-Gaussian"):
-            fit_ex_gaussian(few)
-    with pytest.raises(InputError, match="response_time"):
-        fit_ex_gaussian(np.append(times, 0.0))
-
-
-@pytest.mark.parametrize("tail", [1e-4, 0.02, 0.3, 30.0])
-def test_the_density_is_right_from_a_short_tail_to_a_long_one(tail: float) -> None:
-    fit = ExGaussian(0.5, 0.04, tail, 0.0, 10)
-    t = np.linspace(0.35, 0.5 + 0.16 + 3 * tail, 60)
-    if tail > 1e-3:
-        oracle = stats.exponnorm.pdf(t, tail / 0.04, 0.5, 0.04)
-    else:
-        # A tail of next to nothing moves the normal part by its mean.
-        oracle = stats.norm.pdf(t, 0.5 + tail, 0.04)
-    assert ex_gaussian_density(t, fit) == pytest.approx(oracle, rel=1e-4, abs=1e-9)

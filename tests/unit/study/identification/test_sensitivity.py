@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 from scipy import stats
+from tests.known_observers import ordered_observer
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.power import ordered_observer
 from squeezefilm.study.identification.sensitivity import ordered_sensitivity
 
 COUNTS = np.array([[40, 11, 2], [9, 30, 12], [3, 12, 41]])

@@ -46,7 +46,6 @@ CHOICE = SimpleNamespace(
     bias=np.array([0.25, 0.45, 0.3]), pseudo_trials=0, deviance=1.25, degrees_of_freedom=1,
     p_value=0.0004,
 )  # fmt: skip
-POINTS = SimpleNamespace(points=np.array([[0, 0.5], [1, -0.25], [2, 0.75]]), explained=0.875)
 
 
 def analysis(**changes: Any) -> Any:
@@ -61,7 +60,7 @@ def analysis(**changes: Any) -> Any:
         "participant_correct": np.array([0.5, 0.75, 0.75, 1.0]),
         "counts": np.array([COUNTS, COUNTS // 2]),
         "intervals": [interval(0.5, 0.75), interval(0.4, 0.8)],
-        "sensitivity": THURSTONE, "choice": CHOICE, "choice_map": POINTS, "notes": (),
+        "sensitivity": THURSTONE, "choice": CHOICE, "notes": (),
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
 
@@ -210,7 +209,7 @@ def test_what_is_alike_is_named_and_drawn_in_the_lower_triangle() -> None:
         "middle and coarse are felt most alike (η = 0.75); middle is the answer preferred"
     )
     assert "G² = 1.2 with 1 degrees of freedom (p < 0.001)" in words(figure.get_supxlabel())
-    left, right, bars = figure.axes
+    left, bars = figure.axes
     assert {one.get_position(): one.get_text() for one in left.texts} == {
         (0, 1): "0.25", (0, 2): "0.12", (1, 2): "0.75",
     }  # fmt: skip
@@ -222,24 +221,16 @@ def test_what_is_alike_is_named_and_drawn_in_the_lower_triangle() -> None:
     assert [one.get_text() for one in left.get_yticklabels()] == ["middle", "coarse"]
     assert list(left.get_yticks()) == [1, 2]
     assert (left.get_xlim(), left.get_ylim()) == ((-0.5, 1.5), (2.5, 0.5))
-    line, points = right.get_lines()
-    assert data(line) == data(points) == [[0, 1, 2], [0.5, -0.25, 0.75]]
-    assert [(one.get_text(), one.xy) for one in right.texts] == [
-        ("fine", (0, 0.5)), ("middle", (1, -0.25)), ("coarse", (2, 0.75)),
-    ]  # fmt: skip
-    assert "(88 % of them)" in right.get_title(loc="left")
     assert [one.get_height() for one in bars.patches] == pytest.approx([25, 45, 30])
     assert [one.get_text() for one in bars.get_xticklabels()] == list(NAMES)
     (even,) = bars.get_lines()
     assert data(even)[1] == pytest.approx([100 / 3] * 2)
 
 
-def test_points_on_a_line_and_trials_added_are_shown_as_such() -> None:
+def test_trials_added_are_said() -> None:
     choice = SimpleNamespace(**{**vars(CHOICE), "pseudo_trials": 0.5})
-    line = SimpleNamespace(points=np.array([[0.0], [1.0], [2.0]]), explained=1.0)
-    figure = similarities(analysis(choice=choice, choice_map=line))
+    figure = similarities(analysis(choice=choice))
     assert "choice model, 0.5 trial per stimulus added" in words(figure.get_supxlabel())
-    assert data(figure.axes[1].get_lines()[0]) == [[0, 1, 2], [0, 0, 0]]
 
 
 def test_what_was_not_computed_says_why() -> None:
@@ -247,7 +238,6 @@ def test_what_was_not_computed_says_why() -> None:
     for draw, missing, title, said in (
         (sensitivity, "sensitivity", "No d′", "d′: too many"),
         (similarities, "choice", "No choice model", "choice model: too few"),
-        (similarities, "choice_map", "No choice model", "choice model: too few"),
     ):
         figure = draw(analysis(notes=notes, **{missing: None}))
         assert (figure.get_suptitle(), figure.axes[0].texts[0].get_text()) == (title, said)

@@ -9,13 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests.known_observers import DirichletParticipants, distinction, ordered_observer
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
 from squeezefilm.study.identification.power import (
-    DirichletParticipants,
-    distinction,
-    ordered_observer,
     power_curve,
 )
 from squeezefilm.study.report import figures as study_figures
@@ -93,12 +91,6 @@ def test_titles_carry_the_numbers(analysis: IdentificationAnalysis) -> None:
     )
 
 
-def test_times_of_no_distribution_leave_its_place_empty(analysis: IdentificationAnalysis) -> None:
-    _, right = study_time_figures.response_times(replace(analysis, ex_gaussian=None)).axes
-    assert not right.axison
-    assert [one.get_text() for one in right.texts] == ["no ex-Gaussian: too few times"]
-
-
 def test_of_one_stimulus_no_time_is_the_longest(analysis: IdentificationAnalysis) -> None:
     times = analysis.response_times
     one, two = (
@@ -113,7 +105,7 @@ def test_of_one_stimulus_no_time_is_the_longest(analysis: IdentificationAnalysis
 def test_power_is_drawn_with_what_is_needed() -> None:
     curve = power_curve(
         DirichletParticipants(ordered_observer(1.5), 3, 20.0),
-        lambda n: distinction(n, 3, 4).p_value, (4, 12), studies=50,
+        lambda n: distinction(n, 3, 4), (4, 12), studies=50,
     )  # fmt: skip
     figure = study_time_figures.power(curve)
     assert curve.needed == 12
