@@ -37,9 +37,9 @@ _HOW = {
     "print_blob": _EXPLORES,
     "database": None,
 }
-settings.register_profile("properties", max_examples=120 if _EXPLORES else 25, **_HOW)
+settings.register_profile("properties", max_examples=120 if _EXPLORES else 12, **_HOW)
 # For properties whose every example is a solve, a process or a session.
-settings.register_profile("dear", max_examples=24 if _EXPLORES else 8, **_HOW)
+settings.register_profile("dear", max_examples=24 if _EXPLORES else 5, **_HOW)
 settings.load_profile("properties")
 
 # Tests that may go to any process, one by one; of other files one process takes all, since they

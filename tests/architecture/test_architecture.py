@@ -31,8 +31,8 @@ def test_layers_hold() -> None:
     assert " 0 broken" in done.stdout
 
 
-@pytest.mark.parametrize("name", _modules())
-def test_everything_public_has_a_docstring(name: str) -> None:
+def _without_docstring(name: str) -> list[str]:
+    """What is public in a module, itself included, and has no docstring."""
     module = importlib.import_module(name)
     missing = [] if module.__doc__ else [name]
     for key, item in vars(module).items():
@@ -49,7 +49,13 @@ def test_everything_public_has_a_docstring(name: str) -> None:
                     and (inspect.isfunction(body) or isinstance(body, property))
                     and not inspect.getdoc(body)
                 ]
-    assert missing == []
+    return missing
+
+
+def test_everything_public_has_a_docstring() -> None:
+    modules = _modules()
+    assert len(modules) > 700
+    assert [name for module in modules for name in _without_docstring(module)] == []
 
 
 def test_every_closed_form_documents_its_source_or_its_equation() -> None:
@@ -141,10 +147,13 @@ def test_messages_of_the_library_speak_of_arguments_not_of_options() -> None:
     for file in sorted(package.rglob("*.py")):
         if file.is_relative_to(package / "cli"):
             continue
-        for raised in ast.walk(ast.parse(file.read_text("utf-8"))):
+        text = file.read_text("utf-8")
+        if not re.search("--[a-z]", text):
+            continue
+        for raised in ast.walk(ast.parse(text)):
             if isinstance(raised, ast.Raise):
-                texts = (one.value for one in ast.walk(raised) if isinstance(one, ast.Constant))
-                options = [text for text in texts if re.search(r"(^|[ (`])--[a-z]", str(text))]
-                speaking += [(str(file.relative_to(package)), text) for text in options]
+                parts = [one.value for one in ast.walk(raised) if isinstance(one, ast.Constant)]
+                options = [part for part in parts if re.search(r"(^|[ (`])--[a-z]", str(part))]
+                speaking += [(str(file.relative_to(package)), part) for part in options]
     # What Dask's own program and a command line given whole are called is another matter.
     assert [one for one in speaking if not re.search("--nworkers|squeezefilm ", one[1])] == []

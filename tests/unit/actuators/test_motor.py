@@ -142,7 +142,7 @@ def test_energy_is_kept_to_rounding(free: bool) -> None:
     working = Working(voltage=15.0) if free else WORKING
     asked = {"guide": 0.1} if free else {}
     found = simulate(
-        motor(**asked), working, speed=None if free else 0.02, periods=40, steps=2048, traced=0
+        motor(**asked), working, speed=None if free else 0.02, periods=10, steps=2048, traced=0
     )
     assert found.energy_residual < 1e-11
     works = found.works
@@ -151,7 +151,7 @@ def test_energy_is_kept_to_rounding(free: bool) -> None:
     assert works[kernel.CONTACT_LOSS] > 0
     # It falls as the fourth power of the step.
     rough = simulate(
-        motor(**asked), working, speed=None if free else 0.02, periods=40, steps=64, traced=0
+        motor(**asked), working, speed=None if free else 0.02, periods=10, steps=64, traced=0
     )
     assert found.energy_residual < 1e-3 * rough.energy_residual
 

@@ -13,6 +13,7 @@ import dataclasses
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from typing import Any, Literal
 
 import numpy as np
@@ -156,6 +157,11 @@ def trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Tri
     """
     si.require("participant_number", participant_number, at_least=0)
     si.require("seed", seed, at_least=0)
+    return _trials(design, participant_number, seed)
+
+
+@lru_cache(maxsize=256)
+def _trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Trial, ...]:
     found: list[Trial] = []
     sequence = orders(len(design.displays), 1, participant_number, seed)[0]
     for place, index in enumerate(sequence):

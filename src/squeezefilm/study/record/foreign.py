@@ -233,6 +233,8 @@ def _count(path: str | Path, line: int, words: Mapping[str, str]) -> int:
         raise ConfigError(
             f"'{words[COUNT]}' is no count; write 0, 1, 2 …", file=path, line=line, key=COUNT
         )
+    # Here already, for no list of so many is made.
+    require_within(FOREIGN_TRIALS, max(found, 1.0), enough="give a part of the file")
     return int(found)
 
 

@@ -34,7 +34,6 @@ from squeezefilm.study.simulated.planned_power import SIZES, on_one_display
 from squeezefilm.study.tasks.by_difference import MEASURE, on_grid_of_differences, unlike_persons
 from squeezefilm.study.tasks.findings import PersonEstimate
 from squeezefilm.study.tasks.magnitude import exponents
-from squeezefilm.study.tasks.population import Population
 from squeezefilm.study.tasks.two_interval import PeopleOnGrid, on_grid, t_interval
 
 PEOPLE = 400
@@ -246,10 +245,9 @@ def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Int
     tell("each person's fit")
     people = _on_grid(main)
     if people is not None:
-        population = Population(people.likelihoods())
 
         def fraction(who: si.IntArray) -> Ends:
-            found = population.estimate(0.95, who)
+            found = people.population.estimate(0.95, who)
             return math.exp(found.mean), math.exp(found.low), math.exp(found.high)
 
         return "Weber fraction", fraction

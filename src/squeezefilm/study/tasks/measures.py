@@ -28,7 +28,6 @@ from squeezefilm.study.tasks.findings import (
     of_population,
 )
 from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions
-from squeezefilm.study.tasks.population import Population
 from squeezefilm.study.tasks.two_interval import (
     PeopleOnGrid,
     adaptive_conditions,
@@ -93,7 +92,7 @@ def _of_fractions(
     persons = people.estimates(level)
     pooled, spread, robust = persons[0].estimate, None, None
     if len(persons) > 1:
-        population = Population(people.likelihoods())
+        population = people.population
         pooled, spread = of_population(population.estimate(level), _POPULATION)
         low, middle, high = (math.exp(one) for one in population.robust(level))
         robust = Estimate(middle, low, high, level, "posterior, some do not do the task")

@@ -112,19 +112,27 @@ class Population:
         self._widths = np.diff(edges) * np.exp(-0.5 * (self._spreads / USUAL_SPREAD) ** 2)
         self._edges = edges
         self._people = people
-        self._logs = np.array([self._log_likelihood(person) for person in people])
+        self._logs = np.empty((len(people), _MEANS, _SPREADS, len(MEAN_LAPSES)))
+        by_grid: dict[bytes, list[int]] = {}
+        for number, person in enumerate(people):
+            by_grid.setdefault(person.x.tobytes() + person.width.tobytes(), []).append(number)
+        for alike in by_grid.values():
+            self._logs[alike] = self._log_likelihoods([people[number] for number in alike])
 
-    def _log_likelihood(self, one: PersonLikelihood) -> si.FloatArray:
-        """ln of a person's likelihood under each μ, τ and h, shape (means, spreads, lapses)."""
-        weight = one.likelihood * one.width
-        weight = weight / weight.max()
-        found = np.empty((self._means.size, self._spreads.size, len(MEAN_LAPSES)))
-        away = (one.x[None, :] - self._means[:, None]) ** 2
+    def _log_likelihoods(self, alike: Sequence[PersonLikelihood]) -> si.FloatArray:
+        """ln of the likelihoods of people on one grid under each μ, τ and h, shape (people, means,
+        spreads, lapses)."""
+        x, width = alike[0].x, alike[0].width
+        weights = np.array([one.likelihood * width for one in alike])
+        weights /= weights.max(axis=(1, 2), keepdims=True)
+        found = np.empty((len(alike), self._means.size, self._spreads.size, len(MEAN_LAPSES)))
+        away = (x[None, :] - self._means[:, None]) ** 2
         for at, spread in enumerate(self._spreads):
             # A spread below the cells' width would fall between them: it is their width at least.
-            wide = np.hypot(spread, 0.5 * one.width)
+            wide = np.hypot(spread, 0.5 * width)
             density = np.exp(-0.5 * away / wide**2) / wide
-            found[:, at] = density @ weight.T
+            for one, weight in zip(found, weights, strict=True):
+                one[:, at] = density @ weight.T
         return np.log(np.maximum(found, 1e-300))
 
     @property

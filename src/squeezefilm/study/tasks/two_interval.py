@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,7 +85,7 @@ def spread_edges(main: Answers, cells: int) -> si.FloatArray:
     return np.linspace(math.log(min(ends) / 8), math.log(8 * max(ends)), cells + 1)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class PeopleOnGrid:
     """What each person's answers say.
 
@@ -108,18 +109,21 @@ class PeopleOnGrid:
     trials: list[int]
     otherwise: list[float]
 
-    def likelihoods(self) -> list[PersonLikelihood]:
-        """As a population takes them."""
+    @cached_property
+    def population(self) -> Population:
+        """All of them, put together once."""
         middle, width = 0.5 * (self.edges[1:] + self.edges[:-1]), np.diff(self.edges)
-        return [
-            PersonLikelihood(middle, width, one, other)
-            for one, other in zip(self.likelihood, self.otherwise, strict=True)
-        ]
+        return Population(
+            [
+                PersonLikelihood(middle, width, one, other)
+                for one, other in zip(self.likelihood, self.otherwise, strict=True)
+            ]
+        )
 
     def estimates(self, level: si.Dimensionless) -> list[PersonEstimate]:
         """Of each person's Weber fraction: the posterior's median and central interval, with the
         lapse rates that all people's answers speak for."""
-        lapses = Population(self.likelihoods()).lapses()
+        lapses = self.population.lapses()
         found = []
         tails = 0.5, 0.5 * (1 - level), 0.5 * (1 + level)
         for name, likelihood, trials in zip(self.names, self.likelihood, self.trials, strict=True):
