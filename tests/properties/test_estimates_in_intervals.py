@@ -14,7 +14,6 @@ from squeezefilm.study.identification.confusion import ConfusionMatrix
 from squeezefilm.study.identification.information import information_transfer
 from squeezefilm.study.identification.proportions import (
     METHODS,
-    confusion_posterior,
     participant_interval,
     proportion_interval,
     recentred_interval,
@@ -103,12 +102,6 @@ def test_what_a_confusion_matrix_says_lies_in_its_intervals(made, level, resampl
     assert right in participant_interval(made, level, resamples, seed)
     carried = information_transfer(made, level, resamples, seed)
     assert carried.interval is None or carried.estimate in carried.interval
-    posterior = confusion_posterior(matrix, level=level, samples=100, seed=seed)
-    assert right in posterior.proportion_correct
-    shares = (posterior.mean, matrix.percent / 100)
-    presented = matrix.trials_per_stimulus > 0
-    for share in shares:
-        assert np.all(((posterior.low <= share) & (share <= posterior.high))[:, presented])
     try:
         ordered = ordered_sensitivity(made, level, resamples, seed)
     except InputError:

@@ -46,15 +46,6 @@ def test_threshold_and_width_are_where_the_shape_says(shape: Shape) -> None:
         assert function(function.intensity(p)) == pytest.approx(p, abs=1e-13)
 
 
-@pytest.mark.parametrize("shape", SHAPES)
-def test_the_slope_is_the_derivative(shape: Shape) -> None:
-    function = PsychometricFunction(shape, 2.0, 0.7, 0.25, 0.03, axis_of(shape))
-    h = 1e-5
-    for x in (1.3, 1.9, 2.0, 2.4):
-        centred = (function(x + h) - function(x - h)) / (2 * h)
-        assert function.slope(x) == pytest.approx(centred, rel=1e-6, abs=1e-9)
-
-
 def test_shapes_are_the_fields_own() -> None:
     x = np.array([0.5, 1.0, 2.0, 3.5])
     # Weibull's function with its usual parameters, and Quick's: 1 − 2^−(x/m)^β.
@@ -180,14 +171,6 @@ def test_the_grid_is_fine_enough(guess_rate: float | None) -> None:
         assert coarse.interval(name) == pytest.approx(fine.interval(name), abs=0.02 * width)
         assert coarse.mean(name) == pytest.approx(fine.mean(name), abs=0.003 * width)
     assert coarse.log_evidence == pytest.approx(fine.log_evidence, abs=0.01)
-
-
-def test_draws_have_the_marginals() -> None:
-    posterior = fit_psychometric(LEVELS, CORRECT, TRIALS, replicates=0).posterior
-    draws = posterior.draws(20_000, seed=1)
-    for at, name in enumerate(("threshold", "width", "lapse_rate")):
-        share = np.mean(draws[:, at] <= posterior.quantile(name, 0.3))
-        assert share == pytest.approx(0.3, abs=5 * math.sqrt(0.21 / 20_000))
 
 
 def test_deviances_of_many_trials_are_chi_squared() -> None:

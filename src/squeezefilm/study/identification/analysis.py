@@ -26,11 +26,8 @@ from squeezefilm.study.identification.information import (
     information_transfer,
 )
 from squeezefilm.study.identification.proportions import (
-    METHODS,
-    ConfusionPosterior,
     Interval,
     chance_test,
-    confusion_posterior,
     participant_interval,
     permutation_test,
     proportion_interval,
@@ -65,13 +62,12 @@ class IdentificationAnalysis(Result):
         origin: whose answers these are, e.g. "simulated" or "measured"; every figure repeats it.
         matrix: all trials, rows answers, columns stimuli.
         counts: every participant's, shape (participants, k, k).
-        intervals: of the proportion correct: Wilson, Jeffreys, Clopper–Pearson (trials taken as
-            independent), and participant bootstrap where there are two people or more.
+        intervals: of the proportion correct: Wilson's (trials taken as independent), and by
+            participant bootstrap where there are two people or more.
         by_stimulus: proportion correct of each stimulus.
         participant_correct: proportion correct of each participant, shape (participants,).
         chance_p: exact binomial test against guessing, one-sided.
         permutation_p: test against answers unrelated to stimuli, preferences kept.
-        posterior: of every cell.
         information: transfer of the answers, with its interval over participants.
         sensitivity: d′ of stimuli in the order of the labels; None where it has none.
         choice: the biased choice model; None likewise.
@@ -93,7 +89,6 @@ class IdentificationAnalysis(Result):
     participant_correct: si.DimensionlessArray
     chance_p: si.Dimensionless
     permutation_p: si.Dimensionless
-    posterior: ConfusionPosterior
     information: InformationTransfer
     sensitivity: OrderedSensitivity | None
     choice: ChoiceModel | None
@@ -158,7 +153,6 @@ class IdentificationAnalysis(Result):
             "chance": matrix.chance,
             "chance_p": self.chance_p,
             "permutation_p": self.permutation_p,
-            "posterior": self.posterior,
             "information_transfer_bit": self.information.estimate,
             "information_transfer_estimator": METHOD,
             "information": self.information,
@@ -175,7 +169,6 @@ class IdentificationAnalysis(Result):
             ),
         }
         plain: dict[str, Any] = to_json(values)
-        del plain["posterior"]["matrix"]
         return plain
 
     def _table(self) -> Any:
@@ -277,7 +270,6 @@ def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
         key: condition_means(person, kind, values, names, level)
         for key, values in (asked.exploration or {}).items()
     }
-    tell("posterior")
     return IdentificationAnalysis(
         name=asked.name,
         origin=asked.origin,
@@ -288,7 +280,6 @@ def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
         participant_correct=np.trace(counts, axis1=1, axis2=2) / counts.sum(axis=(1, 2)),
         chance_p=chance_test(matrix),
         permutation_p=permutation_test(counts, resamples, seed),
-        posterior=confusion_posterior(matrix, level=level, seed=seed),
         information=information,
         sensitivity=sensitivity,
         choice=choice_fit,
@@ -304,9 +295,7 @@ def _intervals(
 ) -> tuple[Interval, ...]:
     """Of the proportion correct: over trials, and over people where there are two or more."""
     level = asked.level
-    intervals = [
-        proportion_interval(matrix.correct, matrix.trials, level, method) for method in METHODS
-    ]
+    intervals = [proportion_interval(matrix.correct, matrix.trials, level)]
     if counts.shape[0] > 1:
         intervals.append(participant_interval(counts, level, asked.resamples, asked.seed))
     else:

@@ -1,5 +1,5 @@
-"""Proportions with intervals, of right answers and of every cell of a confusion matrix, and tests
-of whether people did better than by guessing.
+"""Proportions of right answers with intervals, and tests of whether people did better than by
+guessing.
 
 In the participant bootstrap people are drawn with replacement, each with all their trials: trials
 of one person are not independent, so an interval over people must resample people (the cluster
@@ -248,76 +248,3 @@ def _square(counts: ArrayLike) -> si.IntArray:
             "(participants, k, k) is wanted"
         )
     return whole
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ConfusionPosterior:
-    """Posterior of the answer probabilities; arrays of shape (answers, stimuli).
-
-    Trials are taken as independent draws of one person or of people who are alike: where people
-    differ the intervals are too short, and the participant bootstrap is the one to quote.
-
-    Attributes:
-        matrix: the data.
-        prior: Dirichlet parameter of every cell (1).
-        level: of the intervals.
-        mean: posterior means.
-        low, high: bounds of equal-tailed intervals of single cells, opened to the mean and to the
-            observed share where one lies in a tail (see `holding`).
-        proportion_correct: interval of the mean of the diagonal, every stimulus counting the same,
-            opened to the observed share of right answers; None where rows and columns do not
-            pair up.
-    """
-
-    matrix: ConfusionMatrix
-    prior: si.Dimensionless
-    level: si.Dimensionless
-    mean: si.DimensionlessArray
-    low: si.DimensionlessArray
-    high: si.DimensionlessArray
-    proportion_correct: Interval | None
-
-
-def confusion_posterior(
-    matrix: ConfusionMatrix,
-    prior: si.Dimensionless | None = None,
-    level: si.Dimensionless = 0.95,
-    samples: int = 20_000,
-    seed: int = 0,
-) -> ConfusionPosterior:
-    """The posterior of a confusion matrix with independent Dirichlet columns.
-
-    A cell's marginal is Beta(n_ij + a, N_j − n_ij + (k − 1) a), in closed form. The proportion
-    correct is a mean of Beta variables and is sampled.
-
-    Args:
-        matrix: the data.
-        prior: Dirichlet parameter a of every cell; 1/answers if None (Perks' prior, which weighs
-            as much as one trial per column whatever the number of answers); above 0.
-        level: of the intervals.
-        samples, seed: of the proportion correct.
-
-    Raises:
-        InputError: a prior not above 0, a level not between 0 and 1, fewer than 100 samples.
-    """
-    answers = len(matrix.answers)
-    a = 1.0 / answers if prior is None else float(prior)
-    si.require("prior", a, above=0.0)
-    si.require("level", level, above=0.0, below=1.0)
-    si.require("samples", samples, at_least=100)
-    ones = matrix.counts + a
-    others = ones.sum(axis=0) - ones
-    tail = (1 - level) / 2
-    marginal = stats.beta(ones, others)
-    correct = None
-    if matrix.is_square:
-        random = np.random.default_rng(seed)
-        diagonal = random.beta(np.diag(ones), np.diag(others), size=(samples, answers))
-        ends = np.quantile(diagonal.mean(axis=1), [tail, 1 - tail])
-        low, high = holding(matrix.proportion_correct, *ends)
-        correct = Interval(float(low), float(high), level, f"Dirichlet posterior, prior {a:g}")
-    mean = ones / ones.sum(axis=0)
-    low, high = holding(mean, marginal.ppf(tail), marginal.isf(tail))
-    # A stimulus that was never presented has no share (NaN).
-    low, high = holding(matrix.percent / 100, low, high)
-    return ConfusionPosterior(matrix, a, level, mean, low, high, correct)

@@ -142,14 +142,6 @@ class PsychometricFunction:
             return float(self.threshold * np.exp(self.width * z))
         return float(self.threshold + self.width * z)
 
-    def slope(self, intensity: float) -> float:
-        """dψ/dx at an intensity, per unit of the stimulus."""
-        x = float(on_axis(intensity, self.axis))
-        z = (x - float(on_axis(self.threshold, self.axis))) / self.width
-        rise = 1.0 - self.guess_rate - self.lapse_rate
-        along = rise * kernel.sigmoid(_CODES[self.shape], z)[2] / self.width
-        return float(along / intensity if self.axis == "log" else along)
-
 
 def _standard_quantile(code: int, share: float) -> float:
     """z = (x − m)/width at which S = share."""

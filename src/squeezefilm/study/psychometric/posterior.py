@@ -115,23 +115,6 @@ class PsychometricPosterior:
         middles = PchipInterpolator(np.arange(edges.size), edges)(cells + 0.5)
         return float(np.sum(self.marginal(parameter) * middles))
 
-    def draws(self, count: int, seed: int) -> si.FloatArray:
-        """Samples of (threshold, width, lapse rate, guess rate), shape (count, 4).
-
-        For whatever is computed from several parameters. Within a cell samples are spread evenly.
-        """
-        random = np.random.default_rng(seed)
-        flat = random.choice(self.probability.size, count, p=self.probability.ravel())
-        cells = np.unravel_index(flat, self.probability.shape)
-        within = random.random((count, 4))
-        return np.stack(
-            [
-                edges[cell] + within[:, at] * (edges[cell + 1] - edges[cell])
-                for at, (edges, cell) in enumerate(zip(self.edges, cells, strict=True))
-            ],
-            axis=1,
-        )
-
 
 def _index(parameter: str) -> int:
     si.require_one_of("parameter", parameter, PARAMETERS)

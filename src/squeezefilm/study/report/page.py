@@ -31,6 +31,7 @@ from squeezefilm.study.report.words import (
     SCREENING_HEAD,
     condition_head,
     condition_rows,
+    confusion_rows,
     exploration_head,
     exploration_rows,
     key_rows,
@@ -246,23 +247,5 @@ def _judged(attended: bool) -> str:
 
 
 def _confusion(analysis: IdentificationAnalysis) -> str:
-    matrix, posterior = analysis.matrix, analysis.posterior
-    rows = [
-        [answer, *(_cell(analysis, i, j) for j in range(len(matrix.stimuli)))]
-        for i, answer in enumerate(matrix.answers)
-    ]
-    return text_table(
-        f"Per cent of each column; in brackets trials, and the {100 * posterior.level:g} % "
-        f"interval of the Dirichlet posterior (prior {posterior.prior:g}, trials taken as "
-        "independent)",
-        ("Answered \\ simulated", *matrix.stimuli),
-        rows,
-    )
-
-
-def _cell(analysis: IdentificationAnalysis, i: int, j: int) -> str:
-    count = int(analysis.matrix.counts[i, j])
-    percent = analysis.matrix.percent[i, j]
-    low, high = 100 * analysis.posterior.low[i, j], 100 * analysis.posterior.high[i, j]
-    share = "–" if percent != percent else f"{percent:.0f} %"
-    return f"{share} ({count}; {low:.0f} to {high:.0f})"
+    head, rows = confusion_rows(analysis.matrix)
+    return text_table("Per cent of each column; in brackets trials", head, rows)

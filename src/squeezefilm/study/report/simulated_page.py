@@ -23,6 +23,7 @@ from squeezefilm.core.kit.page_style import (
 from squeezefilm.study.record.tables import Column, csv_text
 from squeezefilm.study.report import observer_figures
 from squeezefilm.study.report.pictures import Picture, pictures, png_files
+from squeezefilm.study.report.words import confusion_rows
 from squeezefilm.study.simulated.answers import SimulatedAnswers
 from squeezefilm.study.simulated.participants import SimulatedStudy
 
@@ -205,16 +206,6 @@ def _rows(study: SimulatedStudy) -> list[dict[str, Any]]:
     ]
 
 
-def confusion_rows(study: SimulatedStudy, index: int) -> tuple[list[str], list[list[str]]]:
-    """Head and rows of a display's confusion matrix, as texts."""
-    matrix = study.confusion(index)
-    rows = [
-        [name, *(f"{share:.0f} % ({count})" for share, count in zip(percent, counts, strict=True))]
-        for name, percent, counts in zip(matrix.answers, matrix.percent, matrix.counts, strict=True)
-    ]
-    return ["Answered \\ simulated", *matrix.stimuli], rows
-
-
 def reason_rows(study: SimulatedStudy | SimulatedAnswers, index: int) -> list[list[str]]:
     """What the model sees of each stimulus on a display, as texts."""
     return [
@@ -247,7 +238,7 @@ def _page(
     design = study.tables.design
     parts = []
     for index, name in enumerate(design.displays):
-        head, rows = confusion_rows(study, index)
+        head, rows = confusion_rows(study.confusion(index))
         right = 100 * study.proportion_correct(index)
         link = f'<p><a href="{analysed[name]}">Full analysis</a></p>' if name in analysed else ""
         answers = "Simulated answers, per cent of each column; in brackets trials"

@@ -10,7 +10,6 @@ from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.study.report.simulated_page import (
     LEGEND,
     REASONS,
-    confusion_rows,
     reason_rows,
     remarks,
 )
@@ -19,6 +18,7 @@ from squeezefilm.study.report.words import (
     SCREENING_HEAD,
     condition_head,
     condition_rows,
+    confusion_rows,
     key_rows,
     person_rows,
     read_first,
@@ -27,9 +27,6 @@ from squeezefilm.study.report.words import (
 )
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
-    from squeezefilm.study.identification.analysis import IdentificationAnalysis
     from squeezefilm.study.simulated.answers import SimulatedAnswers
     from squeezefilm.study.simulated.participants import SimulatedStudy
     from squeezefilm.study.simulated.planned_power import PlannedPower
@@ -55,27 +52,13 @@ def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
             if len(analysis.persons) <= _SHOWN_PEOPLE:
                 table(console, PERSON_HEAD, person_rows(analysis), fixed=(0,))
         else:
-            _show_confusion(console, analysis)
+            table(console, *confusion_rows(analysis.matrix), fixed=(0,))
         if analysis.screening is not None and analysis.screening.named:
             rows = screening_rows(analysis.screening, named=True)
             table(console, SCREENING_HEAD, rows, fixed=(0, 1))
         table(console, ("", "", ""), key_rows(analysis), fixed=(0,))
         for note in analysis.notes:
             console.print(f"  {note}", style="dim", highlight=False)
-
-
-def _show_confusion(console: Console, one: IdentificationAnalysis) -> None:
-    matrix = one.matrix
-    percent = matrix.percent
-    table(
-        console,
-        ("answered", *matrix.stimuli),
-        [
-            (answer, *(f"{percent[i, j]:.0f} %" for j in range(len(matrix.stimuli))))
-            for i, answer in enumerate(matrix.answers)
-        ],
-        fixed=(0,),
-    )
 
 
 def show_power(found: PlannedPower) -> None:
@@ -192,8 +175,7 @@ def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
             f"{name}, SIMULATED: {100 * study.proportion_correct(index):.1f} % right, "
             f"{study.participants} simulated participants, seed {study.seed}",
         )
-        head, rows = confusion_rows(study, index)
-        table(console, head, rows)
+        table(console, *confusion_rows(study.confusion(index)))
         console.print("Per cent of each column; rows are what was answered, columns simulated.")
         table(console, REASONS, reason_rows(study, index))
     console.print(finger, highlight=False)

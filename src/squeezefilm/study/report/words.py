@@ -12,6 +12,7 @@ from squeezefilm.study.identification.information import METHOD
 
 if TYPE_CHECKING:
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.identification.confusion import ConfusionMatrix
     from squeezefilm.study.identification.course import Course
     from squeezefilm.study.identification.proportions import Interval
     from squeezefilm.study.identification.screening import Screening
@@ -251,7 +252,6 @@ def between(found: Interval | Estimate | None, scale: float = 1.0, unit: str = "
 
 def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
     carried, fit = analysis.information, analysis.sensitivity
-    posterior = analysis.posterior.proportion_correct
     rows = [
         *(
             (
@@ -259,8 +259,7 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
                 f"{100 * analysis.proportion_correct:.3g} %",
                 between(interval, 100, " %"),
             )
-            for interval in (*analysis.intervals, posterior)
-            if interval is not None
+            for interval in analysis.intervals
         ),
         ("Guessing", f"{100 * analysis.matrix.chance:.3g} %", ""),
         ("p against guessing", f"{analysis.chance_p:.2g}", "exact binomial, one-sided"),
@@ -293,6 +292,21 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
             )
         ]
     return rows
+
+
+def confusion_rows(matrix: ConfusionMatrix) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Head and rows of a confusion matrix, as texts: shares of a column, with their trials."""
+    rows = [
+        (
+            name,
+            *(
+                "–" if math.isnan(share) else f"{share:.0f} % ({count})"
+                for share, count in zip(percent, counts, strict=True)
+            ),
+        )
+        for name, percent, counts in zip(matrix.answers, matrix.percent, matrix.counts, strict=True)
+    ]
+    return ("Answered \\ simulated", *matrix.stimuli), rows
 
 
 def whose(origin: str) -> str:

@@ -20,7 +20,6 @@ from squeezefilm.study.identification.confusion import (
 from squeezefilm.study.identification.proportions import (
     METHODS,
     chance_test,
-    confusion_posterior,
     expansion,
     participant_interval,
     permutation_test,
@@ -99,7 +98,6 @@ def test_no_right_answers_without_pairs() -> None:
     matrix = ConfusionMatrix(np.ones((2, 3), dtype=int), ("a", "b"), NAMES)
     with pytest.raises(InputError, match="do not pair up"):
         _ = matrix.correct
-    assert confusion_posterior(matrix).proportion_correct is None
 
 
 def test_intervals_against_published_values() -> None:
@@ -210,21 +208,6 @@ def test_people_who_differ_widen_the_interval() -> None:
     assert narrow.high - narrow.low == 0
     assert wide.high - wide.low > 0.5
     assert participant_interval(split, seed=3) == participant_interval(split, seed=3)
-
-
-def test_posterior_of_a_cell_is_a_beta() -> None:
-    matrix = ConfusionMatrix(np.array([[9, 0], [1, 10]]), ("a", "b"), ("a", "b"))
-    found = confusion_posterior(matrix, prior=1.0)
-    assert found.mean[:, 0] == pytest.approx([10 / 12, 2 / 12])
-    assert found.low[0, 0] == pytest.approx(stats.beta.ppf(0.025, 10, 2))
-    assert found.high[0, 1] == pytest.approx(stats.beta.ppf(0.975, 1, 11))
-    both = found.proportion_correct
-    assert both is not None
-    # The mean of Beta(10, 2) and Beta(11, 1) by its first two moments.
-    mean = 0.5 * (10 / 12 + 11 / 12)
-    spread = 0.5 * math.sqrt(20 / (144 * 13) + 11 / (144 * 13))
-    assert both.low < mean < both.high
-    assert both.high - both.low == pytest.approx(3.9 * spread, rel=0.1)
 
 
 def test_counts_that_do_not_fit_their_names_are_refused() -> None:

@@ -27,10 +27,10 @@ from squeezefilm.study.report.simulated_page import (
     LEGEND,
     REASONS,
     REMARK,
-    confusion_rows,
     reason_rows,
     write_simulated,
 )
+from squeezefilm.study.report.words import confusion_rows
 from squeezefilm.study.simulated.causes import Causes
 from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.participants import SimulatedStudy
@@ -107,12 +107,13 @@ def test_every_answer_is_a_row(written: tuple[Path, list[Any], list[str]]) -> No
 
 
 def test_confusions_are_shares_of_a_column_with_their_counts() -> None:
-    head, rows = confusion_rows(study(), 0)
-    assert head == ["Answered \\ simulated", "2 mm", "4 mm"]
-    assert rows == [["4 mm", "50 % (1)", "100 % (2)"], ["2 mm", "50 % (1)", "0 % (0)"]]
-    assert confusion_rows(study(), 1)[1] == [
-        ["4 mm", "0 % (0)", "100 % (2)"], ["2 mm", "100 % (2)", "0 % (0)"],
-    ]  # fmt: skip
+    head, rows = confusion_rows(study().confusion(0))
+    assert head == ("Answered \\ simulated", "2 mm", "4 mm")
+    assert rows == [("4 mm", "50 % (1)", "100 % (2)"), ("2 mm", "50 % (1)", "0 % (0)")]
+    assert confusion_rows(study().confusion(1))[1] == [
+        ("4 mm", "0 % (0)", "100 % (2)"),
+        ("2 mm", "100 % (2)", "0 % (0)"),
+    ]
 
 
 def test_reasons_are_in_the_order_of_their_heads_with_a_dash_for_none() -> None:
