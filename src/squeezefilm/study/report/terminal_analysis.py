@@ -27,9 +27,10 @@ from squeezefilm.study.report.words import (
 )
 
 if TYPE_CHECKING:
+    from squeezefilm.core.quantities import DimensionlessArray, IntArray
     from squeezefilm.study.simulated.answers import SimulatedAnswers
     from squeezefilm.study.simulated.participants import SimulatedStudy
-    from squeezefilm.study.simulated.planned_power import PlannedPower
+    from squeezefilm.study.simulated.planned_power import Planned, PlannedPower
     from squeezefilm.study.simulated.planned_precision import PlannedPrecision
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 
@@ -68,16 +69,9 @@ def show_power(found: PlannedPower) -> None:
     if not found.display:
         where, sides, own = f" by {found.design}", "Two-sided", f"difference of {found.measure}"
     heading(console, f"{found.first} against {found.second}{where}, SIMULATED")
+    head = ("people", "studies that find it", "95 % bounds of the simulation")
     table(
-        console,
-        ("people", "studies that find it", "95 % bounds of the simulation"),
-        [
-            (f"{n}", f"{100 * power:.0f} %", f"{100 * low:.0f} to {100 * high:.0f} %")
-            for n, power, low, high in zip(
-                curve.participants, curve.power, curve.low, curve.high, strict=True
-            )
-        ],
-        fixed=(0,),
+        console, head, _by_size(curve.participants, curve.power, curve.low, curve.high), fixed=(0,)
     )
     if curve.needed is None:
         console.print(f"{curve.participants[-1]} people do not reach {100 * curve.target:.0f} %.")
@@ -85,9 +79,7 @@ def show_power(found: PlannedPower) -> None:
         console.print(f"{curve.needed} people reach {100 * curve.target:.0f} % power.")
     console.print(
         f"{sides} test over people at {curve.alpha:g}; the pool's own {own} is "
-        f"{found.difference:.3g} (0 for nothing); {curve.studies} studies a size, of "
-        f"simulated participants '{found.observer}': what they assume, this assumes. "
-        f"Finger: {printable(found.finger)}.",
+        f"{found.difference:.3g} (0 for nothing); {_rests_on(found, curve.studies)}",
         highlight=False,
     )
 
@@ -99,29 +91,16 @@ def show_precision(found: PlannedPrecision) -> None:
     if found.measure != "Weber fraction":
         wanted = f"± {found.precision:g}"
     heading(console, f"{found.measure} of {found.design} on {found.display}, SIMULATED")
-    table(
-        console,
-        ("people", f"studies within {wanted}", "95 % bounds", "intervals that hold the value"),
-        [
-            (
-                f"{n}",
-                f"{100 * share:.0f} %",
-                f"{100 * low:.0f} to {100 * high:.0f} %",
-                f"{100 * held:.0f} %",
-            )
-            for n, share, low, high, held in zip(
-                found.participants, found.reached, found.low, found.high, found.held, strict=True
-            )
-        ],
-        fixed=(0,),
-    )
+    head = ("people", f"studies within {wanted}", "95 % bounds", "intervals that hold the value")
+    rows = _by_size(found.participants, found.reached, found.low, found.high)
+    held = [f"{100 * share:.0f} %" for share in found.held]
+    with_held = [(*row, share) for row, share in zip(rows, held, strict=True)]
+    table(console, head, with_held, fixed=(0,))
+    target = f"{100 * found.target:.0f} % of the studies"
     if found.needed is None:
-        most = found.participants[-1]
-        console.print(f"{most} people do not give it in {100 * found.target:.0f} % of the studies.")
+        console.print(f"{found.participants[-1]} people do not give it in {target}.")
     else:
-        console.print(
-            f"{found.needed} people give it in {100 * found.target:.0f} % of the studies."
-        )
+        console.print(f"{found.needed} people give it in {target}.")
     # Beyond what so many studies scatter.
     scatter = 2 * (0.95 * 0.05 / found.studies) ** 0.5
     short = found.participants[found.held < 0.95 - scatter]
@@ -133,20 +112,33 @@ def show_precision(found: PlannedPrecision) -> None:
             "of these people are not.",
             highlight=False,
         )
-    one = found.sequential
+    stops = found.sequential
     console.print(
-        f"A study that adds people until its interval is that narrow stops at {one.mean:.3g} in "
-        f"the mean ({one.low:.0f} to {one.high:.0f}); its interval then holds the value in "
-        f"{100 * one.held:.1f} % of the studies ({100 * one.held_low:.1f} to "
-        f"{100 * one.held_high:.1f} %), where 95 % are promised. {100 * one.unfinished:.0f} % give "
-        f"up at {one.most} people.",
+        f"A study that adds people until its interval is that narrow stops at {stops.mean:.3g} in "
+        f"the mean ({stops.low:.0f} to {stops.high:.0f}); its interval then holds the value in "
+        f"{100 * stops.held:.1f} % of the studies ({100 * stops.held_low:.1f} to "
+        f"{100 * stops.held_high:.1f} %), where 95 % are promised. {100 * stops.unfinished:.0f} % "
+        f"give up at {stops.most} people.",
         highlight=False,
     )
     console.print(
-        f"{found.studies} studies a size, of simulated participants '{found.observer}', whose own "
-        f"value is {found.truth:.3g}: what they assume, this assumes. "
-        f"Finger: {printable(found.finger)}.",
+        f"The people's own value is {found.truth:.3g}; {_rests_on(found, found.studies)}",
         highlight=False,
+    )
+
+
+def _by_size(people: IntArray, *shares: DimensionlessArray) -> list[tuple[str, str, str]]:
+    """Rows of people, share of the studies and its bounds."""
+    return [
+        (f"{size}", f"{100 * share:.0f} %", f"{100 * low:.0f} to {100 * high:.0f} %")
+        for size, share, low, high in zip(people, *shares, strict=True)
+    ]
+
+
+def _rests_on(found: Planned, studies: int) -> str:
+    return (
+        f"{studies} studies a size, of simulated participants '{found.observer}': what they "
+        f"assume, this assumes. Finger: {printable(found.finger)}."
     )
 
 

@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
-from pathlib import Path
+from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
 import numpy as np
@@ -19,19 +18,13 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.perception.observer import Observer
-from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.identification.power import power_curve
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import chain_tables
-from squeezefilm.study.simulated.planned_power import (
-    SIZES,
-    PlannedPower,
-    drawn_with_replacement,
-)
+from squeezefilm.study.simulated.planned_power import PlannedPower, PlannedStudies
 from squeezefilm.study.simulated.planned_precision import (
     PEOPLE,
     person_values,
@@ -43,77 +36,59 @@ _DIFFERENCES: Kept[tuple[str, si.FloatArray]] = Kept(
 )
 
 
-def planned_contrast(
-    design: StudyDesign,
-    observer: Observer,
-    display: str,
-    other: str,
-    *,
-    participants: tuple[int, ...] = SIZES,
-    studies: int = 400,
-    alpha: si.Dimensionless = 0.05,
-    target: si.Dimensionless = 0.8,
-    people: int = PEOPLE,
-    seed: int = 0,
-    finger: str | Path = "new",
-    progress: Callable[[str], None] | None = None,
-) -> PlannedPower:
+@dataclass(frozen=True, slots=True, eq=False)
+class ContrastAsked(PlannedStudies):
+    """Studies on `here` and on `there`, two displays by name or file; a test at `alpha` (1) over
+    people drawn from so many simulated `people`."""
+
+    here: str
+    there: str
+    _: KW_ONLY
+    alpha: si.Dimensionless = 0.05
+    people: int = PEOPLE
+
+
+@called_with(ContrastAsked)
+def planned_contrast(asked: ContrastAsked) -> PlannedPower:
     """The power of a design to show that people do otherwise on one display than on another.
 
-    Args:
-        design: of any task; its own displays are not asked for.
-        observer: whose people they are.
-        display, other: two displays, by name or file.
-        participants, studies, alpha, target: as in `power_curve`.
-        people: simulated, that studies are drawn from, at least 20.
-        seed: of people, answers and studies.
-        finger: whose finger a display is under, see `with_finger`.
-        progress: is told each step.
-
-    The test is Student's over people, two-sided. `difference` is the mean over all people of the
-    value on `display` less that on `other`.
+    Arguments are those of `PlannedStudies` (a `display` is not asked for), two displays, the test's
+    `alpha`, and how many people are simulated, at least 20. The test is Student's over people,
+    two-sided. `difference` is the mean over all people of the value on `here` less that on `there`.
 
     Raises:
         InputError: a display against itself, a number out of range, or what the simulation refuses.
     """
-    si.require("people", people, at_least=20, at_most=20_000)
-    if display == other:
-        raise InputError(f"'{display}' is asked to differ from itself; name two displays")
-    for one in (display, other):
-        if one not in design.displays:
-            load_display(one)
-    tell = progress or (lambda _: None)
-    both = dataclasses.replace(design, displays=(display, other))
-    tables = chain_tables(both, observer, finger=finger, progress=tell)
+    design, here, there = asked.design, asked.here, asked.there
+    si.require("people", asked.people, at_least=20, at_most=20_000)
+    if here == there:
+        raise InputError(f"'{here}' is asked to differ from itself; name two displays")
+    for display in (here, there):
+        if display not in design.displays:
+            load_display(display)
+    both = dataclasses.replace(design, displays=(here, there))
+    tables = chain_tables(both, asked.observer, finger=asked.finger, progress=asked.tell)
 
     def simulated() -> tuple[str, si.FloatArray]:
-        answers = simulated_answers(tables, people, seed, tell)
-        tell("each person's fits")
+        answers = simulated_answers(tables, asked.people, asked.seed, asked.tell)
+        asked.tell("each person's fits")
         return within_people(answers)
 
-    measure, differences = _DIFFERENCES.found(f"{tables.asked} {people} {seed}", simulated)
-    curve = power_curve(
-        drawn_with_replacement(differences),
-        otherwise_than_0,
-        participants,
-        studies=studies,
-        alpha=alpha,
-        target=target,
-        seed=seed,
-        progress=lambda done, all_: tell(f"studies of size {done} of {all_}"),
+    measure, differences = _DIFFERENCES.found(
+        f"{tables.asked} {asked.people} {asked.seed}", simulated
     )
-    mean = float(differences.mean())
     return PlannedPower(
-        design.name,
-        "",
-        display,
-        other,
-        observer.name,
-        curve,
-        mean,
-        seed,
-        measure=measure,
+        design=design.name,
+        display="",
+        observer=asked.observer.name,
+        seed=asked.seed,
         finger=tables.whose_finger,
+        origin="simulated",
+        first=here,
+        second=there,
+        curve=asked.power(differences, otherwise_than_0, asked.alpha),
+        difference=float(differences.mean()),
+        measure=measure,
     )
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.results import stamp, to_json
@@ -19,7 +20,6 @@ from squeezefilm.physics.display import load_display
 from squeezefilm.physics.perception.observer import Observer
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.power import (
-    ParticipantSimulator,
     PowerCurve,
     above_0,
     distinction_scores,
@@ -37,8 +37,80 @@ POOL = 4000
 _SCORES: Kept[si.FloatArray] = Kept("simulated-scores", si.FloatArray)
 
 
-@dataclass(frozen=True, eq=False)
-class PlannedPower:
+@dataclass(frozen=True, slots=True, eq=False)
+class PlannedStudies:
+    """What is asked of studies that are simulated to plan one.
+
+    Args:
+        design: of any task.
+        observer: whose people they are.
+        display: one of the design's (the first without it), or another's name or file.
+        participants: numbers of people, each at least 2.
+        studies: simulated per number, at least 10.
+        target: share of studies that are to find what is asked.
+        seed: of people, their answers and the studies.
+        finger: whose finger a display is under, see `with_finger`.
+        progress: is told each step.
+    """
+
+    design: StudyDesign
+    observer: Observer
+    _: KW_ONLY
+    display: str | None = None
+    participants: tuple[int, ...] = SIZES
+    studies: int = 400
+    target: si.Dimensionless = 0.8
+    seed: int = 0
+    finger: str | Path = "new"
+    progress: Callable[[str], None] | None = None
+
+    def tell(self, step: str) -> None:
+        """Tell a step to whoever listens."""
+        if self.progress is not None:
+            self.progress(step)
+
+    def power(
+        self,
+        scores: si.FloatArray,
+        test: Callable[[NDArray[Any]], float],
+        alpha: si.Dimensionless,
+    ) -> PowerCurve:
+        """The power of a test at `alpha` in studies of people drawn with replacement, whose
+        `scores` (people,) are known."""
+
+        def drawn(participants: int, random: np.random.Generator) -> si.FloatArray:
+            return np.asarray(scores[random.integers(0, scores.size, participants)])
+
+        return power_curve(
+            drawn,
+            test,
+            self.participants,
+            studies=self.studies,
+            alpha=alpha,
+            target=self.target,
+            seed=self.seed,
+            progress=lambda done, all_: self.tell(f"studies of size {done} of {all_}"),
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Planned:
+    """What simulated studies say of a design, by the names of design, display and observer."""
+
+    design: str
+    display: str
+    observer: str
+    seed: int
+    finger: str
+    origin: str
+
+    def summary(self) -> dict[str, Any]:
+        """The numbers that ``--json`` prints."""
+        return {**to_json(self), "provenance": stamp((self.design, self.observer), self.seed)}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlannedPower(Planned):
     """Power to tell two stimuli of a design apart on one display, or two displays by a design, by
     simulated participants.
 
@@ -46,100 +118,65 @@ class PlannedPower:
     `measure` is what a person's value is where displays are compared (`display` is empty then).
     """
 
-    design: str
-    display: str
     first: str
     second: str
-    observer: str
     curve: PowerCurve
     difference: si.Dimensionless
-    seed: int
-    origin: str = "simulated"
-    finger: str = ""
-    measure: str = "score"
-
-    def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints."""
-        return {**to_json(self), "provenance": stamp((self.design, self.observer), self.seed)}
+    measure: str
 
 
-def planned_power(
-    design: StudyDesign,
-    observer: Observer,
-    first: str,
-    second: str,
-    *,
-    display: str | None = None,
-    participants: tuple[int, ...] = SIZES,
-    studies: int = 400,
-    alpha: si.Dimensionless = 0.05,
-    target: si.Dimensionless = 0.8,
-    seed: int = 0,
-    finger: str | Path = "new",
-    progress: Callable[[str], None] | None = None,
-) -> PlannedPower:
+@dataclass(frozen=True, slots=True, eq=False)
+class PairAsked(PlannedStudies):
+    """Studies that are to tell `first` from `second`, by a test at `alpha` (1)."""
+
+    first: str
+    second: str
+    _: KW_ONLY
+    alpha: si.Dimensionless = 0.05
+
+
+@called_with(PairAsked)
+def planned_power(asked: PairAsked) -> PlannedPower:
     """The power of a design to tell two of its stimuli apart, against the number of people.
 
-    Studies are drawn from `POOL` simulated participants who do the whole design; the test is
-    `distinction` of match-to-sample, else Student's over people's `pair_scores`, one-sided. What
-    the observer assumes, this assumes: see its file. What people felt and answered is kept on disk.
-
-    Args:
-        design: of any task, without adaptive series.
-        observer: whose people they are.
-        first, second: names of the stimuli.
-        display: one of the design's (the first without it), or another's name or file.
-        participants, studies, alpha, target: as in `power_curve`.
-        seed: of people, their answers and the studies.
-        finger: whose finger a display is under, see `with_finger`.
-        progress: is told each step.
+    Studies are drawn from `POOL` simulated participants who do the whole design, without adaptive
+    series; the test is Student's over people, one-sided, of `distinction_scores` in
+    match-to-sample, else of `pair_scores`. What the observer assumes, this assumes: see its file.
+    What people felt and answered is kept on disk. Arguments are those of `PlannedStudies`, the
+    names of two stimuli, and the test's `alpha`.
 
     Raises:
         InputError: names that are not in the design, or what the simulation refuses.
     """
-    asked = dataclasses.replace(design, catch=())
-    for name in (first, second):
-        asked.stimulus(name)
-    alone = on_one_display(design, display)
-    tell = progress or (lambda _: None)
+    design, first, second = asked.design, asked.first, asked.second
+    alone = on_one_display(design, asked.display)
+    a, b = (design.stimuli.index(alone.stimulus(name)) for name in (first, second))
     if design.task == "match-to-sample":
-        a, b = (design.stimuli.index(asked.stimulus(name)) for name in (first, second))
         _require_own_answers(alone)
     else:
         require_pair(alone, first, second)
-    tables = chain_tables(alone, observer, finger=finger, progress=tell)
+    tables = chain_tables(alone, asked.observer, finger=asked.finger, progress=asked.tell)
 
     def simulated() -> si.FloatArray:
-        tell(f"{POOL} simulated participants")
+        asked.tell(f"{POOL} simulated participants")
+        people = alone, asked.observer, POOL, asked.seed, tables
         if design.task == "match-to-sample":
-            counts = simulate_matches(alone, observer, POOL, seed, tables).participant_counts()
-            return distinction_scores(counts, a, b)
-        answers = simulate_judgements(alone, observer, POOL, seed, tables, tell)
-        return pair_scores(answers, first, second)
+            return distinction_scores(simulate_matches(*people).participant_counts(), a, b)
+        return pair_scores(simulate_judgements(*people, asked.tell), first, second)
 
-    scores = _SCORES.found(f"{tables.asked} {first!r} {second!r} {seed}", simulated)
-    curve = power_curve(
-        drawn_with_replacement(scores),
-        lambda scores: above_0(scores)[1],
-        participants,
-        studies=studies,
-        alpha=alpha,
-        target=target,
-        seed=seed,
-        progress=lambda done, all_: tell(f"studies of size {done} of {all_}"),
-    )
-    where = alone.displays[0]
-    whole = float(scores.mean())
+    scores = _SCORES.found(f"{tables.asked} {first!r} {second!r} {asked.seed}", simulated)
     return PlannedPower(
-        design.name,
-        where,
-        first,
-        second,
-        observer.name,
-        curve,
-        whole,
-        seed,
+        design=design.name,
+        display=alone.displays[0],
+        observer=asked.observer.name,
+        seed=asked.seed,
         finger=tables.whose_finger,
+        origin="simulated",
+        first=first,
+        second=second,
+        curve=asked.power(scores, lambda drawn: above_0(drawn)[1], asked.alpha),
+        difference=float(scores.mean()),
+        measure="score",
     )
 
 
@@ -191,15 +228,6 @@ def pair_scores(answers: Answers, first: str, second: str) -> si.FloatArray:
         return mean(main.correct, here) - 1.0 / len(design.answers)
     different = (main.choice == 1).astype(float)
     return mean(different, here) - mean(different, alike)
-
-
-def drawn_with_replacement(scores: si.FloatArray) -> ParticipantSimulator:
-    """Draws people's scores, for `power_curve`."""
-
-    def drawn(participants: int, random: np.random.Generator) -> si.FloatArray:
-        return np.asarray(scores[random.integers(0, scores.size, participants)])
-
-    return drawn
 
 
 def on_one_display(design: StudyDesign, display: str | None) -> StudyDesign:

@@ -12,25 +12,21 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept
-from squeezefilm.core.results import stamp, to_json
-from squeezefilm.physics.perception.observer import Observer
-from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.identification.proportions import proportion_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.answers import answers_of
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import simulate_matches
-from squeezefilm.study.simulated.planned_power import SIZES, on_one_display
+from squeezefilm.study.simulated.planned_power import Planned, PlannedStudies, on_one_display
 from squeezefilm.study.tasks.by_difference import MEASURE, on_grid_of_differences, unlike_persons
 from squeezefilm.study.tasks.findings import PersonEstimate
 from squeezefilm.study.tasks.magnitude import exponents
@@ -77,11 +73,10 @@ class SequentialStudies:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class PlannedPrecision:
+class PlannedPrecision(Planned):
     """Precision against the number of people; arrays of shape (numbers,).
 
     Attributes:
-        design, display, observer: by name.
         measure: "Weber fraction", "exponent" or "proportion correct".
         precision: half the interval asked for: of a Weber fraction in parts of it, else absolute.
         truth: the value of all simulated people.
@@ -93,12 +88,8 @@ class PlannedPrecision:
         needed: fewest people that reach it, and all larger numbers too; None if none does.
         studies: simulated per number.
         sequential: what becomes of stopping once the interval is narrow enough.
-        seed: of people, answers and studies.
     """
 
-    design: str
-    display: str
-    observer: str
     measure: str
     precision: si.Dimensionless
     truth: float
@@ -111,105 +102,87 @@ class PlannedPrecision:
     needed: int | None
     studies: int
     sequential: SequentialStudies
-    seed: int
-    origin: str = "simulated"
-    finger: str = ""
-
-    def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints."""
-        return {**to_json(self), "provenance": stamp((self.design, self.observer), self.seed)}
 
 
-def planned_precision(
-    design: StudyDesign,
-    observer: Observer,
-    precision: si.Dimensionless,
-    *,
-    display: str | None = None,
-    participants: tuple[int, ...] = SIZES,
-    studies: int = 400,
-    target: si.Dimensionless = 0.8,
-    people: int = PEOPLE,
-    seed: int = 0,
-    finger: str | Path = "new",
-    progress: Callable[[str], None] | None = None,
-) -> PlannedPrecision:
+@dataclass(frozen=True, slots=True, eq=False)
+class PrecisionAsked(PlannedStudies):
+    """Studies whose 95 % interval is to have half of its length within `precision`, of people drawn
+    from so many simulated `people`."""
+
+    precision: si.Dimensionless
+    _: KW_ONLY
+    people: int = PEOPLE
+
+
+@called_with(PrecisionAsked)
+def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
     """How many people make the answer of a design as precise as asked, by simulation.
 
-    Args:
-        design: of any task.
-        observer: whose people they are.
-        precision: half of the 95 % interval: of Weber fractions in parts of the value, of
-            exponents and proportions correct absolute.
-        display: one of the design's (the first without it), or another's name or file.
-        participants: numbers of people, each at least 2.
-        studies: per number, at least 10.
-        target: share of studies that are to be that precise.
-        people: simulated, that studies are drawn from, at least 20.
-        seed: of people, answers and studies.
-        finger: whose finger a display is under, see `with_finger`.
-        progress: is told each step.
-
-    What was found until it was stopped is kept on disk, and not computed again.
+    Arguments are those of `PlannedStudies`, half of the interval that is wanted (of Weber fractions
+    in parts of the value, of exponents and proportions correct absolute), and how many people are
+    simulated, at least 20. What was found until it was stopped is kept on disk, and not computed
+    again.
 
     Raises:
         InputError: a number out of range, or what the simulation refuses.
     """
+    precision, studies, people = asked.precision, asked.studies, asked.people
     si.require("precision", precision, above=0.0, at_most=2.0)
-    si.require("target", target, above=0.0, below=1.0)
+    si.require("target", asked.target, above=0.0, below=1.0)
     si.require("studies", studies, at_least=10, at_most=100_000)
     si.require("people", people, at_least=20, at_most=20_000)
-    sizes = tuple(sorted(set(participants)))
+    sizes = tuple(sorted(set(asked.participants)))
     if not sizes or sizes[0] < 2:
         raise InputError(f"participants = {sizes}; give numbers of at least 2")
-    tell = progress or (lambda _: None)
-    alone = on_one_display(design, display)
-    tables = chain_tables(alone, observer, finger=finger, progress=tell)
+    alone = on_one_display(asked.design, asked.display)
+    tables = chain_tables(alone, asked.observer, finger=asked.finger, progress=asked.tell)
 
     @functools.cache
     def fitted() -> tuple[str, Interval]:
-        return interval_of(simulated_answers(tables, people, seed, tell), tell)
+        return interval_of(simulated_answers(tables, people, asked.seed, asked.tell), asked.tell)
 
     def interval(who: si.IntArray) -> Ends:
         return fitted()[1](who)
 
-    asked = f"{tables.asked} {people} {seed}"
+    of_people = f"{tables.asked} {people} {asked.seed}"
     measure, truth = _TRUTHS.found(
-        asked, lambda: (fitted()[0], float(interval(np.arange(people))[0]))
+        of_people, lambda: (fitted()[0], float(interval(np.arange(people))[0]))
     )
-    relative = measure == "Weber fraction"
 
-    def precise(found: Ends) -> bool:
-        _, low, high = found
-        if relative:
+    def precise(ends: Ends) -> bool:
+        _, low, high = ends
+        if measure == "Weber fraction":
             return low > 0 and math.sqrt(high / low) - 1.0 <= precision
         return 0.5 * (high - low) <= precision
 
     def shares(size: int) -> tuple[float, float]:
-        random = np.random.default_rng([seed, size])
-        found = [interval(random.integers(0, people, size)) for _ in range(studies)]
-        holds = [low <= truth <= high for _, low, high in found]
-        return float(np.mean([precise(one) for one in found])), float(np.mean(holds))
+        random = np.random.default_rng([asked.seed, size])
+        each = [interval(random.integers(0, people, size)) for _ in range(studies)]
+        holds = [low <= truth <= high for _, low, high in each]
+        return float(np.mean([precise(ends) for ends in each])), float(np.mean(holds))
 
     reached, held = np.zeros(len(sizes)), np.zeros(len(sizes))
     bounds = []
     for at, size in enumerate(sizes):
-        tell(f"studies of {size} people")
+        asked.tell(f"studies of {size} people")
         reached[at], held[at] = _SHARES.found(
-            f"{asked} {precision} {studies} {size}", functools.partial(shares, size)
+            f"{of_people} {precision} {studies} {size}", functools.partial(shares, size)
         )
         bounds.append(
             proportion_interval(round(reached[at] * studies), studies, method="Clopper–Pearson")
         )
-    tell("sequential studies")
+    asked.tell("sequential studies")
     sequential = _sequential(
-        interval, precise, truth, people, studies, seed, f"{asked} {precision}"
+        interval, precise, truth, people, studies, asked.seed, f"{of_people} {precision}"
     )
-    lasting = [size for at, size in enumerate(sizes) if np.all(reached[at:] >= target)]
+    lasting = [size for at, size in enumerate(sizes) if np.all(reached[at:] >= asked.target)]
     return PlannedPrecision(
-        design=design.name,
+        design=asked.design.name,
         display=alone.displays[0],
-        observer=observer.name,
+        observer=asked.observer.name,
+        seed=asked.seed,
+        finger=tables.whose_finger,
+        origin="simulated",
         measure=measure,
         precision=precision,
         truth=truth,
@@ -218,12 +191,10 @@ def planned_precision(
         low=np.array([bound.low for bound in bounds]),
         high=np.array([bound.high for bound in bounds]),
         held=held,
-        target=target,
+        target=asked.target,
         needed=lasting[0] if lasting else None,
         studies=studies,
         sequential=sequential,
-        seed=seed,
-        finger=tables.whose_finger,
     )
 
 

@@ -35,7 +35,11 @@ def test_each_display_has_its_confusions_and_main_numbers(
     first = [printable(" ".join(one.split())) for one in read_first(analysis)]
     assert half[: 1 + len(first)] == ["plate: simulated answers", *first]
     rest = half[1 + len(first) :]
-    assert rest[:3] == ["answered 4 mm 8 mm", "4 mm 100 % 25 %", "8 mm 0 % 75 %"]
+    assert rest[:3] == [
+        "Answered \\ simulated 4 mm 8 mm",
+        "4 mm 100 % (4) 25 % (1)",
+        "8 mm 0 % (0) 75 % (3)",
+    ]
     rows = [printable(" ".join(map(printable, row))) for row in key_rows(analysis)]
     notes = [printable(note) for note in analysis.notes]
     assert rest[3:] == [*rows, *notes]
@@ -60,7 +64,7 @@ def power(needed: int | None) -> PlannedPower:
         np.array([0.2, 0.87, 0.98]), 400, 0.05, 0.8, needed, 8,
     )  # fmt: skip
     return PlannedPower(
-        "small", "plate", "8 mm", "10 mm", "fingertip", curve, 0.3, 0, finger="mine"
+        "small", "plate", "fingertip", 0, "mine", "simulated", "8 mm", "10 mm", curve, 0.3, "score"
     )
 
 
