@@ -109,7 +109,7 @@ def prediction_text(
     }
     page["assumed"] = {"sentences": list(ASSUMED)}
     page["fitted"] = {
-        "mean_misfit": round(constants.mean_misfit, 5),
+        "mean_misfit": round(constants.adequacy.residual, 5),
         "adequacy": constants.adequacy.sentence,
         **{name: _told(getattr(constants, name)) for name in FITTED},
     }

@@ -40,7 +40,7 @@ ROOMS = {
     "measure.recordings.kinds",
     "measure.fits.circuit.branches",
     "design.sweep.sweep",
-    "measure.fits.ceramic.constants",
+    "measure.fits.ceramic.constants.compliances",
     "measure.fits.vibration.driven_shape",
 }
 _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]

@@ -76,7 +76,7 @@ def test_the_bar() -> None:
 def test_the_disc() -> None:
     """Compared with what a thin disc's formula gave, where the first mode tells it."""
     found = disc_constants(disc_sweep(), disc_by_mass(35e-3, 2e-3, 14.8993e-3))
-    assert found.mean_misfit < 0.02
+    assert found.adequacy.residual < 0.02
     low, high = found.compliance_11.interval
     assert low < 16.31e-12 < high
     assert found.charge_coefficient_31.value == pytest.approx(-201e-12, rel=0.02)

@@ -25,7 +25,7 @@ from squeezefilm.core.regular_file import read_json, read_regular_text
 from squeezefilm.core.results import stamp, to_json, write_whole
 from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.discrepancy import BELIEVED, KINDS, scales_of
-from squeezefilm.measure.calibration.friction_likelihood import GRID, touching
+from squeezefilm.measure.calibration.friction_likelihood import GRID, Touching, touching
 from squeezefilm.measure.calibration.friction_posterior import finger_mixture, friction_of_points
 from squeezefilm.measure.calibration.plate_fit import prior_scores
 from squeezefilm.measure.calibration.priors import (
@@ -171,7 +171,7 @@ def predicted(
     if not what:
         raise InputError("nothing is to be predicted; name at least one answer")
     for seen in what:
-        _ = _asked_friction(seen) if seen.answer == FRICTION else asked_by(seen)
+        _ = _touched(seen) if seen.answer == FRICTION else asked_by(seen)
     display = source if isinstance(source, Display) else calibrated_display(source)
     how = (
         f"plates drawn from the spreads in the description of {display.name}"
@@ -196,10 +196,6 @@ def sealed(prediction: BlindPrediction) -> str:
     content = {"kind": KIND, **to_json(prediction)}
     content["sha256"] = _digest(content)
     return json.dumps(content, indent=1, ensure_ascii=False) + "\n"
-
-
-def _asked_friction(seen: Observation) -> object:
-    return touching(Observation(seen.answer, seen.value, 1.0, seen.conditions))
 
 
 def _predicted(seen: Observation, draws: si.FloatArray) -> Predicted:
@@ -255,6 +251,11 @@ def _of_plate(
     return found
 
 
+def _touched(seen: Observation) -> Touching:
+    """The conditions of a friction that is asked for."""
+    return touching(Observation(FRICTION, 0.5, 1.0, seen.conditions))
+
+
 def _of_friction(
     display: Display, wanted: Sequence[Observation], seed: int, tell: ShareProgress
 ) -> dict[int, si.FloatArray]:
@@ -263,7 +264,7 @@ def _of_friction(
     if not wanted:
         return {}
     mixture = finger_mixture(display, predict(display))
-    where = tuple(touching(Observation(FRICTION, 0.5, 1.0, seen.conditions)) for seen in wanted)
+    where = tuple(_touched(seen) for seen in wanted)
     curves = friction_of_points(mixture, sobol_points(mixture, _FRICTION, seed), where, tell)
     random, joint = np.random.default_rng(seed), display.joint
     if joint is not None and joint.friction_offset_deviation > 0:

@@ -253,7 +253,10 @@ def _calibration(
         after = FrictionInterval(middle, (low, high), float(np.nanmedian(made.with_finger)))
     misfits = [] if plate is None else [plate.posterior.misfit]
     misfits += [] if finger.posterior is None else [finger.posterior.misfit]
-    errors = {} if plate is None else _errors(plate)
+    errors: dict[str, float] = {}
+    if plate is not None:
+        pairs = zip(plate.problem.asked, plate.problem.emulator.errors.tolist(), strict=True)
+        errors = {asked.said: error for asked, error in pairs}
     return Calibration(
         described=described,
         display=calibrated,
@@ -274,11 +277,6 @@ def _calibration(
         joint=joint,
         compared=compared(observations, plate, finger.draws, finger.first_draws, seed),
     )
-
-
-def _errors(plate: PlateFit) -> dict[str, float]:
-    pairs = zip(plate.problem.asked, plate.problem.emulator.errors.tolist(), strict=True)
-    return {asked.said: error for asked, error in pairs}
 
 
 def _doubts(plate: PlateFit | None, finger: _Finger, refused: float) -> tuple[str, ...]:

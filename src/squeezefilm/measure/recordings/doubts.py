@@ -27,7 +27,8 @@ _NEAR_A_PEAK = 0.3
 
 def doubts_of(recording: kinds.Recording) -> tuple[str, ...]:
     """The doubts about a recording, in an order that puts what changes its meaning first."""
-    return tuple(_OF_KIND[type(recording)](recording))
+    look = _OF_KIND.get(type(recording))
+    return () if look is None else tuple(look(recording))
 
 
 def _impedance(sweep: kinds.ImpedanceSweep) -> Iterator[str]:
@@ -269,7 +270,4 @@ _OF_KIND: dict[type, Callable[[Any], Iterator[str]]] = {
     kinds.RawSignals: _signals,
     kinds.FrictionBench: _bench,
     kinds.FrictionCurve: _curve,
-    kinds.FrictionDecays: lambda _: iter(()),
-    kinds.FingertipImpedances: lambda _: iter(()),
-    kinds.DetectionThresholds: lambda _: iter(()),
 }

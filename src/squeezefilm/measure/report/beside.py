@@ -256,44 +256,6 @@ def all_curves_figure(compared: FolderComparison) -> Figure:
 
 
 @style.drawn
-def coverage_figure(compared: FolderComparison) -> Figure:
-    """The share of each unit's points in central intervals of the default, over their level."""
-    from scipy.stats import binomtest
-
-    figure = style.new_figure(
-        "How many published points the intervals of the default hold, by finger or paper",
-        "the default, its friction at rest fitted; bars: 95 % binomial intervals, as if the points "
-        "of a curve were independent, which they are not",
-        5,
-    )
-    axes = figure.subplots()
-    for number, (unit, (inside, points)) in enumerate(compared.coverage.items()):
-        share = inside / points
-        intervals = [binomtest(int(k), points).proportion_ci(0.95) for k in inside]
-        away = np.abs([[interval.low, interval.high] for interval in intervals] - share[:, None]).T
-        axes.errorbar(
-            100 * np.array(LEVELS) + 0.6 * (number - 1),
-            100 * share,
-            100 * away,
-            fmt="o-",
-            ms=4,
-            lw=1.2,
-            elinewidth=0.7,
-            color=_COLOURS[number % len(_COLOURS)],
-            label=f"{style.plain(unit_name(compared, unit), 40)} ({points} points)",
-        )
-    axes.plot([0, 100], [0, 100], **style.GUIDE, label="as promised")
-    axes.set(
-        xlabel="level of the central interval (%)",
-        ylabel="points inside (%)",
-        xlim=(0, 100),
-        ylim=(0, 102),
-    )
-    style.legend_beside(axes)
-    return figure
-
-
-@style.drawn
 def people_figure(compared: PopulationComparison) -> Figure:
     """Share of people below each value, and the values of the models."""
     unit, scale = _SHOWN.get(compared.unit, (compared.unit, 1.0))

@@ -1,5 +1,4 @@
-"""A calibration in pictures: values before and after, the model beside what was measured, friction,
-and what to measure next."""
+"""A calibration in pictures: the model beside what was measured, and friction."""
 
 from __future__ import annotations
 
@@ -12,9 +11,7 @@ from squeezefilm.core.calibration_record import ComparedAnswer
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import shown, span
 from squeezefilm.core.kit.page_style import FigureOf
-from squeezefilm.measure.calibration.calibration import CalibratedValue
 from squeezefilm.measure.calibration.folder import FolderCalibration
-from squeezefilm.measure.calibration.identified import IDENTIFIED, NOT_TOLD
 from squeezefilm.physics.uncertainty.intervals import LEVEL
 
 if TYPE_CHECKING:
@@ -26,45 +23,6 @@ _POSTERIOR: dict[str, Any] = {"color": style.BLUE, "lw": 4.5, "solid_capstyle": 
 _ROW, _REST = 0.29, 1.6
 _FINE = 1e-3  # up to which a difference is drawn in proportion, beyond it by its logarithm
 _TICKS = (-0.1, -0.01, -0.001, 0.0, 0.001, 0.01, 0.1)
-MOST_NEXT = 8
-"""Measurements that could be made next, of which the most telling are shown."""
-
-
-def sorted_values(calibrated: FolderCalibration) -> list[CalibratedValue]:
-    """The values, those that the data told most of first."""
-    return sorted(calibrated.calibration.values, key=lambda value: value.left)
-
-
-@style.drawn
-def values_figure(calibrated: FolderCalibration) -> Figure:
-    """Each value's interval before and after, on the scale of the one before."""
-    values = sorted_values(calibrated)
-    told = sum(value.left <= IDENTIFIED for value in values)
-    narrowed = sum(IDENTIFIED < value.left <= NOT_TOLD for value in values)
-    level = si.percent(LEVEL)
-    figure = style.new_figure(
-        f"{told} of {len(values)} values are identified by what was measured, {narrowed} narrowed, "
-        f"{len(values) - told - narrowed} not told",
-        f"{level} intervals; 0 and 1 are the ends of the interval before",
-        _REST + _ROW * max(len(values), 2),
-    )
-    axes = figure.subplots()
-    for row, value in enumerate(values):
-        low, high = value.prior
-        scale = (high - low) or 1.0
-        ends = [(end - low) / scale for end in value.interval]
-        axes.plot([0, 1], [row, row], **_PRIOR, label="" if row else "before")
-        axes.plot(ends, [row, row], **_POSTERIOR, label="" if row else "after")
-        axes.plot([(value.median - low) / scale], [row], **style.ESTIMATE)
-    _rows(axes, [value.path for value in values])
-    right = axes.secondary_yaxis("right")
-    right.set_yticks(range(len(values)), [si.percent(value.left) for value in values])
-    right.tick_params(length=0)
-    right.spines["right"].set_visible(False)
-    right.set_ylabel("spread left")
-    axes.set_xlabel("within the interval before")
-    style.legend_below(axes, gap=0.9 / (_REST + _ROW * len(values)))
-    return figure
 
 
 @style.drawn
@@ -158,26 +116,6 @@ def friction_figure(calibrated: FolderCalibration) -> Figure:
     return figure
 
 
-@style.drawn
-def next_figure(calibrated: FolderCalibration) -> Figure:
-    """What each further measurement is expected to leave of friction's interval."""
-    options = calibrated.calibration.next_measurements[:MOST_NEXT]
-    first = options[0]
-    figure = style.new_figure(
-        f"Next: {first.name}, which is expected to leave {si.percent(first.left)} of the interval "
-        "of friction",
-        "draws of the posterior, each in turn taken for the truth; accuracies are assumed",
-        _REST + _ROW * len(options),
-    )
-    axes = figure.subplots()
-    for row, option in enumerate(options):
-        axes.barh([row], [100 * option.left], height=0.6, **style.BARS)
-        axes.text(100 * option.left + 1, row, si.percent(option.left), va="center", fontsize=9.5)
-    _rows(axes, [f"{option.name} (to {option.accuracy})" for option in options])
-    axes.set(xlim=(0, 108), xlabel="expected to be left of the interval of µ′/µ (%)")
-    return figure
-
-
 def _rows(axes: Axes, names: list[str]) -> None:
     """Rows from above, each with its name."""
     axes.set_yticks(range(len(names)), names)
@@ -193,18 +131,6 @@ FIGURES = (
         "The model beside every measurement",
         compared_figure,
         has=lambda one: one.calibration.compared,
-    ),
-    FigureOf(
-        "values",
-        "What the data say of each value",
-        values_figure,
-        has=lambda one: one.calibration.values,
-    ),
-    FigureOf(
-        "next",
-        "What to measure next",
-        next_figure,
-        has=lambda one: one.calibration.next_measurements,
     ),
 )
 """The figures of a calibration, in the order of its page."""

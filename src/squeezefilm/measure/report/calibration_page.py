@@ -35,7 +35,6 @@ from squeezefilm.measure.report.calibration_figures import (
     FIGURES,
     deviation,
     row_name,
-    sorted_values,
 )
 from squeezefilm.physics.uncertainty.intervals import LEVEL
 
@@ -60,12 +59,17 @@ def write_calibration(calibrated: FolderCalibration, folder: Path) -> Path:
     body += get("friction", "") + get("compared", "")
     body += section("Every measured number", _compared(calibration.compared))
     body += section("How far off, by what was measured", _by_kind(calibration.compared))
-    body += get("values", "")
     body += section(
         "Each value", text_table("Before and after", VALUES_HEAD, value_rows(calibrated))
     )
     body += section("What is identified", bullets(calibration.identification.sentences))
-    body += get("next", "") + section("How it was computed", _computed(calibration))
+    options = [
+        (option.name, option.accuracy, si.percent(option.left))
+        for option in calibration.next_measurements
+    ]
+    head = ("measurement", "to", "left of the interval of µ′/µ")
+    body += section("What to measure next", text_table("The most telling first", head, options))
+    body += section("How it was computed", _computed(calibration))
     body += section("What it was learned from", _recordings(calibrated))
     body += section(
         "Left out", bullets(calibrated.left_out, "Nothing: every recording of the folder was used.")
@@ -100,7 +104,8 @@ def _misfits(calibration: Calibration) -> list[str]:
 
 
 def value_rows(calibrated: FolderCalibration) -> list[tuple[str, ...]]:
-    """Each value: its interval before, its median and interval after, how much spread is left."""
+    """Each value: its interval before, its median and interval after, how much spread is left;
+    what the data told most of first."""
     return [
         (
             value.path,
@@ -109,7 +114,7 @@ def value_rows(calibrated: FolderCalibration) -> list[tuple[str, ...]]:
             " to ".join(shown(end, value.unit) for end in value.interval),
             si.percent(value.left),
         )
-        for value in sorted_values(calibrated)
+        for value in sorted(calibrated.calibration.values, key=lambda value: value.left)
     ]
 
 

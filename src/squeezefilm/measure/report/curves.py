@@ -112,8 +112,6 @@ def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
     body = section("What is compared", f"<p>{beside.FITTED}</p>")
     if len(compared.curves) > 1:
         rows = text_table("All curves", beside.TOTALS_HEAD, beside.total_rows(compared))
-        figure = beside.coverage_figure(compared)
-        files["coverage.png"] = style.png(figure)
         held = text_table(
             "Points in the default's intervals",
             beside.COVERAGE_HEAD,
@@ -122,7 +120,6 @@ def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
         body += section(
             "All curves", rows + bullets([beside.covered_words(compared), beside.SCORES]) + held
         )
-        body += picture_sections({"coverage": ("Coverage by finger or paper", figure)})
     for number, recording in enumerate(_recordings(compared), 1):
         told = recording.told
         figure = recording.figure()
@@ -159,9 +156,6 @@ def write_friction_docs(compared: FolderComparison, root: Path | None = None) ->
     write_whole(
         docs / "pictures" / "published-friction.png", style.png(beside.all_curves_figure(compared))
     )
-    write_whole(
-        docs / "pictures" / "published-coverage.png", style.png(beside.coverage_figure(compared))
-    )
     for detected in compared.detections:
         write_whole(
             docs / "pictures" / "published-thresholds.png",
@@ -178,7 +172,7 @@ def friction_markdown(compared: FolderComparison) -> str:
     lines += markdown_table((beside.TOTALS_HEAD, beside.total_rows(compared)))
     lines += ["", f"{beside.covered_words(compared)}. {beside.SCORES}", ""]
     lines += markdown_table((beside.COVERAGE_HEAD, beside.coverage_rows(compared)))
-    lines += ["", "![Predicted and observed coverage](../pictures/published-coverage.png)", ""]
+    lines += [""]
     for recording in _recordings(compared):
         how, *rest = recording.words
         lines += [f"## {recording.name.capitalize()}", "", f"{recording.told.source}. {how}.", ""]

@@ -10,7 +10,7 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.bar import BarConstants, bar_constants
-from squeezefilm.measure.fits.ceramic.constants import CeramicConstants, resonance_peaks
+from squeezefilm.measure.fits.ceramic.constants import DECISIVE, CeramicConstants, resonance_peaks
 from squeezefilm.measure.recordings.kinds import CeramicBar, ImpedanceSweep
 
 BAR = CeramicBar(12e-3, 3e-3, 1e-3, 7850.0)
@@ -19,18 +19,18 @@ S11, D31, EPS33 = 13.48e-12, -140e-12, 1400.0
 LOSSES = (0.011, 0.015, 0.02)
 
 
-def bar_sweep(noise: float = 0.0) -> ImpedanceSweep:
+def bar_sweep(noise: float = 0.0, frequency: np.ndarray = FREQUENCY) -> ImpedanceSweep:
     """The admittance of a bar, written apart from the fit's formula."""
     s, d, eps = (
         value * (1 - 1j * loss)
         for value, loss in zip((S11, D31, EPS33 * VACUUM_PERMITTIVITY), LOSSES, strict=True)
     )
-    omega = 2 * np.pi * FREQUENCY
+    omega = 2 * np.pi * frequency
     k2 = d**2 / (s * eps)
     x = omega * BAR.length / 2 / np.sqrt(1 / (BAR.density * s))
     y = 1j * omega * eps * BAR.length * BAR.width / BAR.thickness * (1 - k2 + k2 * np.tan(x) / x)
     white = np.random.default_rng(2).standard_normal((2, y.size))
-    return ImpedanceSweep(FREQUENCY, y * (1 + noise * (white[0] + 1j * white[1])))
+    return ImpedanceSweep(frequency, y * (1 + noise * (white[0] + 1j * white[1])))
 
 
 def test_its_constants_are_given_back() -> None:
@@ -45,6 +45,19 @@ def test_its_constants_are_given_back() -> None:
     assert found.coupling_31.value == pytest.approx(coupling, rel=1e-9)
     assert found.adequacy.adequate
     assert found.observations == ()
+
+
+@pytest.mark.parametrize("number", [2, 3])
+def test_a_higher_mode_is_taken_for_what_it_is(number: int) -> None:
+    """The formula has all modes; which was recorded is told by what ceramics are."""
+    band = (2 * number - 1) * np.linspace(124e3, 134e3, 301)
+    found = bar_constants(bar_sweep(0.002, band), BAR)
+    assert found.mode.number == number
+    assert found.mode.preference > DECISIVE
+    assert f"taken for mode {number}" in found.adequacy.sentence
+    assert found.compliance_11.value == pytest.approx(S11, rel=1e-3)
+    assert found.charge_coefficient_31.value == pytest.approx(D31, rel=0.02)
+    assert found.free_permittivity_33.value == pytest.approx(EPS33, rel=0.02)
 
 
 def test_intervals_hold_them_under_noise() -> None:

@@ -21,7 +21,7 @@ from squeezefilm.measure.fits.friction.friction_scores import ModelScore, TotalS
 from squeezefilm.measure.fits.friction.populations import PopulationComparison
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck, Refused
-from squeezefilm.measure.report.beside import coverage_figure, coverage_rows
+from squeezefilm.measure.report.beside import coverage_rows
 from squeezefilm.measure.report.curves import show_comparisons, write_comparisons
 from squeezefilm.measure.report.figures import recording_figure
 from squeezefilm.measure.report.fit_figures import fit_figure, modelled
@@ -266,7 +266,7 @@ def test_curves_are_shown_beside_all_models(tmp_path: Path) -> None:
     assert "licence: none needed" in text
     names = {one.name for one in tmp_path.iterdir()}
     pictures = {f"curve-{number}.png" for number in (1, 2, 3)}
-    assert names == {"coverage.png", "curves.json", "measured-curves.html"} | pictures
+    assert names == {"curves.json", "measured-curves.html"} | pictures
     summary = json.loads((tmp_path / "curves.json").read_text(encoding="utf-8"))
     assert summary["curves"][0]["interval"]["points_inside"] == 2
     assert summary["curves"][0]["models"][2]["rms_difference"] is None
@@ -285,6 +285,3 @@ def test_coverage_is_counted_by_unit_at_each_level() -> None:
     assert points == 4
     assert inside.tolist() == [0, 0, 0, 0, 2, 2, 4, 4, 4]
     assert coverage_rows(found) == [(CURVE.told.name, "4", "50 %", "100 %")]
-    (axes,) = coverage_figure(found).axes
-    assert axes.get_xlabel() == "level of the central interval (%)"
-    assert axes.containers[0].lines[0].get_ydata().tolist() == [0, 0, 0, 0, 50, 50, 100, 100, 100]

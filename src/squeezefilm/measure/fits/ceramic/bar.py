@@ -12,13 +12,19 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.constants import (
     CeramicConstants,
+    ceramic_prior,
     constants_of,
+    coupling_read,
+    permittivity_read,
+    recorded_mode,
     resonance_peaks,
 )
-from squeezefilm.measure.fits.complex_fit import fit_complex
+from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, fit_complex
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import CeramicBar, ImpedanceSweep
+
+_MODES = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +35,8 @@ class BarConstants(CeramicConstants):
 
 
 def bar_constants(sweep: ImpedanceSweep, bar: CeramicBar) -> BarConstants:
-    """Fit the length resonance of a free bar, with all losses.
+    """Fit one or more length resonances of a free bar, with all losses; which of the lowest four
+    the most conductance is of is found and said (`recorded_mode`).
 
     Y = iω (l w/t) [ε33T (1 − k31²) + ε33T k31² tan X/X], X = (ωl/2) √(ρ s11E), k31² = d31²/(s11E
     ε33T), all constants complex (IEEE standard on piezoelectricity 176-1987, section 6.4.1; losses
@@ -45,9 +52,15 @@ def bar_constants(sweep: ImpedanceSweep, bar: CeramicBar) -> BarConstants:
     `fit_impedance` does.
     """
     require_passive(sweep)
-    start = _start(sweep, bar)
+    starts = [_start(sweep, bar, number) for number in range(1, _MODES + 1)]
     omega = 2 * np.pi * sweep.frequency
-    fit = fit_complex(lambda p: _curve(bar, p, omega), start, sweep.admittance)
+
+    def fitted_as(number: int) -> ComplexFit:
+        return fit_complex(lambda p: _curve(bar, p, omega), starts[number - 1], sweep.admittance)
+
+    known, at = ceramic_prior(of_class=True), [0, 2, 3, 4, 5, 6]
+    prior = Prior(known.mean[at], known.spread[at])
+    fit, mode = recorded_mode(starts, fitted_as, prior)
     curve = _curve(bar, fit.parameters, omega)[0]
 
     def coupling(p: si.FloatArray) -> float:
@@ -55,20 +68,18 @@ def bar_constants(sweep: ImpedanceSweep, bar: CeramicBar) -> BarConstants:
 
     return BarConstants(
         coupling_31=fit.estimate(coupling, "1"),
-        **constants_of(fit, sweep, curve, (0, 1, 2, 3, 4, 5), "The formula of a bar"),
+        **constants_of(fit, sweep, curve, (0, 1, 2, 3, 4, 5), "The formula of a bar", mode),
     )
 
 
-def _start(sweep: ImpedanceSweep, bar: CeramicBar) -> si.FloatArray:
-    """ln s11, ln |d31|, ln ε33, and the losses of the three, read off the sweep."""
+def _start(sweep: ImpedanceSweep, bar: CeramicBar, number: int) -> si.FloatArray:
+    """ln s11, ln |d31|, ln ε33, and the losses of the three, read off the sweep as if it were of
+    that mode, where X is an odd multiple of π/2."""
     peaks = resonance_peaks(sweep)
-    series, parallel = peaks.conductance_frequency, peaks.resistance_frequency
-    compliance = 1 / (bar.density * (2 * bar.length * series) ** 2)
-    # IEEE 176: k²/(1 − k²) = (π/2)(fp/fs) tan((π/2)(fp − fs)/fs).
-    ratio = (
-        math.pi / 2 * parallel / series * math.tan(math.pi / 2 * min(parallel / series - 1, 0.9))
-    )
-    square = ratio / (1 + ratio)
+    series = peaks.conductance_frequency
+    compliance = ((2 * number - 1) / (2 * bar.length * series)) ** 2 / bar.density
+    shares = [8 / ((2 * k - 1) * math.pi) ** 2 for k in range(1, number + 1)]
+    square = coupling_read(peaks, shares, number)
     low = slice(0, max(3, sweep.frequency.size // 20))
     capacitance = float(np.median(sweep.admittance.imag[low] / (2 * np.pi * sweep.frequency[low])))
     if capacitance <= 0:
@@ -77,9 +88,9 @@ def _start(sweep: ImpedanceSweep, bar: CeramicBar) -> si.FloatArray:
             f"{0.95 * series / 1e3:.4g} kHz",
             quantity="admittance",
         )
-    unit = VACUUM_PERMITTIVITY * bar.length * bar.width / bar.thickness
-    x = math.pi / 2 * float(sweep.frequency[low].mean()) / series
-    permittivity = capacitance / unit / abs(1 - square + square * math.tan(x) / x)
+    x = (number - 0.5) * math.pi * sweep.frequency / series * complex(1, -0.006)
+    geometry = bar.length * bar.width / bar.thickness
+    permittivity = permittivity_read(sweep, square, np.tan(x) / x, geometry)
     charge = math.sqrt(square * compliance * permittivity * VACUUM_PERMITTIVITY)
     return np.array(
         [math.log(compliance), math.log(charge), math.log(permittivity), 0.012, 0.01, 0.015]
