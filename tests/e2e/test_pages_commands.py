@@ -43,11 +43,13 @@ WITH_COMMANDS = [
 # Pages whose commands take more than a minute where the machine is slow: as they stand, at night.
 LONG = (
     "design-a-plate",
+    "glue-tolerance",
     "have-it-built",
     "how-many-participants",
     "sweep",
     "thickness-for-a-frequency",
     "threshold-on-your-plate",
+    "your-own-plate",
 )
 FEW = {
     "analyze": ("--samples", "8"),

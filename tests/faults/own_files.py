@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-import subprocess
-import sys
+import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -125,16 +124,8 @@ def _used_study(folder: Path) -> None:
 
 def _killed_study(folder: Path) -> None:
     """With all that was written in the log still: what a program leaves that was killed."""
-    subprocess.run(
-        [
-            sys.executable, "-c",
-            "import os; from pathlib import Path\n"
-            "from tests.unit.study.scripted import gratings, run_through\n"
-            f"run_through(Path({str(folder / 'a.sqlite')!r}), gratings(), 1)\n"
-            "os._exit(0)",
-        ],
-        check=True, env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
-    )  # fmt: skip
+    with run_through(folder.with_name("alive") / "a.sqlite", gratings(), 1) as alive:
+        shutil.copytree(alive.path.parent, folder, dirs_exist_ok=True)
 
 
 def _deleted(folder: Path) -> None:

@@ -12,7 +12,10 @@ def library(tmp_path_factory: pytest.TempPathFactory) -> Library:
     return Library(tmp_path_factory.mktemp("firmware"))
 
 
-@pytest.fixture(scope="session", params=["plain", "sanitized"])
+# The same C; what has no sanitizer runs in CI.
+@pytest.fixture(
+    scope="session", params=[pytest.param("plain", marks=pytest.mark.slow), "sanitized"]
+)
 def firmware(
     request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
 ) -> Library | Sanitized:

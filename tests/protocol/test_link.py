@@ -243,7 +243,7 @@ def test_sessions_over_a_bad_line_both_ways() -> None:
     assert min(total.values()) > 0, total
 
 
-@pytest.mark.parametrize("drift", [-100e-6, 0.0, 100e-6])
+@pytest.mark.parametrize("drift", [-100e-6, 100e-6])
 def test_the_devices_clock_is_known_within_half_a_round_trip(drift: float) -> None:
     wire, link, host = made(drift=drift, jitter=2_000, boot=2**32 - 1_500_000)
     host.report(5e-3)

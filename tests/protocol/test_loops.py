@@ -25,13 +25,14 @@ from squeezefilm.instruments.control.plate_loop import LoopGains, first_state, p
 
 from .arm import Arm, instruction_counter
 from .builds import LOOPS, STRICT, build, tool
-from .test_firmware_arm import FLOATING, MOST_INSTRUCTIONS
+from .test_firmware_arm import CORES, FLOATING, MOST_INSTRUCTIONS
 
 STEP = 1e-4
 Integers = NDArray[np.int64]
 
 
-@pytest.fixture(scope="module", params=["plain", "sanitized"])
+# The same C; what has no sanitizer runs in CI.
+@pytest.fixture(scope="module", params=[pytest.param("plain", marks=pytest.mark.slow), "sanitized"])
 def loops(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A program that reads gains and steps and writes states and commands."""
     folder = tmp_path_factory.mktemp("loops")
@@ -157,7 +158,7 @@ def test_the_friction_loop_gives_the_same_integers_in_c(tmp_path: Path) -> None:
     assert all(seen[flags] > 20 for flags in range(4)), seen
 
 
-@pytest.mark.parametrize("core", list(MOST_INSTRUCTIONS))
+@pytest.mark.parametrize("core", CORES)
 def test_the_loops_on_arm_are_the_same_and_short(core: str, tmp_path: Path) -> None:
     """On an emulated core, never on a board; the tick of the state machine takes its part too,
     which `test_firmware_arm` counts."""

@@ -13,7 +13,14 @@ import pytest
 from .measured_designs import DESIGNS, coverage
 
 
-@pytest.mark.parametrize("design", [name for name in DESIGNS if name.endswith(", noise")])
+@pytest.mark.parametrize(
+    "design",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] * name.startswith("voltage sweeps"))
+        for name in DESIGNS
+        if name.endswith(", noise")
+    ],
+)
 def test_intervals_hold_the_truth(design: str) -> None:
     runs = 12
     for name, found in coverage(design, runs).items():

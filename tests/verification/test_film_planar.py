@@ -64,6 +64,7 @@ def test_small_motion_of_a_rectangle_agrees_with_blech(squeeze_number, aspect):
     assert film.damping_relative == pytest.approx(damping, rel=3e-4)
 
 
+@pytest.mark.slow
 def test_square_crossover():
     film = plane("rectangle", 21.63490, 1e-3, 1.0, tolerance=1e-5)
     assert film.stiffness_relative == pytest.approx(film.damping_relative, rel=1e-4)
@@ -255,7 +256,9 @@ def test_ridges_across_a_finger_pad():
     assert fine.over_pressure_error <= 4e-3 * fine.over_pressure
 
 
-@pytest.mark.parametrize("squeeze_number", [1.0, 10.0, 100.0])
+@pytest.mark.parametrize(
+    "squeeze_number", [10.0, *(pytest.param(one, marks=pytest.mark.slow) for one in (1.0, 100.0))]
+)
 def test_the_cut_ellipse_agrees_with_the_fitted_one(squeeze_number):
     fitted = solve_planar("disc", PlanarGap(0.5), squeeze_number, tolerance=1e-3)
     x = graded_line(24, 1.0, squeeze_number, mirror=False)

@@ -92,7 +92,9 @@ def test_the_two_data_sets_give_the_reference_constants(
     assert constants.clamped_permittivity_33 == pytest.approx(1381.80, rel=5e-5)
 
 
-@pytest.mark.parametrize("data_set", ["from_d31", "printed_e31"])
+@pytest.mark.parametrize(
+    "data_set", ["from_d31", pytest.param("printed_e31", marks=pytest.mark.slow)]
+)
 def test_working_mode_of_the_paper_s_plate_is_within_a_thousandth(data_set: str) -> None:
     modes = solve_modes(monomorph(data_set), mode=(8, 0))
     assert modes.labels == ((8, 0),)

@@ -7,7 +7,7 @@ import types
 import typing
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol
 
 __all__ = ["Above", "AtLeast", "AtMost", "Below", "Limit", "bounds_of"]
 
@@ -41,7 +41,6 @@ _WORDS = {Above: "above", AtLeast: "at_least", Below: "below", AtMost: "at_most"
 """The bounds as `require` calls them."""
 
 
-@runtime_checkable
 class Limit(Protocol):
     """In an annotation: whatever refuses what is outside of it in its own words."""
 
@@ -53,7 +52,7 @@ def bounds_of(hint: Any) -> tuple[dict[str, Any], tuple[Limit, ...]]:
     """The bounds in an annotation, as `require` takes them, and its other limits."""
     found = list(_beside(hint))
     bounds = {_WORDS[type(one)]: float(one.value) for one in found if isinstance(one, _Bound)}
-    return bounds, tuple(one for one in found if isinstance(one, Limit))
+    return bounds, tuple(one for one in found if hasattr(one, "refuse_outside"))
 
 
 def _beside(hint: Any) -> Iterator[Any]:

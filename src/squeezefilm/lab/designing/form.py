@@ -6,6 +6,7 @@ Edits change the text with tomlkit, so that comments, order and sources stay as 
 from __future__ import annotations
 
 import dataclasses
+import tomllib
 import types
 import typing
 from typing import Any, Literal, Union
@@ -79,7 +80,7 @@ def form(text: str) -> list[dict[str, Any]]:
 
 def _material_rows(text: str, display: Display) -> list[dict[str, Any]]:
     """A row for each part whose values the library of materials may give."""
-    actuator = tomlkit.parse(text).unwrap().get("actuator", {})
+    actuator = tomllib.loads(text).get("actuator", {})
     rows = []
     for kind in presets.materials.KINDS:
         if getattr(display.actuator, kind, None) is None:

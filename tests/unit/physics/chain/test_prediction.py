@@ -265,7 +265,7 @@ def _law(stator: Display, surface: str = "adhesive", **changes: object) -> Frict
     return friction_law(stator, 9.35e-3, 40.5e3, **arguments)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("surface", ["adhesive", "bare"])
+@pytest.mark.parametrize("surface", ["adhesive", pytest.param("bare", marks=pytest.mark.slow)])
 @pytest.mark.parametrize(("model", "error"), [("paper2008", 1e-4), ("partial-levitation", 1e-3)])
 def test_the_tabulated_law_is_within_its_stated_error(
     stator: Display, surface: str, model: str, error: float

@@ -102,7 +102,11 @@ def test_nobody_feels_anything_and_answers_are_guesses() -> None:
     assert main.correct.mean() == pytest.approx(0.5, abs=0.03)
 
 
-@pytest.mark.parametrize("design", [PERIODS, ALIKE, NUMBERS], ids=lambda one: one.task)
+@pytest.mark.parametrize(
+    "design",
+    [PERIODS, pytest.param(ALIKE, marks=pytest.mark.slow), NUMBERS],
+    ids=lambda one: one.task,
+)
 def test_people_do_not_depend_on_how_many_there_are(design: StudyDesign) -> None:
     few = simulate_judgements(design, EXACT, 3, 4, tables(design, 1.5))
     many = simulate_judgements(design, EXACT, 70, 4, tables(design, 1.5))

@@ -91,7 +91,13 @@ def require_apart(drawing: Drawing) -> None:
         assert apart, (a[0], b[0])
 
 
-@pytest.mark.parametrize("name", sf.display_names())
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=[pytest.mark.slow] * name.endswith("glass"))
+        for name in sf.display_names()
+    ],
+)
 def test_every_preset_has_a_sound_drawing_of_its_own_sizes(preset: Preset, name: str) -> None:
     made = preset(name)
     drawing = drawing_sheet(made)
