@@ -120,7 +120,10 @@ def test_a_simulated_square_keeps_what_the_closed_form_says(
 
 
 @pytest.mark.parametrize("braking", [False, True])
-@pytest.mark.parametrize("taus", [(1.0, 1.0), (1.0, 2.0), (3.0, 1.0)])
+@pytest.mark.parametrize(
+    "taus",
+    [(1.0, 2.0), *(pytest.param(one, marks=pytest.mark.slow) for one in ((1.0, 1.0), (3.0, 1.0)))],
+)
 def test_the_previewed_plan_is_the_least_squares_of_a_general_solver(
     braking: bool, taus: tuple[float, float]
 ) -> None:

@@ -55,7 +55,7 @@ def change(law: FrictionLaw, **more: float) -> float:
     return abs(after - before) / min(before, after)
 
 
-@pytest.mark.parametrize("speed", [0.005, 0.08])
+@pytest.mark.parametrize("speed", [0.005, pytest.param(0.08, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("quantity", ["force", "place", "length"])
 @pytest.mark.parametrize("display", DISPLAYS)
 def test_what_is_one_per_cent_apart_has_friction_within_two(

@@ -148,7 +148,9 @@ def simulated(model: MotionModel, times: FloatArray, count: int, seed: int) -> F
 
 
 @pytest.mark.parametrize("rate", RATES)
-@pytest.mark.parametrize("name", ["white acceleration", "white jerk"])
+@pytest.mark.parametrize(
+    "name", ["white acceleration", pytest.param("white jerk", marks=pytest.mark.slow)]
+)
 def test_rms_error_is_the_kalman_bound_behind_a_latency_of_20_ms(name: str, rate: float) -> None:
     model = MODELS[name]
     sensor = SensorModel("tested", rate, LATENCY, noise=5e-5)

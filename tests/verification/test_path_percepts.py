@@ -61,7 +61,9 @@ def test_the_simulated_stroke_as_a_path_is_todays_percept(rate: float, within: f
     assert found.along.mean_speed == pytest.approx(FINGER.speed, rel=1e-3)
 
 
-@pytest.mark.parametrize("degrees", [15, 30, 45, 60])
+@pytest.mark.parametrize(
+    "degrees", [30, 60, *(pytest.param(one, marks=pytest.mark.slow) for one in (15, 45))]
+)
 def test_a_slanted_path_feels_the_period_over_the_cosine(degrees: int) -> None:
     found = _felt(math.radians(degrees))
     one = found.along if degrees <= 45 else found.across

@@ -115,7 +115,7 @@ def test_thin_disc_tends_to_kirchhoff(n: int, label: str, low: float, high: floa
     assert abs(2 * gaps[2] - gaps[1]) < 4e-4
 
 
-@pytest.mark.parametrize("n", [2, 3, 5])
+@pytest.mark.parametrize("n", [2, *(pytest.param(n, marks=pytest.mark.slow) for n in (3, 5))])
 def test_thin_annulus_tends_to_kirchhoff(n: int) -> None:
     root = _kirchhoff_root(n, 0.3, 0.5, 0.8 * n, 2.2 * n)
     gaps = []

@@ -66,7 +66,7 @@ def test_shapes_are_the_fields_own() -> None:
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-@pytest.mark.parametrize("guess_rate", [0.5, None])
+@pytest.mark.parametrize("guess_rate", [pytest.param(0.5, marks=pytest.mark.slow), None])
 def test_the_fit_is_the_maximum_that_scipy_finds(shape: Shape, guess_rate: float | None) -> None:
     axis = axis_of(shape)
     free = 3 if guess_rate is not None else 4

@@ -133,7 +133,7 @@ def decades(t: FloatArray) -> FloatArray:
     return np.asarray(10 ** (-2 + 1.5 * np.sin(2 * np.pi * 90 * t)))
 
 
-@pytest.mark.parametrize("damping", [0.1, 1.0])
+@pytest.mark.parametrize("damping", [0.1, pytest.param(1.0, marks=pytest.mark.slow)])
 @pytest.mark.parametrize(
     ("least", "saturation"), [(0.1, lambda t: 0.2), (0.0, lambda t: 0.2), (0.2, decades)]
 )

@@ -122,7 +122,9 @@ def stepped(period: float, speed: float, envelope: DrivenEnvelope, way: str) -> 
 
 
 @pytest.mark.parametrize("way", ["none", "inverse"])
-@pytest.mark.parametrize("speed", [0.05, 0.15, 0.4])
+@pytest.mark.parametrize(
+    "speed", [0.15, *(pytest.param(one, marks=pytest.mark.slow) for one in (0.05, 0.4))]
+)
 def test_the_fundamental_is_that_of_the_cycle_stepped_through(speed: float, way: Way) -> None:
     found = square_fundamental_compensated(2e-3, speed, BRAKED, LOW, HIGH, way)
     assert found == pytest.approx(stepped(2e-3, speed, BRAKED, way), rel=1e-3)
