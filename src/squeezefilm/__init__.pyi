@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from squeezefilm.physics.chain.pad_place import FacePlace
     from squeezefilm.physics.chain.prediction import Prediction
     from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
-    from squeezefilm.physics.chain.wanted_voltage import WantedFriction
+    from squeezefilm.physics.chain.wanted_voltage import WantedFriction, WantedVoltage
     from squeezefilm.physics.display import Display, NamedDisplay
     from squeezefilm.physics.display import load_display as load_display
     from squeezefilm.physics.display import save_display as save_display
@@ -149,7 +149,7 @@ if TYPE_CHECKING:
         speed: MetrePerSecond | str | None = ...,
         place: FacePlace | str | Path | None = ...,
         position: Metre | str | None = ...,
-    ) -> tuple[Volt, Metre]:
+    ) -> WantedVoltage:
         """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m)."""
     def analyze(
         display: NamedDisplay | str | Path,

@@ -62,12 +62,12 @@ def test_the_heavy_snippets_run_too(
     _run(page, tmp_path, monkeypatch, heavy=True)
 
 
-def test_tasks_in_python_are_each_under_ten_lines_and_with_one_import_of_ours() -> None:
+def test_thirty_tasks_are_each_five_lines_at_most_with_one_import_of_ours() -> None:
     page = ROOT / "docs" / "how-to" / "front-door.md"
     codes = [code for _, _, code in _snippets(page)]
-    assert len(codes) == 12
+    assert len(codes) == 30
     for code in codes:
-        assert len(code.strip().splitlines()) < 10, textwrap.shorten(code, 80)
+        assert len(code.strip().splitlines()) <= 5, textwrap.shorten(code, 80)
     ours = [line for code in codes for line in code.splitlines() if "import squeezefilm" in line]
     assert ours == ["import squeezefilm as sf"]
     assert not any("from squeezefilm" in code for code in codes)

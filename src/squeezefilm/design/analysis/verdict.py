@@ -232,6 +232,7 @@ def _of_needed_amplitude(p: Prediction, own: FrictionCurve) -> Iterator[Finding]
             "limit",
             f"{by} µ′/µ is {p.relative_friction:.2f} as described; {ask} would bring it to "
             f"{PAPER_CRITERION:.2f}.",
+            "friction",
         )
 
 

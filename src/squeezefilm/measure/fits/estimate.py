@@ -6,14 +6,15 @@ from __future__ import annotations
 import functools
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, ParamSpec, Protocol, TypeVar
+from typing import Annotated, ClassVar, ParamSpec, Protocol, TypeVar
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.results import Result
 
 LEVEL: si.Dimensionless = 0.95
 """The level of every interval of a fit."""
@@ -29,6 +30,11 @@ class Estimate:
     unit: str
     level: si.Dimensionless = LEVEL
 
+    def __str__(self) -> str:
+        value, error = self.value, self.standard_error
+        unit = si.Unit(self.unit)
+        return f"{si.format_quantity(value, unit, 6)} ± {si.format_quantity(error, unit, 2)}"
+
 
 @dataclass(frozen=True)
 class Adequacy:
@@ -43,6 +49,17 @@ class Adequacy:
     noise: si.Dimensionless
     where: str
     sentence: str
+
+
+class FitResult(Result):
+    """A fit's result: its estimates and whether it is adequate are what a person looks for."""
+
+    _shown: ClassVar[str] = "adequacy.sentence"
+
+    def _told(self) -> Iterator[tuple[str, str]]:
+        estimates = ((name, value) for name, value in vars(self).items())
+        yield from ((name, str(e)) for name, e in estimates if isinstance(e, Estimate))
+        yield from super()._told()
 
 
 @si.checked_numbers

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
@@ -23,6 +23,14 @@ WantedFriction = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
 """A µ′/µ that is asked for."""
 
 
+class WantedVoltage(NamedTuple):
+    """Voltage (V, zero-to-peak) that a friction takes, and the amplitude that it gives: zero-to-
+    peak, at the antinode with the finger on (m)."""
+
+    voltage: si.Volt
+    vibration_amplitude: si.Metre
+
+
 @reads_text
 @si.checked_numbers
 def voltage_for_friction(
@@ -37,7 +45,7 @@ def voltage_for_friction(
     speed: si.MetrePerSecond | None = None,
     place: FacePlace | None = None,
     position: si.Metre | None = None,
-) -> tuple[si.Volt, si.Metre]:
+) -> WantedVoltage:
     """The voltage (V, zero-to-peak) that brings µ′/µ down to a wanted value, and its amplitude (m).
 
     The inverse of `predict`, with the pad where that has it, the finger's damping and detuning
@@ -68,11 +76,11 @@ def voltage_for_friction(
 
 def _needed(
     mode: WorkingMode, law: FrictionLaw, relative_friction: si.Dimensionless
-) -> tuple[si.Volt, si.Metre]:
+) -> WantedVoltage:
     """Voltage (V) and the best antinode's amplitude (m) for a µ′/µ of a law."""
     amplitude = law.amplitude_for(relative_friction)
     if amplitude == 0:
-        return 0.0, 0.0
+        return WantedVoltage(0.0, 0.0)
     volts = amplitude / (amplitude_per_volt(mode, law.frequency) * kept_at(mode, law, amplitude))
     if volts > HIGHEST_VOLTAGE:
         raise UnreachableError(
@@ -80,4 +88,4 @@ def _needed(
             f"{volts:.4g} V; a drive may have {HIGHEST_VOLTAGE:.4g} V. Drive at the resonance, ask "
             "for less, or take a plate with more amplitude per volt"
         )
-    return float(volts), amplitude
+    return WantedVoltage(float(volts), amplitude)

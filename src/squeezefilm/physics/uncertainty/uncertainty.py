@@ -14,7 +14,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError, SqueezefilmError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.core.results import to_json
+from squeezefilm.core.results import Interval, to_json
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.drawn import KeptDraws, evaluate
@@ -64,7 +64,7 @@ class UncertainFriction:
 
     nominal: si.Dimensionless
     median: si.Dimensionless
-    interval: tuple[si.Dimensionless, si.Dimensionless]
+    interval: Interval
     level: si.Dimensionless
     samples: si.DimensionlessArray
     amplitudes: si.MetreArray
@@ -74,9 +74,9 @@ class UncertainFriction:
     refused: Refusals
     seed: int
     model: str
-    amplitude_interval: tuple[si.Metre, si.Metre] | None = None
+    amplitude_interval: Interval | None = None
     power: si.Watt | None = None
-    power_interval: tuple[si.Watt, si.Watt] | None = None
+    power_interval: Interval | None = None
 
     @property
     def sentence(self) -> str:
@@ -180,7 +180,7 @@ def uncertain_friction(
     return UncertainFriction(
         nominal=_nominal(mixture),
         median=middle,
-        interval=(low, high),
+        interval=Interval(low, high),
         level=LEVEL,
         samples=friction[known],
         amplitudes=drawn.amplitude[known],
@@ -281,10 +281,10 @@ def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:
     return points if joint is None else joint.picked(mixture.paths, points)
 
 
-def _interval(values: si.FloatArray) -> tuple[float, float] | None:
+def _interval(values: si.FloatArray) -> Interval | None:
     """Both ends of an interval; None where refused draws leave no upper one."""
     low, _, high = ends(values)
-    return (low, high) if np.isfinite(high) else None
+    return Interval(low, high) if np.isfinite(high) else None
 
 
 def _nominal(mixture: Mixture) -> float:

@@ -14,8 +14,8 @@ from scipy.optimize import brentq
 from scipy.special import ndtr, ndtri
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.results import Interval
 from squeezefilm.study.psychometric.estimate import holding
-from squeezefilm.study.psychometric.fit import Interval
 
 
 def _require_proportion(name: str, value: si.Dimensionless) -> None:
@@ -154,7 +154,7 @@ def sensitivity(
     values = np.array([of(float(a), float(b)).d_prime for a, b in zip(h, f, strict=True)])
     ends = np.quantile(values, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
     low, high = holding(point.d_prime, *ends)
-    return SensitivityInterval(point, (float(low), float(high)), level)
+    return SensitivityInterval(point, Interval(float(low), float(high)), level)
 
 
 def _within(rates: si.FloatArray) -> si.FloatArray:

@@ -13,7 +13,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.results import Result, to_json
+from squeezefilm.core.results import Interval, Result, to_json
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.bootstrap import (
     PenalisedLikelihood,
@@ -37,7 +37,6 @@ from squeezefilm.study.psychometric.posterior import (
     grid_posterior,
 )
 
-Interval = tuple[float, float]
 # Answers fall where fewer guessers than this fall as clearly: a guesser is rarely told so.
 _FALLING = 1e-3
 
@@ -231,10 +230,10 @@ def falling_probability(
     return float(ndtr(float(away @ (positive - trials * share)) / np.sqrt(spread)))
 
 
-def _opened(function: PsychometricFunction, name: str, interval: Interval) -> Interval:
+def _opened(function: PsychometricFunction, name: str, interval: tuple[float, float]) -> Interval:
     """The interval of a parameter of a function, opened to its value there."""
     low, high = holding(getattr(function, name), *interval)
-    return float(low), float(high)
+    return Interval(float(low), float(high))
 
 
 def _penalised(answered: Answered) -> PenalisedLikelihood:

@@ -18,7 +18,7 @@ from squeezefilm.measure.fits.circuit.choice import (
     sweep_motion,
 )
 from squeezefilm.measure.fits.complex_fit import ComplexFit, sweep_adequacy
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, FitResult, Observation
 from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
@@ -53,8 +53,8 @@ class Softening:
     loss_rise: Estimate
 
 
-@dataclass(frozen=True, eq=False)
-class ImpedanceFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class ImpedanceFit(FitResult):
     """A circuit fitted to a sweep: `static_capacitance` C0 (F) with its `loss_tangent`, and
     `branches` rising in frequency, of which `main` is the number of the strongest.
 

@@ -18,6 +18,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import (
     Adequacy,
     Estimate,
+    FitResult,
     Observation,
     guarded_fit,
     interval_around,
@@ -41,8 +42,8 @@ _FLOATING = 0.03
 _CONFOUNDED = 3.0
 
 
-@dataclass(frozen=True, eq=False)
-class FrictionBenchFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class FrictionBenchFit(FitResult):
     """µ of a finger by amplitude, at the bench's usual `speed` (m/s) and `normal_force` (N).
 
     `amplitudes` (m) are the levels; `coefficients` µ at each, as it was in the middle of the

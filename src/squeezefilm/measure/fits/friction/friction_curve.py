@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import to_json
-from squeezefilm.measure.fits.estimate import Adequacy, Observation
+from squeezefilm.measure.fits.estimate import Adequacy, FitResult, Observation
 from squeezefilm.measure.fits.friction.friction_scores import (
     SHAPES,
     ModelScore,
@@ -34,8 +34,8 @@ LEVELS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, LEVEL)
 """Of the central intervals of which the coverage is counted, that of `FrictionBand` last."""
 
 
-@dataclass(frozen=True, eq=False)
-class CurveComparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class CurveComparison(FitResult):
     """A measured curve beside all models and shapes, of which its friction at rest alone was
     fitted to it (of `SHAPES` an amplitude too).
 
@@ -59,6 +59,7 @@ class CurveComparison:
     band: FrictionBand
     adequacy: Adequacy
     inside_levels: NDArray[np.bool_]
+    _shown: ClassVar[str] = "display adequacy.sentence"
 
     @property
     def inside(self) -> tuple[bool | None, ...]:

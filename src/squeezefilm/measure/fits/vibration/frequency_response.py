@@ -12,6 +12,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import (
     Adequacy,
     Estimate,
+    FitResult,
     Observation,
     guarded_fit,
     inverse_of,
@@ -111,8 +112,8 @@ class FittedMode:
     phase: Estimate
 
 
-@dataclass(frozen=True, eq=False)
-class FrequencyResponseFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class FrequencyResponseFit(FitResult):
     """The modes of a response, the strongest first, and what else is in it.
 
     `model` (m/V, complex) is what was fitted, `residual` what it leaves, at the recording's

@@ -10,7 +10,13 @@ from scipy.interpolate import RectBivariateSpline
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation, guarded_fit
+from squeezefilm.measure.fits.estimate import (
+    Adequacy,
+    Estimate,
+    FitResult,
+    Observation,
+    guarded_fit,
+)
 from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.vibration.driven_shape import REST, DrivenShape
@@ -26,8 +32,8 @@ _FEWEST_POINTS = 12
 _ALIKE = 0.98
 
 
-@dataclass(frozen=True, eq=False)
-class GridScanFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class GridScanFit(FitResult):
     """A scan as a sum of shapes, the one that it is most alike named `label`.
 
     `likeness` is the modal assurance criterion of the scan with every shape: 1 for the same, 0 for

@@ -9,7 +9,13 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation, guarded_fit
+from squeezefilm.measure.fits.estimate import (
+    Adequacy,
+    Estimate,
+    FitResult,
+    Observation,
+    guarded_fit,
+)
 from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
@@ -26,8 +32,8 @@ _DENSE = 24
 _DIP = 0.4
 
 
-@dataclass(frozen=True, eq=False)
-class LineScanFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class LineScanFit(FitResult):
     """The wave along a line at one frequency.
 
     `half_wavelength` (m); `nodal_lines` where the wave's size is least (m), one for each;

@@ -9,7 +9,13 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation, guarded_fit
+from squeezefilm.measure.fits.estimate import (
+    Adequacy,
+    Estimate,
+    FitResult,
+    Observation,
+    guarded_fit,
+)
 from squeezefilm.measure.fits.least_squares import fit_separable
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.vibration.frequency_response import modal_circle
@@ -30,8 +36,8 @@ _WELL_RESOLVED = 20.0
 _OVERLAP_COST = 1.056
 
 
-@dataclass(frozen=True, eq=False)
-class RawSignalsFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class RawSignalsFit(FitResult):
     """The response between two time signals.
 
     `response` (m/V, with its coherence) at the frequencies that were driven is to be fitted as any

@@ -12,6 +12,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import (
     Adequacy,
     Estimate,
+    FitResult,
     Observation,
     guarded_fit,
     inverse_of,
@@ -36,8 +37,8 @@ _CHANCE = 1e-3
 _KEPT = 2e-3
 
 
-@dataclass(frozen=True, eq=False)
-class RingDownFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class RingDownFit(FitResult):
     """A decay: frequency (Hz) and Q of what rings longest, its amplitude (m) when the recording
     begins (all lengths in the recording's unit, where it holds another signal).
 

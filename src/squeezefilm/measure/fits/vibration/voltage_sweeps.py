@@ -14,6 +14,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import (
     Adequacy,
     Estimate,
+    FitResult,
     Observation,
     guarded_fit,
     inverse_of,
@@ -33,8 +34,8 @@ _FEWEST_POINTS = 30
 _FOLD = 0.15
 
 
-@dataclass(frozen=True, eq=False)
-class VoltageSweepsFit:
+@dataclass(frozen=True, eq=False, repr=False)
+class VoltageSweepsFit(FitResult):
     """A resonance whose frequency and losses depend on the amplitude a (m, zero to peak).
 
     f = f0 (1 + `backbone` a²) by the law "quadratic" (1/m²), f0 (1 + `backbone` a) by "linear"
