@@ -81,7 +81,7 @@ def test_while_it_computes(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("jobs", [pytest.param(1, marks=pytest.mark.nightly), 2])
 def test_while_it_searches(tmp_path: Path, jobs: int) -> None:
     text = resolve_requirements("biet2008-plate").read_text(encoding="utf-8")
     process = begun(tmp_path)

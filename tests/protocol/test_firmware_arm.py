@@ -65,11 +65,13 @@ def test_adversarial_streams_on_arm(arm: Arm) -> None:
     check(arm, noise(9, 2_000))
 
 
-@pytest.mark.slow
-def test_the_device_check_passes_whole_three_times_in_a_row(arm: Arm) -> None:
+@pytest.mark.parametrize(
+    "times", [pytest.param(1, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.nightly)]
+)
+def test_the_device_check_passes_whole_so_often_in_a_row(arm: Arm, times: int) -> None:
     """On the emulated core's own clock: watchdog, limits and stop as Arm code has them."""
     machine = ArmMachine(arm, astuple(DeviceLimits()), 100)
-    for attempt in range(3 if arm.core == "cortex-m3" else 1):
+    for attempt in range(times):
         check = checked(machine)  # type: ignore[arg-type]
         assert check.passed, (attempt, failed(check))
 

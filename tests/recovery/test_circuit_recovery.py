@@ -23,10 +23,11 @@ def test_a_sweep_with_little_noise_gives_back_what_it_was_made_of() -> None:
         assert estimate.value == pytest.approx(true, rel=0.01), name
 
 
-@pytest.mark.slow
+@pytest.mark.parametrize(
+    "runs", [pytest.param(8, marks=pytest.mark.slow), pytest.param(40, marks=pytest.mark.nightly)]
+)
 @pytest.mark.parametrize("name", sorted(KINDS))
-def test_intervals_hold_the_truth(name: str) -> None:
-    runs = 8 if name == "double modes" else 40
+def test_intervals_hold_the_truth(name: str, runs: int) -> None:
     held, failed = coverage(KINDS[name], runs, seed=7)
     assert failed == 0
     for quantity, one in held.items():

@@ -142,7 +142,7 @@ def test_planned_power_is_that_of_studies_done_one_by_one(
     assert asked == pytest.approx(done, abs=0.05)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("task", PAIRS)
 def test_pairs_felt_alike_and_not_of_a_few_studies(
     task: str, monkeypatch: pytest.MonkeyPatch

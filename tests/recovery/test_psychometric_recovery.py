@@ -24,7 +24,7 @@ from .psychometric_designs import (
 )
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", [key for key in RECOVERIES if "constant" in key])
 def test_posterior_intervals_hold_the_truth(name: str) -> None:
     runs = 200
@@ -56,7 +56,7 @@ def _drawn_from_the_prior(runs: int, trials: int) -> dict[str, float]:
     return {name: count / runs for name, count in held.items()}
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_posteriors_are_calibrated_after_an_adaptive_run() -> None:
     runs = 100
     for name, share in _drawn_from_the_prior(runs, trials=40).items():

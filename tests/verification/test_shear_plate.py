@@ -214,8 +214,13 @@ def test_a_bare_plate_has_the_labels_that_analysis_gives_it() -> None:
             assert low.frequency < high.frequency, (low.label, high.label)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    "seed",
+    [
+        pytest.param(0, marks=pytest.mark.slow),
+        *(pytest.param(seed, marks=pytest.mark.nightly) for seed in (1, 2, 3)),
+    ],
+)
 def test_every_random_glass_with_edge_strips_has_its_working_mode(seed: int) -> None:
     """As a design search draws and screens them: the mode is there, within 10 % of the beam's."""
     draws = np.random.default_rng(seed)

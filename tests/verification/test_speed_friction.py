@@ -255,9 +255,13 @@ def stiff_solution(
     return np.array(answer)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("edge", [0.0, 6.0])
-@pytest.mark.parametrize("saturation", [0.7, 3.4e-4])
+@pytest.mark.parametrize(
+    ("saturation", "edge"),
+    [
+        *(pytest.param(*pair, marks=pytest.mark.slow) for pair in ((0.7, 0.0), (3.4e-4, 6.0))),
+        *(pytest.param(*pair, marks=pytest.mark.nightly) for pair in ((0.7, 6.0), (3.4e-4, 0.0))),
+    ],
+)
 def test_a_stiff_solver_finds_the_same_force_over_a_grating(edge: float, saturation: float) -> None:
     """Friction of 0.9 and rows that rise from 0 to 0.5 take turns, at once or over 6 samples, on
     the way to and fro."""

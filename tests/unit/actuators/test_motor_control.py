@@ -27,8 +27,13 @@ def tracked(friction: float, steps: int = 60) -> tuple[float, float, float, floa
     return float(np.max(np.abs(after[late]))), first, last, float(np.max(after))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("friction", [0.24, 0.3, 0.36])
+@pytest.mark.parametrize(
+    "friction",
+    [
+        pytest.param(0.24, marks=pytest.mark.slow),
+        *(pytest.param(friction, marks=pytest.mark.nightly) for friction in (0.3, 0.36)),
+    ],
+)
 def test_a_step_of_force_is_tracked_whatever_the_friction(friction: float) -> None:
     largest, first, last, overshoot = tracked(friction)
     assert largest < 0.05

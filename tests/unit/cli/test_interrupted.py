@@ -64,13 +64,20 @@ VERBS = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="there Ctrl-C is sent to a whole group")
 @pytest.mark.parametrize(
     ("verb", "wait"),
     [
-        *(("lab", wait) for wait in (0.0, 0.2, 0.5, 1.0, 2.0, 4.0)),
-        *((verb, wait) for verb in ("design", "sweep", "analyze") for wait in (2.0, 4.0)),
+        *(pytest.param("lab", wait, marks=pytest.mark.slow) for wait in (0.0, 0.5, 2.0)),
+        *(
+            pytest.param(verb, 2.0, marks=pytest.mark.slow)
+            for verb in ("design", "sweep", "analyze")
+        ),
+        *(pytest.param("lab", wait, marks=pytest.mark.nightly) for wait in (0.2, 1.0, 4.0)),
+        *(
+            pytest.param(verb, 4.0, marks=pytest.mark.nightly)
+            for verb in ("design", "sweep", "analyze")
+        ),
     ],
 )
 def test_ctrl_c_at_any_moment_leaves_no_traceback(verb: str, wait: float, tmp_path: Path) -> None:
