@@ -10,7 +10,6 @@ import logging
 import multiprocessing
 import os
 import stat
-import sys
 from pathlib import Path
 
 _log = logging.getLogger(__name__)
@@ -21,9 +20,10 @@ def is_shared(folder: Path, variable: str) -> bool:
     """True where a folder is there and somebody beside this user and root can write in it.
 
     If so, it is logged once, as a warning; `variable` is the environment variable that names
-    another folder. Always False on Windows, where each user has folders of their own.
+    another folder. Always False where files have no owner's number, as on Windows: each user has
+    folders of their own there.
     """
-    if sys.platform == "win32":
+    if not hasattr(os, "geteuid"):
         return False
     try:
         known = folder.stat()
