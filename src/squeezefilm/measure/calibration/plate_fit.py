@@ -54,16 +54,12 @@ class PlateFit:
         """Paths of the parameters."""
         return tuple(parameter.path for parameter in self.problem.scores.parameters)
 
-    def values(self, scores: si.DimensionlessArray) -> Mapping[str, float]:
-        """Values by path of one row of scores (parameters,)."""
-        row = self.problem.scores.values(np.asarray(scores)[None, :])[0]
-        return dict(zip(self.paths, row.tolist(), strict=True))
-
     @property
     def middle(self) -> Mapping[str, float]:
-        """The values at the mean of the posterior's scores, which keeps what only combinations of
-        them fix."""
-        return self.values(self.posterior.scores.mean(axis=0))
+        """The values by path at the mean of the posterior's scores, which keeps what only
+        combinations of them fix."""
+        row = self.problem.scores.values(self.posterior.scores.mean(axis=0)[None, :])[0]
+        return dict(zip(self.paths, row.tolist(), strict=True))
 
 
 def answers_to_solve(display: Display, observations: tuple[Observation, ...]) -> tuple[Asked, ...]:
@@ -84,13 +80,6 @@ def answers_to_solve(display: Display, observations: tuple[Observation, ...]) ->
 def design_sizes(parameters: int) -> tuple[int, int]:
     """Number of plates solved over the priors, and of those solved where the data point."""
     return max(8 * parameters, least_points(parameters)), 4 * parameters + HELD_OUT
-
-
-def _rough(problem: PlateProblem) -> bool:
-    """True where the emulator's error widens what some observation says."""
-    noise = [seen.standard_error / seen.value for seen in problem.observations]
-    errors = problem.emulator.errors[problem.columns]
-    return bool(np.any(errors > _SMALL * np.array(noise)))
 
 
 class Solves:
@@ -188,7 +177,8 @@ def fitted_plate(
     tell("emulator", half)
     problem = solves.problem(observations)
     posterior = sampled_posterior(problem, seed=seed, steps=600)
-    if second and _rough(problem):
+    # Where the emulator's error widens what some observation says.
+    if second and np.any(problem.emulator.errors[problem.columns] > _SMALL * problem.noise):
         random = np.random.default_rng(seed)
         chosen = posterior.scores[random.choice(len(posterior.scores), second, replace=False)]
         # A little wider, so that the emulator does not end where the posterior does.

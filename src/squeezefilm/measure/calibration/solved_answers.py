@@ -212,9 +212,8 @@ def _of_plate(plate: RectangularPlate) -> tuple[_Named, Mapping[str, float]]:
 
 
 def _read_beside(mode: SolidMode, named: _Named) -> Mapping[str, float]:
-    """Shares by which beside a plate's answers a bench's fit of its admittance reads them, as
-    shares: over the usual band of so many half-bandwidths, with the usual noise, which weighs the
-    points."""
+    """Shares by which a bench's fit of a plate's admittance reads its answers beside what they
+    are: over the usual band, with the usual noise, which weighs the points."""
     from squeezefilm.measure.fits.circuit.impedance import fit_impedance
     from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 

@@ -50,7 +50,9 @@ def calibrated_display(
     changed = calibration.display
     stated = dict(changed.provenance)
     # A ceramic's constants that were written out have no place in the description's sources.
-    source = _source(calibration)
+    source = f"calibrated {_day()} from the {len(calibration.observations)} observations below"
+    if not calibration.fits:
+        source += "; the model does not fit them"
     moved: dict[str, float] = {}
     for learnt in calibration.values:
         if learnt.path in SHARES or learnt.path == SKIN_COMPLIANCE:
@@ -110,11 +112,6 @@ def write_calibrated(
 
 def _day() -> str:
     return datetime.now(UTC).date().isoformat()
-
-
-def _source(calibration: Calibration) -> str:
-    words = f"calibrated {_day()} from the {len(calibration.observations)} observations below"
-    return words if calibration.fits else f"{words}; the model does not fit them"
 
 
 def _spread(value: CalibratedValue) -> Distribution:

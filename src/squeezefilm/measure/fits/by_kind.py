@@ -11,7 +11,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.ceramic.bar import bar_constants
 from squeezefilm.measure.fits.ceramic.disc import disc_constants
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
-from squeezefilm.measure.fits.estimate import Adequacy, Observation
+from squeezefilm.measure.fits.estimate import Adequacy, Observing
 from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.friction.friction_curve import compare_friction_curve
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
@@ -43,16 +43,12 @@ NamedRecording = Annotated[kinds.Recording, ReadBy(read_recording)]
 """A recording, or in its place the path of its file (see `reads_text`)."""
 
 
-class Fit(Protocol):
+class Fit(Observing, Protocol):
     """Attributes that every fit has, whatever was fitted: estimates are its fields of that type."""
 
     @property
     def adequacy(self) -> Adequacy:
         """Judgement of whether the fitted model describes what was recorded."""
-
-    @property
-    def observations(self) -> tuple[Observation, ...]:
-        """Observations for a calibration."""
 
 
 @reads_text

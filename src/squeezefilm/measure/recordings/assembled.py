@@ -23,6 +23,7 @@ from squeezefilm.measure.recordings.quantities_read import (
     quantity,
     require_rising,
     rising_order,
+    words,
 )
 from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 
@@ -324,6 +325,13 @@ def _one_of(reading: Reading, pairs: tuple[tuple[str, ...], ...]) -> tuple[str, 
     for pair in pairs:
         if named == set(pair):
             return pair
+    if len(named) == 1 and named < {"magnitude", "admittance_magnitude", "gain", "phase"}:
+        raise reading.description.error(
+            f"only the {words(named.pop())} is named: size and phase together tell losses from "
+            "reactance. Record the phase too, or resistance and reactance; of a scope's traces it "
+            "is 360 deg times the frequency times their delay",
+            ["columns"],
+        )
     shown = "; ".join(" with ".join(pair) for pair in pairs)
     raise reading.description.error(
         f"one pair must be named of an impedance: {shown}; named are "

@@ -22,9 +22,8 @@ def bench(reading: Reading) -> kinds.FrictionBench:
     said: Any = reading.description.said
     time = reading.take("time")
     require_rising(reading, "time", time)
-    normal, tangential, position = (
-        reading.take(name) for name in ("normal_force", "tangential_force", "position")
-    )
+    normal, tangential = (reading.take(name) for name in ("normal_force", "tangential_force"))
+    position = _position(reading, time, tangential)
     if reading.has("vibration_amplitude"):
         vibration = reading.take("vibration_amplitude", amplitude=True)
     elif reading.has("voltage") and said.amplitude_per_volt is not None:
@@ -41,6 +40,29 @@ def bench(reading: Reading) -> kinds.FrictionBench:
     )
 
 
+def _position(reading: Reading, time: si.SecondArray, tangential: si.NewtonArray) -> si.MetreArray:
+    """The recorded place, or that of a finger that slides at the told speed, the way that the
+    tangential force has, averaged over some hundredths of a second."""
+    said: Any = reading.description.said
+    speed: float | None = said.speed
+    if (speed is None) != reading.has("position"):
+        raise reading.wanting(
+            "position", 'it is needed, or in its place the speed of the finger, speed = "50 mm/s"'
+        )
+    if speed is None:
+        return reading.take("position")
+    reading.doubts.append(
+        "the place was not recorded: the finger is taken to slide at the told speed wherever it is "
+        "pressed, and to turn where the tangential force changes its sign; leave rests out"
+    )
+    step = float(np.median(np.diff(time)))
+    width = int(np.clip(_SMOOTHED / step, 1, time.size // 4)) | 1
+    padded = np.pad(tangential, width // 2, mode="edge")
+    way = np.sign(np.convolve(padded, np.ones(width) / width, mode="valid"))
+    return np.asarray(speed * np.cumsum(way * np.gradient(time)))
+
+
+_SMOOTHED: si.Second = 0.02
 _CONDITIONS = ("frequency", "normal_force", "speed")
 _FRICTIONS = get_args(kinds.FrictionQuantity)
 

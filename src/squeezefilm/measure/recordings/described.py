@@ -87,12 +87,13 @@ class Described:
 
 @dataclass(frozen=True)
 class BenchColumns:
-    """Time, both forces, place, and the vibration: its amplitude or the voltage of its drive."""
+    """Time, both forces, place where it was recorded, and the vibration: its amplitude or the
+    voltage of its drive."""
 
     time: Column
     normal_force: Column
     tangential_force: Column
-    position: Column
+    position: Column | None = None
     vibration_amplitude: Column | None = None
     voltage: Column | None = None
 
@@ -100,10 +101,12 @@ class BenchColumns:
 @si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class DescribedBench(Described):
-    """Strokes of a finger or probe; `frequency` is the vibration's."""
+    """Strokes of a finger or probe; `frequency` is the vibration's, `speed` that of a finger whose
+    place was not recorded."""
 
     kind: Literal["friction bench"]
     columns: BenchColumns
+    speed: Annotated[si.MetrePerSecond, FINGER_SPEED] | None = None
     frequency: Annotated[si.Hertz, FREQUENCY] | None = None
     amplitude_per_volt: Annotated[si.MetrePerVolt, si.Above(0.0)] | None = None
 

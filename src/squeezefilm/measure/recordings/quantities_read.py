@@ -159,8 +159,9 @@ class Reading:
         if not self.has(name):
             raise self.wanting(name, "it is needed")
         column, place = self._column(name), self._place(name)
-        if self.table.values.shape[0] < _LEAST_ROWS:
-            count = self.table.values.shape[0]
+        count = self.table.values.shape[0]
+        # At rest and vibrating: the least that compares friction.
+        if count < (2 if self.description.kind == "friction curve" else _LEAST_ROWS):
             raise self.table.error(
                 f"has {count} rows, too few for a recording; give the whole file"
             )

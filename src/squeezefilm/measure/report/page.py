@@ -38,6 +38,8 @@ if TYPE_CHECKING:
 
 _KNOWN = ("m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "S", "H", "m/V", "m/s", "N/m")
 
+_READ = "SHA-256 of what was read"
+
 
 def show_check(check: RecordingCheck) -> None:
     """Print how a recording was read, and what is doubtful of it."""
@@ -158,7 +160,7 @@ def write_checks(checked: FolderCheck, folder: Path) -> Path:
         "What was read",
         "before anything is fitted; corrected only where a description asks for it",
         body,
-        _foot(stamped_with),
+        stamped(stamped_with, _READ),
     )
     write_folder(folder, files)
     return folder / "check.html"
@@ -190,7 +192,7 @@ def write_fit(check: RecordingCheck, fit: Fit, folder: Path, response: Fit | Non
     body += picture_sections(figures) + section("How it was read", _facts(check)) + _doubts(check)
     title = _text(name)
     files["fit.html"] = page(
-        f"{title}: a fit", title, escape(check.kind), body, _foot(summary["stamp"])
+        f"{title}: a fit", title, escape(check.kind), body, stamped(summary["stamp"], _READ)
     )
     write_folder(folder, files)
     return folder / "fit.html"
@@ -228,10 +230,6 @@ def _doubts(check: RecordingCheck) -> str:
 
 def _text(words: str) -> str:
     return escape(printable(words))
-
-
-def _foot(stamped_with: dict[str, Any]) -> str:
-    return stamped(stamped_with, "SHA-256 of what was read")
 
 
 def _names(checks: Sequence[RecordingCheck]) -> list[str]:

@@ -11,6 +11,7 @@ from tests.unit.measure.recordings.test_read import described
 
 from squeezefilm.core import presets
 from squeezefilm.core.errors import ConfigError
+from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
 from squeezefilm.measure.recordings import assembled_friction, kinds
 from squeezefilm.measure.recordings.described import DescribedDecays, DescribedTouches
 from squeezefilm.measure.recordings.description import KINDS
@@ -74,3 +75,64 @@ def test_what_comes_with_the_program_can_be_read() -> None:
             kinds.FrictionCurve | kinds.FrictionDecays | kinds.FingertipImpedances,
         )
         assert load_display(check.recording.display).name
+
+
+BENCH = """time = { column = 1, unit = "s" }
+normal_force = { column = 2, unit = "N" }
+tangential_force = { column = 3, unit = "N" }
+vibration_amplitude = { column = 4, unit = "um", given_as = "zero-to-peak" }"""
+
+
+def test_a_bench_without_a_position_sensor_gives_the_strokes_of_one_with_it(
+    tmp_path: Path,
+) -> None:
+    random, time = np.random.default_rng(3), np.arange(24 * 400) / 500
+    stroke = np.arange(time.size) // 400
+    way = np.where(stroke % 2, 1.0, -1.0)
+    amplitude = random.choice([0.0, 0.5, 1.0, 1.5], 24)[stroke]
+    normal = random.normal(0.5, 0.02, time.size)
+    tangential = way * 0.8 * np.exp(-amplitude / 1.5) * normal
+    place = 50.0 * np.cumsum(way) / 500
+    columns = (time, normal, tangential, amplitude, place)
+    typed = described("friction bench", BENCH, 'speed = "50 mm/s"')
+    found = check_recording(written(tmp_path, text("t,n,f,a,x", columns), typed))
+    assert any("place was not recorded" in doubt for doubt in found.doubts)
+    placed = BENCH + '\nposition = { column = 5, unit = "mm" }'
+    with_it = read_recording(
+        written(tmp_path, text("t,n,f,a,x", columns), described("friction bench", placed, ""))
+    )
+    assert isinstance(found.recording, kinds.FrictionBench)
+    assert isinstance(with_it, kinds.FrictionBench)
+    fits = [fit_friction_bench(recording) for recording in (found.recording, with_it)]
+    for without, known in zip(*(fit.coefficients for fit in fits), strict=True):
+        assert without.value == pytest.approx(known.value, rel=1e-3)
+    assert fits[0].speed == pytest.approx(0.05, rel=1e-6)
+    for wrong in (
+        described("friction bench", BENCH, ""),
+        described("friction bench", placed, 'speed = "50 mm/s"'),
+    ):
+        with pytest.raises(ConfigError, match="in its place the speed"):
+            read_recording(written(tmp_path, text("t,n,f,a,x", columns), wrong))
+
+
+def test_two_points_are_a_friction_curve(tmp_path: Path) -> None:
+    typed = described(
+        "friction curve",
+        'vibration_amplitude = { column = 1, unit = "um", given_as = "zero-to-peak" }\n'
+        'friction_coefficient = { column = 2, unit = "1" }',
+        'frequency = "30 kHz"',
+    )
+    curve = read_recording(written(tmp_path, "a,mu\n0,0.6\n1.5,0.3\n", typed))
+    assert isinstance(curve, kinds.FrictionCurve)
+    assert curve.friction.tolist() == [0.6, 0.3]
+
+
+def test_a_size_without_its_phase_says_what_to_record(tmp_path: Path) -> None:
+    typed = described(
+        "impedance",
+        'frequency = { column = 1, unit = "kHz" }\nmagnitude = { column = 2, unit = "ohm" }',
+        "",
+    )
+    content = text("f,z", (np.linspace(30, 40, 20), np.linspace(100, 90, 20)))
+    with pytest.raises(ConfigError, match="Record the phase too"):
+        read_recording(written(tmp_path, content, typed))

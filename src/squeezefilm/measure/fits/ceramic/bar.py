@@ -46,10 +46,7 @@ def bar_constants(sweep: ImpedanceSweep, bar: CeramicBar) -> BarConstants:
 
     k31 is that of the whole curve, with its losses. The two extremes of |Y| by the formula of a
     body without losses (IEEE 176) give more, by 1.1 % at k31²Q = 10, since losses push them apart.
-    Half of why a measured bar has .346 by its extremes and .338 here is that; the other half is a
-    small mode on its flank that shifts the minimum of |Y|. Of such modes the intervals, which are
-    of noise, know nothing: the fit then calls itself rough. Raises `InputError` as
-    `fit_impedance` does.
+    Raises `InputError` as `fit_impedance` does.
     """
     require_passive(sweep)
     starts = [_start(sweep, bar, number) for number in range(1, _MODES + 1)]
