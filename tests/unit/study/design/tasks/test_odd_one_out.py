@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections import Counter
 from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import integrate, stats
+from scipy.special import ndtr
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.senses import percept_deviation
@@ -56,10 +59,31 @@ def test_the_share_right_is_that_of_a_brute_force_simulation(d_prime: float) -> 
         assert d_prime_of_three(float(correct_of_three(d_prime))) == pytest.approx(d_prime)
 
 
+def by_adaptive_quadrature(d_prime: float) -> float:
+    """The triangular method's share of right answers, by SciPy's integrator."""
+    apart = math.sqrt(2 / 3) * d_prime
+
+    def integrand(z: float) -> float:
+        inner = -math.sqrt(3) * z
+        return float((ndtr(inner + apart) + ndtr(inner - apart)) * stats.norm.pdf(z))
+
+    return 2 * float(integrate.quad(integrand, 0, math.inf, epsabs=1e-13)[0])
+
+
+@pytest.mark.parametrize("d_prime", [0.0, 0.3, 1.0, 2.0, 3.5, 6.0])
+def test_the_share_of_right_answers_is_that_of_two_independent_sums(d_prime: float) -> None:
+    found = correct_of_three(d_prime)
+    assert found == pytest.approx(by_adaptive_quadrature(d_prime), abs=1e-11)
+    # The odd one is named where v² > 3 u², u and v the difference of the alike and the distance
+    # from them, in standard deviations: a ratio of χ², the first not central.
+    noncentral = float(stats.ncf.sf(3.0, 1, 1, 2 / 3 * d_prime**2)) if d_prime else 1 / 3
+    assert found == pytest.approx(noncentral, abs=1e-8)
+
+
 def test_guesses_are_a_third_and_the_published_table_is_met() -> None:
     assert correct_of_three(0.0) == pytest.approx(1 / 3, abs=1e-12)
-    # Ennis 1993, table of the triangular method: d′ 1 and 2.
-    assert correct_of_three(np.array([1.0, 2.0])) == pytest.approx([0.4180, 0.6048], abs=5e-4)
+    # Ennis 1993, table of the triangular method: d′ 1 and 2, which have four digits there.
+    assert correct_of_three(np.array([1.0, 2.0])) == pytest.approx([0.4180, 0.6048], abs=1e-4)
     assert d_prime_of_three(0.2) == 0.0
     assert d_prime_of_three(1.0) == 20.0
 
