@@ -99,9 +99,8 @@ if TYPE_CHECKING:
     )
     from squeezefilm.study.psychometric.function import PsychometricPrior as PsychometricPrior
     from squeezefilm.study.record.store import StudyStore
-    from squeezefilm.study.simulated.answers import SimulatedAnswers
+    from squeezefilm.study.simulated.answers import SimulatedStudy
     from squeezefilm.study.simulated.chain_tables import ChainTables
-    from squeezefilm.study.simulated.participants import SimulatedStudy
     from squeezefilm.study.tasks.analyze import StudyAnalysis, Tell
     from squeezefilm.subjects import plot as plot
     from squeezefilm.subjects import write_mode as write_mode
@@ -480,8 +479,8 @@ if TYPE_CHECKING:
         seed: int,
         tables: ChainTables | None = ...,
         progress: Callable[[str], None] | None = ...,
-    ) -> SimulatedStudy | SimulatedAnswers:
-        """Answers of simulated participants to a design: a `SimulatedStudy` of match-to-sample, else"""
+    ) -> SimulatedStudy:
+        """Answers of simulated participants to a design."""
     def analyze_study(
         store: StudyStore | str | Path,
         *,

@@ -57,9 +57,8 @@ from squeezefilm.study.report.page import FIGURES as FIGURES_OF_STUDY
 from squeezefilm.study.report.page import TASK_FIGURES, write_study
 from squeezefilm.study.report.simulated_page import FIGURES as FIGURES_OF_SIMULATED
 from squeezefilm.study.report.simulated_page import write_simulated
-from squeezefilm.study.simulated.answers import SimulatedAnswers
+from squeezefilm.study.simulated.answers import SimulatedStudy
 from squeezefilm.study.simulated.felt_paths import FeltPath
-from squeezefilm.study.simulated.participants import SimulatedStudy
 from squeezefilm.study.simulated.planned_power import PlannedPower
 from squeezefilm.study.simulated.planned_precision import PlannedPrecision
 from squeezefilm.study.tasks.findings import TaskAnalysis
@@ -112,7 +111,6 @@ SUBJECTS: Mapping[type, _Subject] = {
     IdentificationAnalysis: _Subject(_by_key(FIGURES_OF_STUDY), write_study),
     TaskAnalysis: _Subject(_by_key(TASK_FIGURES), write_study),
     SimulatedStudy: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
-    SimulatedAnswers: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
     FeltPath: _Subject({"path": felt_path}),
     PlannedPower: _Subject({"power": lambda one: time_figures.power(one.curve)}),
     PlannedPrecision: _Subject({"precision": time_figures.precision}),

@@ -80,7 +80,7 @@ def test_tables_are_written_labelled_and_come_back_from_the_seed(tmp_path: Path)
     page = (out / "index.html").read_text()
     assert "simulated" in page
     assert "no person answered" in page
-    assert (out / "display-1" / "index.html").exists()
+    assert (out / "biet2008-stator" / "index.html").exists()
 
     text = run(*arguments, "--seed", "7")
     assert text.returncode == 0, text.stderr

@@ -15,7 +15,7 @@ from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.participants import SimulatedStudy, simulate_matches
+from squeezefilm.study.simulated.participants import Matches, simulate_matches
 
 PEOPLE = 1000
 # Trials of one stimulus: the standard error of a proportion is at most 0.5 % of 100.
@@ -34,11 +34,11 @@ def design_on(name: str, **changed: object) -> StudyDesign:
     return dataclasses.replace(design, displays=(name,), stimuli=stimuli)
 
 
-def answers(tables: ChainTables) -> SimulatedStudy:
+def answers(tables: ChainTables) -> Matches:
     return simulate_matches(tables.design, tables.observer, PEOPLE, 7, tables)
 
 
-def right(study: SimulatedStudy) -> np.ndarray:
+def right(study: Matches) -> np.ndarray:
     return np.diag(study.confusion().proportions)
 
 

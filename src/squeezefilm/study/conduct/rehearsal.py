@@ -37,13 +37,12 @@ from squeezefilm.study.record.exploration import PATH_PERIOD, explored_table
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import SIMULATED, SIMULATED_NOTE, origin_of
 from squeezefilm.study.simulated.answers import (
-    SimulatedAnswers,
-    answers_of,
+    SimulatedStudy,
     simulate_participants,
 )
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.felt_surfaces import free_path
-from squeezefilm.study.simulated.participants import SimulatedStudy, finger_of
+from squeezefilm.study.simulated.participants import finger_of
 
 MOST_PEOPLE = 200
 _CONDITIONS = SessionConditions(
@@ -110,17 +109,16 @@ def _simulated(store: StudyStore) -> list[str]:
     ]
 
 
-def _responses(study: SimulatedStudy | SimulatedAnswers, person: int) -> dict[int, Response]:
+def _responses(study: SimulatedStudy, person: int) -> dict[int, Response]:
     """What a person answers, by the number of the trial."""
-    answers = answers_of(study) if isinstance(study, SimulatedStudy) else study.answers
+    answers = study.answers
     names, mine = answers.design.answers, answers.participant == person
     asked = [trial.number for trial in trials(answers.design, person, study.seed) if trial.asks]
-    # A simulated match-to-sample study counts the trials that ask.
-    counted = isinstance(study, SimulatedStudy)
     found = {}
     for at in np.flatnonzero(mine):
         number = int(answers.number[at])
-        number = asked[number - 1] if counted else number
+        # What was matched is numbered among the trials that ask.
+        number = number if study.matches is None else asked[number - 1]
         estimate = float(answers.estimate[at])
         found[number] = Response(
             choice=names[answers.choice[at]] if answers.choice[at] >= 0 else "",
@@ -137,14 +135,14 @@ _MOST_MOTIONS = 64
 class _Hand:
     """Explores a person's surfaces as their answers assume."""
 
-    def __init__(
-        self, tables: ChainTables, answered: SimulatedStudy | SimulatedAnswers, person: int
-    ) -> None:
+    def __init__(self, tables: ChainTables, answered: SimulatedStudy, person: int) -> None:
         design, fingers = tables.design, tables.fingers
-        if isinstance(answered, SimulatedStudy):
-            finger = fingers[int(answered.finger[person])]
-        else:
-            finger = fingers[finger_of(person, len(fingers), answered.seed)]
+        matches = answered.matches
+        finger = fingers[
+            finger_of(person, len(fingers), answered.seed)
+            if matches is None
+            else int(matches.finger[person])
+        ]
         self._design, self._force = design, finger.normal_force
         self._paths = {
             name: path_of(design.exploring, plate, tables.observer, finger)

@@ -112,22 +112,22 @@ def write_overview(
     folder: Path,
     progress: Callable[[str], None] | None = None,
     more: str = "",
+    named: str = "",
 ) -> Path:
     """Write a page per display, each in its own folder, and one to read first above them, with
-    `more` sections (HTML) below."""
+    `more` sections (HTML) below; of simulated participants `named` is the study."""
     folder = require_folder(folder)
     for display, analysis in analyses.items():
         write_study(analysis, folder / _folder_of(display), progress=progress)
-    sections, name = "", ""
+    sections, name, origin = "", named, "simulated"
     for display, analysis in analyses.items():
-        name = printable(analysis.name).removesuffix(f", {display}")
+        name, origin = analysis.name.removesuffix(f", {display}"), analysis.origin
         place = escape(_folder_of(display))
         link = f'<p><a href="{place}/index.html">All numbers and figures</a></p>'
         sections += section(escape(printable(display)), bullets(read_first(analysis)) + link)
-    origin = next(iter(analyses.values())).origin
     text = page(
-        escape(f"{name}: what to read first"),
-        escape(name),
+        escape(printable(f"{name}: what to read first")),
+        escape(printable(name)),
         f"<b>{escape(printable(whose(origin)))}</b>, analysed by squeezefilm",
         sections + more,
         "What to read first, by display.",

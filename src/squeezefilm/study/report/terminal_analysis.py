@@ -28,8 +28,7 @@ from squeezefilm.study.report.words import (
 
 if TYPE_CHECKING:
     from squeezefilm.core.quantities import DimensionlessArray, IntArray
-    from squeezefilm.study.simulated.answers import SimulatedAnswers
-    from squeezefilm.study.simulated.participants import SimulatedStudy
+    from squeezefilm.study.simulated.answers import SimulatedStudy
     from squeezefilm.study.simulated.planned_power import Planned, PlannedPower
     from squeezefilm.study.simulated.planned_precision import PlannedPrecision
     from squeezefilm.study.tasks.analyze import StudyAnalysis
@@ -142,35 +141,25 @@ def _rests_on(found: Planned, studies: int) -> str:
     )
 
 
-def show_simulated(study: SimulatedStudy | SimulatedAnswers) -> None:
+def show_simulated(study: SimulatedStudy) -> None:
     """Print each display's answers and the model's reasons, or what their analysis says."""
-    from squeezefilm.study.simulated.answers import SimulatedAnswers
-
     console = plain_console()
-    finger = f"Finger: {printable(study.tables.whose_finger)}."
-    if isinstance(study, SimulatedAnswers):
-        from squeezefilm.study.simulated.recalled import assumed
-
+    if study.matches is None:
         show_analyses(study.analyses)
-        console.print("SIMULATED: nobody answered. Assumed beyond the observer's file:")
-        for said in assumed(study.answers.design):
-            console.print(f"  {said}", highlight=False)
-        for display, rows in ((d, reason_rows(study, i)) for i, d in enumerate(study.analyses)):
-            heading(console, f"{display}: what the model sees of each stimulus")
-            table(console, REASONS, rows)
-        console.print(finger, highlight=False)
-        console.print(LEGEND)
-        return
+        console.print("SIMULATED: nobody answered. What that assumes stands below.")
     for index, name in enumerate(study.tables.design.displays):
-        heading(
-            console,
-            f"{name}, SIMULATED: {100 * study.proportion_correct(index):.1f} % right, "
-            f"{study.participants} simulated participants, seed {study.seed}",
-        )
-        table(console, *confusion_rows(study.confusion(index)))
-        console.print("Per cent of each column; rows are what was answered, columns simulated.")
+        if study.matches is None:
+            heading(console, f"{name}: what the model sees of each stimulus")
+        else:
+            heading(
+                console,
+                f"{name}, SIMULATED: {100 * study.proportion_correct(index):.1f} % right, "
+                f"{study.participants} simulated participants, seed {study.seed}",
+            )
+            table(console, *confusion_rows(study.confusion(index)))
+            console.print("Per cent of each column; rows are what was answered, columns simulated.")
         table(console, REASONS, reason_rows(study, index))
-    console.print(finger, highlight=False)
+    console.print(f"Finger: {printable(study.tables.whose_finger)}.", highlight=False)
     console.print(LEGEND)
     for said in remarks(study.tables.design):
         console.print(said, highlight=False)

@@ -12,13 +12,14 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.results import Result, stamp
+from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.physics.perception.observer import NamedObserver
 from squeezefilm.study.design.study_design import NamedDesign
+from squeezefilm.study.identification.confusion import ConfusionMatrix
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.participants import (
-    SimulatedStudy,
+    Matches,
     require_people,
     right_answers,
     simulate_matches,
@@ -30,18 +31,21 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SimulatedAnswers(Result):
-    """Answers of simulated participants to a design of any other task than match-to-sample.
+class SimulatedStudy(Result):
+    """Answers of simulated participants to a design.
 
     Attributes:
         tables: the chain behind them.
-        answers: every trial that asks, practice and catch trials too.
+        answers: every trial that asks, practice and catch trials too; of match-to-sample the main
+            trials, numbered among those that ask.
         seed: of orders, people and noise.
+        matches: what was matched, in match-to-sample; else None.
     """
 
     tables: ChainTables
     answers: Answers
     seed: int
+    matches: Matches | None = None
     _shown: ClassVar[str] = "tables.design.name tables.observer.name participants seed"
 
     @property
@@ -51,11 +55,35 @@ class SimulatedAnswers(Result):
 
     @functools.cached_property
     def analyses(self) -> dict[str, StudyAnalysis]:
-        """What they say, by display; a psychometric function a person takes some 20 ms."""
+        """What they say, by display; a psychometric function a person takes some 20 ms. Empty
+        where gratings and stimuli do not pair up, so that nothing is right or wrong."""
         from squeezefilm.study.tasks.analyze import analyze_answers
 
         design = self.tables.design
-        return analyze_answers(self.answers, design.name, assumed=assumed(design), seed=self.seed)
+        about = assumed(design) if self.matches is None else ()
+        try:
+            return analyze_answers(self.answers, design.name, assumed=about, seed=self.seed)
+        except InputError:
+            if self.matches is None:
+                raise
+            return {}
+
+    def confusion(self, display: int = 0) -> ConfusionMatrix:
+        """The confusion matrix on a display: rows gratings, columns simulated periods.
+
+        Raises `InputError` for another task than match-to-sample.
+        """
+        return self._matched().confusion(display)
+
+    def proportion_correct(self, display: int = 0) -> si.Dimensionless:
+        """Share of right matches on a display (1). Raises as `confusion` does."""
+        return self._matched().proportion_correct(display)
+
+    def _matched(self) -> Matches:
+        if self.matches is None:
+            task = self.tables.design.task
+            raise InputError(f"task = '{task}' has no confusions; its `analyses` say what it has")
+        return self.matches
 
     def summary(self) -> dict[str, Any]:
         """What ``squeezefilm study simulate --json`` prints; keys carry units."""
@@ -68,8 +96,41 @@ class SimulatedAnswers(Result):
             "finger": tables.whose_finger,
             "participants": self.participants,
             "seed": self.seed,
-            "displays": {name: analysis.summary() for name, analysis in self.analyses.items()},
+            **self._by_display(),
             "provenance": stamp((design, tables.observer, tables.apparatus), self.seed),
+        }
+
+    def _by_display(self) -> dict[str, Any]:
+        matches, names = self.matches, self.tables.design.displays
+        if matches is None:
+            analysed = {name: analysis.summary() for name, analysis in self.analyses.items()}
+            return {"displays": analysed}
+        matrices = {name: self.confusion(index) for index, name in enumerate(names)}
+        right = {name: self.proportion_correct(index) for index, name in enumerate(names)}
+        counts = {name: matrix.counts.tolist() for name, matrix in matrices.items()}
+        heads = {
+            "rows": list(self.tables.design.answers),
+            "columns": [stimulus.name for stimulus in self.tables.design.stimuli],
+        }
+        return {
+            "layout": "rows: gratings answered; columns: periods simulated; counts",
+            "confusion": counts,
+            "proportion_correct": right,
+            **heads,
+            "displays": {
+                name: {
+                    **heads,
+                    "confusion": counts[name],
+                    "confusion_percent": np.round(matrices[name].percent, 3).tolist(),
+                    "proportion_correct": right[name],
+                    "nothing_felt": float(np.mean(~matches.felt[matches.display == index])),
+                    "reasons": {
+                        stimulus: to_json(why)
+                        for stimulus, why in self.tables.explain(index).items()
+                    },
+                }
+                for index, name in enumerate(names)
+            },
         }
 
     def _table(self) -> Any:
@@ -108,9 +169,8 @@ def simulate_participants(
     seed: int,
     tables: ChainTables | None = None,
     progress: Callable[[str], None] | None = None,
-) -> SimulatedStudy | SimulatedAnswers:
-    """Answers of simulated participants to a design: a `SimulatedStudy` of match-to-sample, else
-    `SimulatedAnswers`.
+) -> SimulatedStudy:
+    """Answers of simulated participants to a design.
 
     A participant's answers depend on the seed and their number alone, not on how many there are.
 
@@ -131,16 +191,21 @@ def simulate_participants(
     if found.design != design or found.observer != observer:
         raise InputError("the tables are of another design or observer; leave them out")
     if design.task == "match-to-sample":
-        return simulate_matches(design, observer, participants, seed, found)
+        return study_of(simulate_matches(design, observer, participants, seed, found))
     # Its psychometric functions are compiled, which a match-to-sample study need not wait for.
     from squeezefilm.study.simulated.judgements import simulate_judgements
 
     answers = simulate_judgements(design, observer, participants, seed, found, progress)
-    return SimulatedAnswers(found, answers, seed)
+    return SimulatedStudy(found, answers, seed)
 
 
-def answers_of(study: SimulatedStudy) -> Answers:
-    """A simulated match-to-sample study's main trials, as analyses take them."""
+def study_of(matches: Matches) -> SimulatedStudy:
+    """The study that people matched in."""
+    return SimulatedStudy(matches.tables, answers_of(matches), matches.seed, matches)
+
+
+def answers_of(study: Matches) -> Answers:
+    """What people matched in main trials, as analyses take it."""
     design = study.tables.design
     asked = study.choice.shape[1]
     size = study.choice.size
@@ -148,7 +213,7 @@ def answers_of(study: SimulatedStudy) -> Answers:
     none = np.full(size, -1, dtype=np.int64)
     return Answers(
         design=design,
-        origin=study.origin,
+        origin="simulated",
         people=tuple(f"simulated-{person + 1}" for person in range(study.participants)),
         surfaces=design.stimuli,
         participant=np.repeat(np.arange(study.participants), asked),

@@ -12,7 +12,6 @@ practice. Where a surface is matched with the stimuli themselves, `recalled` say
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +19,6 @@ from numpy.typing import NDArray
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import SIMULATED_TRIALS, require_within
-from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.physics.perception.observer import Observer
 from squeezefilm.physics.perception.perceived import perceived_anew
 from squeezefilm.physics.perception.senses import Candidates, percept_deviation
@@ -34,9 +32,9 @@ _MOST_PEOPLE = 1_000_000
 _STREAM = 29
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class SimulatedStudy(Result):
-    """Answers of simulated participants; arrays of shape (participants, trials).
+@dataclass(frozen=True, slots=True, eq=False)
+class Matches:
+    """What simulated participants matched in main trials; arrays of shape (participants, trials).
 
     Attributes:
         tables: the chain behind them.
@@ -47,7 +45,6 @@ class SimulatedStudy(Result):
         felt: whether anything was felt.
         response_time: (s); assumed.
         finger: class of each participant, shape (participants,).
-        origin: what to label results with.
     """
 
     tables: ChainTables
@@ -59,8 +56,6 @@ class SimulatedStudy(Result):
     felt: NDArray[np.bool_]
     response_time: si.SecondArray
     finger: si.IntArray
-    origin: str = "simulated"
-    _shown: ClassVar[str] = "tables.design.name tables.observer.name participants seed origin"
 
     @property
     def participants(self) -> int:
@@ -90,58 +85,6 @@ class SimulatedStudy(Result):
         here = self.display == display
         return float(np.mean(self.choice[here] == right[self.stimulus[here]]))
 
-    def summary(self) -> dict[str, Any]:
-        """What ``squeezefilm study simulate --json`` prints; keys carry units."""
-        tables, design = self.tables, self.tables.design
-        found: dict[str, Any] = {}
-        for index, name in enumerate(design.displays):
-            matrix = self.confusion(index)
-            found[name] = {
-                "rows": list(matrix.answers),
-                "columns": list(matrix.stimuli),
-                "confusion": matrix.counts.tolist(),
-                "confusion_percent": np.round(matrix.percent, 3).tolist(),
-                "proportion_correct": self.proportion_correct(index),
-                "nothing_felt": float(np.mean(~self.felt[self.display == index])),
-                "reasons": {
-                    one: to_json(why) for one, why in tables.explain(index).items()
-                },
-            }  # fmt: skip
-        first = next(iter(found.values()))
-        return {
-            "study": design.name,
-            "origin": self.origin,
-            "observer": tables.observer.name,
-            "finger": tables.whose_finger,
-            "participants": self.participants,
-            "seed": self.seed,
-            "layout": "rows: gratings answered; columns: periods simulated; counts",
-            "confusion": {name: one["confusion"] for name, one in found.items()},
-            "proportion_correct": {name: one["proportion_correct"] for name, one in found.items()},
-            "rows": first["rows"],
-            "columns": first["columns"],
-            "displays": found,
-            "provenance": stamp((design, tables.observer, tables.apparatus), self.seed),
-        }
-
-    def _table(self) -> Any:
-        """One row a trial."""
-        design = self.tables.design
-        names = [stimulus.name for stimulus in design.stimuli]
-        answers = design.answers
-        return [
-            {
-                "participant": who,
-                "trial": int(self.number[who, at]),
-                "display": design.displays[self.display[who, at]],
-                "stimulus": names[self.stimulus[who, at]],
-                "choice": answers[self.choice[who, at]],
-                "felt": bool(self.felt[who, at]),
-                "response_time_s": float(self.response_time[who, at]),
-            }
-            for who, at in np.ndindex(self.choice.shape)
-        ]
-
 
 def simulate_matches(
     design: StudyDesign,
@@ -149,7 +92,7 @@ def simulate_matches(
     participants: int,
     seed: int,
     tables: ChainTables | None = None,
-) -> SimulatedStudy:
+) -> Matches:
     """Answers of simulated participants to the main trials of a match-to-sample design.
 
     A participant's answers depend on the seed and their number alone, not on how many there are.
@@ -183,7 +126,7 @@ def simulate_matches(
         random = np.random.default_rng([seed, _STREAM, first // CHUNK])
         chunks.append(_answers(found, display, stimulus, number, random, count))
     choice, felt, times, finger = (np.concatenate([chunk[i] for chunk in chunks]) for i in range(4))
-    return SimulatedStudy(
+    return Matches(
         found, seed, display[rows], stimulus[rows], choice, number[rows], felt, times, finger
     )
 

@@ -10,9 +10,10 @@ from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.report.simulated_page import LEGEND, REMARK
 from squeezefilm.study.report.terminal_analysis import show_simulated
+from squeezefilm.study.simulated.answers import SimulatedStudy, study_of
 from squeezefilm.study.simulated.causes import Causes
 from squeezefilm.study.simulated.chain_tables import ChainTables
-from squeezefilm.study.simulated.participants import SimulatedStudy
+from squeezefilm.study.simulated.participants import Matches
 
 from ...study.scripted import gratings
 
@@ -46,8 +47,9 @@ def study() -> SimulatedStudy:
     stimulus = np.array([[0, 1, 2, 0, 1, 2, 2]] * 2)
     choice = np.array([[0, 1, 1, 0, 1, 2, 2]] * 2)
     number = np.array([np.arange(7)] * 2)
-    return SimulatedStudy(
-        tables, 5, display, stimulus, choice, number, number >= 0, 1.0 * number, np.array([0, 0])
+    felt, times = number >= 0, 1.0 * number
+    return study_of(
+        Matches(tables, 5, display, stimulus, choice, number, felt, times, np.array([0, 0]))
     )
 
 

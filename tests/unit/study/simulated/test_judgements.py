@@ -16,8 +16,6 @@ from squeezefilm.physics.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.simulated.answers import (
-    SimulatedAnswers,
-    answers_of,
     simulate_participants,
 )
 from squeezefilm.study.simulated.causes import Causes
@@ -119,7 +117,6 @@ def test_people_do_not_depend_on_how_many_there_are(design: StudyDesign) -> None
 
 def test_results_say_that_they_are_simulated_and_what_they_assume() -> None:
     found = simulate_participants(ALIKE, EXACT, 4, 0, tables(ALIKE, 3.0))
-    assert isinstance(found, SimulatedAnswers)
     data = found.summary()
     assert data["origin"] == "simulated"
     (one,) = found.analyses.values()
@@ -135,9 +132,10 @@ def test_a_simulated_match_has_its_answers_too() -> None:
     period = np.array([one.period for one in alone.stimuli])[None, None, :, None]
     table = dataclasses.replace(tables(alone), real=Candidates(period[0], np.full((1, 5, 1), 1e6)))
     study = simulate_participants(alone, EXACT, 3, 0, table)
-    assert not isinstance(study, SimulatedAnswers)
-    answers = answers_of(study)
-    assert answers.trials == study.choice.size
+    assert study.matches is not None
+    answers = study.answers
+    assert answers.trials == study.matches.choice.size
+    assert [row["trial"] for row in study.rows()] == answers.number.tolist()
     assert np.nanmean(answers.correct) == pytest.approx(study.proportion_correct())
 
 
