@@ -9,16 +9,37 @@ from __future__ import annotations
 
 import sqlite3
 import uuid
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
 from squeezefilm.core.progress import about
+from squeezefilm.study.conduct.study_device import TrialMotion
+from squeezefilm.study.design.rules import TrialRules
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
 
 COUNTED = "NOT EXISTS (SELECT 1 FROM set_aside a WHERE a.trial = t.uuid)"
 """Of a trial `t`: that it was not set aside."""
+
+
+def spoiled_by(design: StudyDesign, explorations: Iterable[TrialMotion]) -> str:
+    """Why the exploration of an answer does not count: a surface that was not played as planned, or
+    one of the design's rules that is broken; empty where it counts, and where nothing was recorded
+    of it."""
+    rules = design.rules or TrialRules()
+    for exploration in explorations:
+        if exploration.unusable:
+            return f"the surface was not played as planned: {exploration.unusable}"
+        broken = rules.broken(
+            exploration.path_length,
+            exploration.mean_speed,
+            exploration.mean_normal_force,
+            exploration.touch,
+        )
+        if broken:
+            return broken
+    return ""
 
 
 def set_aside(write: sqlite3.Connection, trials: Sequence[Row], session: str, reason: str) -> None:

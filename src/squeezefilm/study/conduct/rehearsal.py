@@ -23,7 +23,8 @@ from squeezefilm.physics.perception.observer import FingerClass, Observer
 from squeezefilm.physics.perception.percepts import exploration
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.physics.render.motion.finger_path import FingerPath
-from squeezefilm.study.conduct.run import Presentation, Response, StudyRun, spoiled_by
+from squeezefilm.study.conduct.again import spoiled_by
+from squeezefilm.study.conduct.run import Presentation, Response, StudyRun
 from squeezefilm.study.conduct.sessions import (
     SessionConditions,
     begin_session,
@@ -161,7 +162,7 @@ class _Hand:
             for surface in presentation.surfaces
             if isinstance(surface, Stimulus)
         )
-        return () if spoiled_by(self._design, Response(explorations=found)) else found
+        return () if spoiled_by(self._design, found) else found
 
     def _motion(self, display: str, surface: Stimulus) -> TrialMotion:
         key = display, id(surface)

@@ -25,11 +25,9 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import to_json
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.adaptive.series import adaptive_method
-from squeezefilm.study.conduct.again import COUNTED, practise_again, set_aside
+from squeezefilm.study.conduct.again import COUNTED, practise_again, set_aside, spoiled_by
 from squeezefilm.study.conduct.sessions import display_wanted, next_planned
 from squeezefilm.study.conduct.study_device import TrialMotion
-from squeezefilm.study.design.rules import TrialRules
-from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import Trial
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
 
@@ -224,7 +222,7 @@ class StudyRun:
     ) -> str:
         """Plan a spoiled trial again, and practice that was not good enough."""
         design = self._store.design
-        reason = spoiled_by(design, response) if trial.asks else ""
+        reason = spoiled_by(design, response.explorations) if trial.asks else ""
         if reason:
             set_aside(write, [planned], self._session["uuid"], reason)
         if trial.phase == "practice":
@@ -349,25 +347,6 @@ class StudyRun:
             "device_sha256": self._session["device_sha256"],
             "calibration_sha256": self._session["calibration_sha256"],
         }
-
-
-def spoiled_by(design: StudyDesign, response: Response) -> str:
-    """Why the exploration of an answer does not count: a surface that was not played as planned, or
-    one of the design's rules that is broken; empty where it counts, and where nothing was recorded
-    of it."""
-    rules = design.rules or TrialRules()
-    for exploration in response.explorations:
-        if exploration.unusable:
-            return f"the surface was not played as planned: {exploration.unusable}"
-        broken = rules.broken(
-            exploration.path_length,
-            exploration.mean_speed,
-            exploration.mean_normal_force,
-            exploration.touch,
-        )
-        if broken:
-            return broken
-    return ""
 
 
 def _known(value: float) -> float | None:

@@ -13,6 +13,7 @@ from __future__ import annotations
 import glob
 import json
 import os
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,11 +22,11 @@ from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.core.hard_limits import TRACE_BYTES
 from squeezefilm.core.regular_file import opened
 from squeezefilm.study.record.contents import is_trace, require_identifier
-from squeezefilm.study.record.database import same_folders
+from squeezefilm.study.record.database import is_study, same_folders
 from squeezefilm.study.record.erasure import erase_file, require_plain
 from squeezefilm.study.record.exports import LIST, export_again, exported_folders, own_files
 from squeezefilm.study.record.sittings import FILE, Sittings
-from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.record.store import UNFINISHED, StudyStore
 
 _PIECE = 1 << 20
 _TRIALS = "trial IN (SELECT uuid FROM trial WHERE participant = ?)"
@@ -123,7 +124,7 @@ def _surveyed(
     sittings.require_erasable()
     store.require_alone()
     store.require_whole()
-    backups, unfinished = store.backup_files()
+    backups, unfinished = _backup_files(store)
     identifiers = {pseudonym} | _identifiers(store, pseudonym)
     for path in backups:
         with StudyStore.open(path) as backup:
@@ -183,7 +184,7 @@ def _require_gone(store: StudyStore, sittings: Sittings, identifiers: set[str]) 
 def _own(store: StudyStore) -> list[Path]:
     """What lies among a study's files and was not written by this program, sorted."""
     exports = exported_folders(store)
-    backups = {path for some in store.backup_files() for path in some}
+    backups = {path for some in _backup_files(store) for path in some}
     ours = backups | {store.exports / LIST, *(folder for _, folder in exports)}
     ours |= {path for _, folder in exports for path in folder.rglob("*")}
     ours |= {store.path.with_name(f"{store.path.name}{part}") for part in ("", "-wal", "-shm")}
@@ -234,3 +235,13 @@ def _holds(path: Path, wanted: list[bytes]) -> bool:
     except OSError as error:
         raise RecordError(f"{path} cannot be searched: {error.strerror}") from error
     return False
+
+
+def _backup_files(store: StudyStore) -> tuple[list[Path], list[Path]]:
+    """Backups, and what is left of those that were never finished."""
+    if not store.backups.is_dir():
+        return [], []
+    every, (stem, suffix) = sorted(store.backups.iterdir()), (store.path.stem, store.path.suffix)
+    name = re.compile(rf"\.{re.escape(stem)}-\w+-\w+{re.escape(suffix + UNFINISHED)}(-journal)?")
+    whole = [path for path in every if path.suffix == suffix and is_study(path)]
+    return whole, [path for path in every if name.fullmatch(path.name)]

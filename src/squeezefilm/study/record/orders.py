@@ -9,35 +9,24 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import write_whole
 from squeezefilm.study.design.plan import StudyPlan
 from squeezefilm.study.design.trials import Trial
-from squeezefilm.study.record.tables import Cell, Column, csv_text, surface_cells
+from squeezefilm.study.record.tables import COLUMNS, Cell, Column, csv_text, surface_cells
 
-ORDER_COLUMNS = (
-    Column("participant_number", "Which of the balanced orders, from 0", kind="whole"),
-    Column("trial", "Number of the trial within the participant, from 1", kind="whole"),
-    Column("display", "Display that presents the stimuli"),
-    Column("block", "Number of the block within the display, 0 before the first", kind="whole"),
-    Column("phase", "familiarisation, practice, main or catch"),
-    Column(
-        "stimulus", "Name of the stimulus, or of the first of two; empty where a series chooses"
-    ),
-    Column("stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
-    Column("stimulus_friction_depth", "Its change of relative friction", "", "number"),
-    Column("stimulus_second_period_m", "That of a grating across it, if any", "m", "number"),
-    Column("stimulus_surface", "What kind of surface it is, in words"),
-    Column("stimulus_surface_sha256", "Hash of the surface, its files and pictures read"),
-    Column("second_stimulus", "Name of the second stimulus, if there are several"),
-    Column("second_stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
-    Column("second_stimulus_friction_depth", "Its change of relative friction", "", "number"),
-    Column("second_stimulus_second_period_m", "Of a grating across it, if any", "m", "number"),
-    Column("second_stimulus_surface", "What kind of surface it is, in words"),
-    Column("second_stimulus_surface_sha256", "Hash of the surface"),
-    Column("third_stimulus", "Name of the third stimulus, if there are three"),
-    Column("adaptive_series", "Series that chooses the comparison, if any"),
+_OWN = (
     Column("reference_first", "Whether a series presents the reference first", kind="truth"),
     Column("alternatives", "Answers in the order in which they are offered, separated by |"),
-    Column("answer", "What is right; empty where nothing is"),
     Column("pause_s", "Rest before the trial", "s", "number"),
-    Column("seed", "Of what is random in the presentation", kind="whole"),
+)
+_KNOWN = {column.name: column for column in (*COLUMNS, *_OWN)}
+_SURFACE = ("period_m", "friction_depth", "second_period_m", "surface", "surface_sha256")
+ORDER_COLUMNS = tuple(
+    _KNOWN[name]
+    for name in (
+        *("participant_number", "trial", "display", "block", "phase"),
+        *("stimulus", *(f"stimulus_{key}" for key in _SURFACE)),
+        *("second_stimulus", *(f"second_stimulus_{key}" for key in _SURFACE)),
+        *("third_stimulus", "adaptive_series", "reference_first", "alternatives", "answer"),
+        *("pause_s", "seed"),
+    )
 )
 """What an order file holds."""
 

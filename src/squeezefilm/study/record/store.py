@@ -11,7 +11,6 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import json
-import re
 import secrets
 import sqlite3
 import uuid
@@ -32,7 +31,6 @@ from squeezefilm.study.record.database import (
     Database,
     claim,
     discard,
-    is_study,
     require_alone,
     require_study,
     same_folders,
@@ -41,7 +39,7 @@ from squeezefilm.study.record.erasure import require_own_folder, require_plain
 from squeezefilm.study.record.schema import APPLICATION_ID, SCHEMA, UPGRADE_1, VERSION
 
 _HIGHEST_SEED = 2**53
-_UNFINISHED = ".unfinished"
+UNFINISHED = ".unfinished"
 """Ends the name of a backup that is being written."""
 Row = Mapping[str, Any]
 
@@ -372,7 +370,7 @@ class StudyStore:
         self.require_whole()
         stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
         target = self.backups / f"{self.path.stem}-{stamp}-{secrets.token_hex(3)}{self.path.suffix}"
-        unfinished = target.with_name(f".{target.name}{_UNFINISHED}")
+        unfinished = target.with_name(f".{target.name}{UNFINISHED}")
         try:
             target.parent.mkdir(exist_ok=True)
             self._database.copy_to(unfinished)
@@ -383,18 +381,6 @@ class StudyStore:
                 unfinished.unlink(missing_ok=True)
             raise RecordError(f"no backup could be written to {target}: {error}") from error
         return target
-
-    def backup_files(self) -> tuple[list[Path], list[Path]]:
-        """Backups, and what is left of those that were never finished."""
-        if not self.backups.is_dir():
-            return [], []
-        every = sorted(self.backups.iterdir())
-        name = re.compile(
-            rf"\.{re.escape(self.path.stem)}-\w+-\w+{re.escape(self.path.suffix + _UNFINISHED)}"
-            r"(-journal)?"
-        )
-        whole = [path for path in every if path.suffix == self.path.suffix and is_study(path)]
-        return whole, [path for path in every if name.fullmatch(path.name)]
 
 
 def insert(write: sqlite3.Connection, table: str, row: Row) -> None:

@@ -15,9 +15,10 @@ from squeezefilm.study.conduct.again import (
     practise_again,
     restart_block,
     set_aside,
+    spoiled_by,
     why_begun_again,
 )
-from squeezefilm.study.conduct.run import Response, StudyRun, spoiled_by
+from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import begin_session, next_planned
 from squeezefilm.study.conduct.study_device import ByHand, NoDevice, TrialMotion
 from squeezefilm.study.design.rules import TrialRules
@@ -239,7 +240,7 @@ def test_nothing_is_planned_twice_without_a_reason(tmp_path: Path) -> None:
         set_aside(write, [], str(run.session["uuid"]), "nothing")
         assert practise_again(write, store.design, run.participant, "biet2008-plate") == ""
     assert store.rows("SELECT * FROM set_aside") == []
-    assert spoiled_by(load_design("period-jnd"), Response()) == ""
+    assert spoiled_by(load_design("period-jnd"), ()) == ""
 
 
 def test_by_hand_says_what_to_put_there() -> None:
