@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import functools
 import os
+import shutil
 import sqlite3
 from collections.abc import Callable
 from pathlib import Path
@@ -24,9 +26,25 @@ from ..scripted import LOUD, TRACE, Bench, Script, gratings
 SECRET = "marker of one sitting"
 
 
-def _study(tmp_path: Path) -> tuple[StudyStore, list[str]]:
+def _study(folder: Path) -> tuple[StudyStore, list[str]]:
+    """A copy of a study of three that is made once, beside the folders of all tests."""
+    made = folder.resolve().parent / "three people"
+    people = _made_once(made)
+    shutil.copytree(made, folder, dirs_exist_ok=True)
+    return StudyStore.open(folder / "study.sqlite"), people
+
+
+@functools.cache
+def _made_once(folder: Path) -> list[str]:
+    folder.mkdir()
+    store, people = _made(folder)
+    store.close()
+    return people
+
+
+def _made(folder: Path) -> tuple[StudyStore, list[str]]:
     """Three people with traces; the second one's sitting and traces have a marker in them."""
-    store = StudyStore.create(tmp_path / "study.sqlite", gratings(4), 7)
+    store = StudyStore.create(folder / "study.sqlite", gratings(4), 7)
     people = [store.enrol() for _ in range(3)]
     for place, who in enumerate(people):
         conditions = SessionConditions(consent=True, note=SECRET if place == 1 else "")
@@ -50,7 +68,8 @@ def _left(folder: Path, words: list[str]) -> list[tuple[str, str]]:
 
 
 def test_no_byte_of_a_participant_is_left_anywhere(tmp_path: Path) -> None:
-    store, people = _study(tmp_path)
+    # Never closed: some of it is in the log alone.
+    store, people = _made(tmp_path)
     gone = people[1]
     for format in ("csv", "psych-ds", "bids"):
         export_study(store, format)  # type: ignore[arg-type]
