@@ -19,7 +19,6 @@ from squeezefilm.core.quantities import unit_of
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
 from squeezefilm.physics.contact.sharing.pad import PadPoints
 from squeezefilm.physics.plate.parts import Sector
-from squeezefilm.physics.plate.shear.section import ShearLayout, ShearSection
 from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.sound import RadiatingSurface
 from squeezefilm.physics.render.program.lowering import Program
@@ -263,11 +262,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "frequencies": np.array([30e3]),
         "harmonics": (0,),
     },
-    "physics.plate.shear.modes.shear_modes": {"near": 30e3, "count": 1, "degree": 3},
-    "physics.plate.shear.modes.shear_mode": {"near": 60e3, "degree": 3, "nodal_lines": (4, 0)},
-    "physics.plate.shear.section.ShearLayout.parity_of": {"nodal_lines": (8, 0)},
-    "physics.plate.shear.section.ShearSection": Later(lambda: fields_of(made(ShearSection))),
-    "physics.plate.shear.section.ShearLayout": Later(lambda: fields_of(made(ShearLayout))),
     "physics.plate.sound.rectangular_surface": _RADIATOR,
     "physics.plate.sound.smooth_surface": {
         "sides": (0.02, 0.01),

@@ -63,13 +63,6 @@ from squeezefilm.physics.plate.ring.section import (
     full_drive,
 )
 from squeezefilm.physics.plate.ring.stator import StatorAssumptions, StatorFit, fit_stator
-from squeezefilm.physics.plate.shear.modes import ShearMode, shear_modes
-from squeezefilm.physics.plate.shear.section import (
-    ShearLayout,
-    ShearSection,
-    isotropic_section,
-    shear_layout,
-)
 from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.solid.response import (
     HarmonicResponse,
@@ -238,8 +231,6 @@ MADE: dict[Any, Callable[[], Any]] = {
     Amplifier: lambda: AMPLIFIERS[0],
     BeamResponse: lambda: beam_response(PLATE),
     Medium: lambda: isotropic_solid(BRASS),
-    ShearLayout: lambda: shear_layout(PLATE),
-    ShearSection: lambda: isotropic_section(BRASS, 2e-3),
     RadiatingSurface: lambda: rectangular_surface(
         np.linspace(0, 0.02, 9), np.linspace(0, 0.01, 5), np.ones((9, 5)) + 0j, 30e3
     ),
@@ -277,7 +268,6 @@ MADE: dict[Any, Callable[[], Any]] = {
     PlateModes: lambda: solve_modes(PLATE, near=60e3, count=1),
     SolidMode: lambda: solid_mode(PLATE),
     HarmonicResponse: lambda: harmonic_response(PLATE, np.array([30e3, 31e3])),
-    ShearMode: lambda: shear_modes(PLATE, 30e3, 1, degree=3)[0],
     RingBody: lambda: RingBody(disc_section(), full_drive(), (0, 1), None),
     RingResponse: lambda: ring_response(
         made(RingBody), made(AnnularMode), np.array([30e3]), (0,), 2

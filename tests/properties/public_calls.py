@@ -73,7 +73,6 @@ NOT_CALLED = {
     physics.plate.heat.warming.Warming physics.plate.heat.states.WarmState
     physics.plate.solid.volume.PlateVolume physics.plate.beam.response.BeamResponse
     physics.plate.ring.body.RingBody physics.plate.ring.response.RingResponse
-    physics.plate.shear.modes.ShearMode physics.plate.shear.working.ShearWorking
     physics.plate.solid.working.SolidMode physics.plate.exposure.ExposureGuidance
     physics.plate.sound.SoundField physics.plate.working_mode.ModeLine
     physics.plate.working_mode.WorkingMode physics.plate.surface_shape.BeamSurface
@@ -163,12 +162,10 @@ NOT_CALLED = {
     physics.plate.solid.solve.solve_for_response physics.plate.solid.reduced.surface_values
     physics.plate.solid.refined_modes.RefinedModes physics.plate.solid.refined_modes.extrapolated
     physics.plate.solid.refined_modes.refined_modes physics.plate.solid.refined_modes.with_label
-    physics.plate.shear.elements.Axis physics.plate.shear.elements.ShearSystem
-    physics.plate.shear.elements.ShearSystem.deflection physics.plate.shear.elements.make_axis
-    physics.plate.shear.elements.shear_system physics.plate.solid.guess.bare_frequency
-    physics.plate.solid.guess.screened_frequency physics.plate.elements.nodal_lines.line_counts
+    physics.plate.solid.guess.bare_frequency physics.plate.solid.guess.pieced_frequency
+    physics.plate.elements.nodal_lines.line_counts
     physics.plate.beam.modes.scaled_mode physics.plate.beam.modes.wave_numbers
-    physics.plate.beam.pieces.pieced_beam_mode physics.plate.shear.section.ShearLayout.mirrored
+    physics.plate.beam.pieces.pieced_beam_mode
     physics.plate.elements.slab_factor.SlabFactor physics.plate.elements.slabs.Slabs.grid
     physics.plate.elements.slabs.Slabs.mass_times
     physics.plate.elements.slabs.Slabs.places physics.plate.elements.slabs.Slabs.stiffness_times

@@ -172,7 +172,6 @@ SOLID_MEMORY = HardLimit(
 PLANAR_MEMORY = HardLimit(
     "bytes of a film in the plane", 0, 2e9, "every row of cells keeps a dense block"
 )
-SHEAR_UNKNOWNS = HardLimit("unknowns of a shear plate", 1, 100_000, "it would take all memory")
 RING_ELEMENTS = HardLimit(
     "elements of a ring's section", 1, 4000, "it would take hours and all memory"
 )

@@ -17,19 +17,17 @@ from squeezefilm.physics.plate.beam.modes import BeamTheory
 from squeezefilm.physics.plate.beam.response import beam_response
 from squeezefilm.physics.plate.laminate import CrossSection
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.shear.modes import shear_mode
 from squeezefilm.physics.plate.solid.working import solid_mode
 
 
 @dataclass(frozen=True)
 class OtherModel:
-    """The same plate by another theory, to show how far they differ; no amplitude where the theory
-    is used for the frequency only."""
+    """The same plate by another theory, to show how far they differ."""
 
     model: str
     resonance_frequency: si.Hertz
-    half_wavelength: si.Metre | None
-    vibration_amplitude: si.Metre | None
+    half_wavelength: si.Metre
+    vibration_amplitude: si.Metre
 
 
 def other_models(display: Display, prediction: Prediction) -> Iterator[OtherModel]:
@@ -45,10 +43,6 @@ def other_models(display: Display, prediction: Prediction) -> Iterator[OtherMode
             solid = solid_mode(plate)
             amplitude = volts * solid.amplitude_per_volt
             yield OtherModel(solid.model, solid.frequency, solid.half_wavelength, amplitude)
-    # A theory that has no such mode near has nothing to set beside.
-    with contextlib.suppress(InputError):
-        shear = shear_mode(plate, plate.working_label, mode.resonance_frequency)
-        yield OtherModel("shear_plate", shear.frequency, None, None)
     theories: tuple[BeamTheory, ...] = ("timoshenko", "euler_bernoulli")
     sections: tuple[CrossSection, ...] = ("plane_strain", "plane_stress", "paper")
     for theory, section in itertools.product(theories, sections):

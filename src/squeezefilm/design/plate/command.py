@@ -26,7 +26,6 @@ from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.elements.nodal_lines import line_distance
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.shear.modes import shear_mode
 from squeezefilm.physics.plate.solid.modes import Label, PlateModes, check_band
 from squeezefilm.physics.plate.solid.resonances import antinode, label_name
 from squeezefilm.physics.plate.solid.response import HarmonicResponse
@@ -60,7 +59,6 @@ class PlateAnalysis(SolvedBody):
     resonance: int
     beam_frequency: si.Hertz
     beam_amplitude_per_volt: si.MetrePerVolt
-    shear_frequency: si.Hertz | None
     sound: SoundField
     objections: tuple[str, ...] = ()
 
@@ -102,13 +100,6 @@ class PlateAnalysis(SolvedBody):
                 "model": "timoshenko_beam_plane_strain",
                 "frequency_Hz": self.beam_frequency,
                 "amplitude_m_per_V": self.beam_amplitude_per_volt,
-            },
-            "shear_plate": None
-            if self.shear_frequency is None
-            else {
-                "model": "shear_plate",
-                "frequency_Hz": self.shear_frequency,
-                "error_against_solid": self.shear_frequency / self.working.frequency - 1,
             },
         }
 
@@ -176,7 +167,6 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         resonance=at,
         beam_frequency=found.beam.mode.frequency,
         beam_amplitude_per_volt=found.beam.amplitude_per_volt,
-        shear_frequency=found.shear_frequency,
         sound=plate_sound(response, at, solid.frequency, display.drive.voltage),
         objections=(*require_plausible(display), *found.left_out),
     )
@@ -207,7 +197,6 @@ class SolvedPlate(NamedTuple):
     solid: SolidMode
     modes: PlateModes
     beam: BeamResponse
-    shear_frequency: si.Hertz | None
     left_out: tuple[str, ...]
 
 
@@ -235,7 +224,6 @@ def solved_plate(
         solid,
         modes,
         beam_response(plate),
-        _shear_frequency(plate, label, frequency),
         hurry.left_out(solid.modes, modes),
     )
 
@@ -270,16 +258,6 @@ def _driven_plate(display: Display) -> RectangularPlate:
             quantity="patches",
         )
     return plate
-
-
-def _shear_frequency(
-    plate: RectangularPlate, label: tuple[int, int], near: si.Hertz
-) -> si.Hertz | None:
-    """The same mode by the screening model; None where it has no such mode nearby."""
-    try:
-        return shear_mode(plate, label, near).frequency
-    except InputError:
-        return None
 
 
 def mode_row(modes: PlateModes, index: int) -> ModeRow:

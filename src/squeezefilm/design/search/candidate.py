@@ -38,7 +38,7 @@ Level = Literal["screened", "solved"]
 
 _SCREENING: Mapping[str, PlateTheory | None] = {
     "strips": "timoshenko",
-    "edge_strips": "shear",
+    "edge_strips": "timoshenko",
     "disc": None,
     "ring": None,
 }

@@ -1,6 +1,6 @@
 """The one mode a display works in, whatever the actuator: frequency, wavelength, Q, µm per volt.
 
-This is the seam between the vibrating body and everything above it. A solved plate, the shear plate
+This is the seam between the vibrating body and everything above it. A solved plate
 or a beam makes it for a plate, measured values make it for a stator.
 """
 
@@ -25,8 +25,6 @@ from squeezefilm.physics.plate.ring.body import (
     surface_profile,
 )
 from squeezefilm.physics.plate.ring.modes import AnnularMode
-from squeezefilm.physics.plate.shear.working import shear_working
-from squeezefilm.physics.plate.solid.guess import bare_frequency
 from squeezefilm.physics.plate.solid.resonances import Neighbour, label_name
 from squeezefilm.physics.plate.solid.working import SolidMode, solid_mode
 
@@ -45,7 +43,7 @@ def resonance_factor(
     return factor
 
 
-PlateTheory = Literal["solid", "timoshenko", "euler_bernoulli", "shear"]
+PlateTheory = Literal["solid", "timoshenko", "euler_bernoulli"]
 PLATE_THEORIES: tuple[PlateTheory, ...] = get_args(PlateTheory)
 
 
@@ -152,11 +150,11 @@ def working_mode(
     """The working mode of an actuator.
 
     A plate is solved in three dimensions (see `solid_mode`), or taken as a beam (see
-    `beam_response` for its range and error) or as a shear plate (see `shear_working`); a disc is
-    solved by Fourier harmonics; a stator is taken as measured, linear in the voltage. `pace` says
-    how long a solid may take. Raises `InputError` for another theory or a disc's mode that crosses
-    no two nodal lines, and what the solvers raise. The last few are kept, so that what is kept of a
-    mode, its shape under a finger, is found again.
+    `beam_response` for its range and error); a disc is solved by Fourier harmonics; a stator is
+    taken as measured, linear in the voltage. `pace` says how long a solid may take. Raises
+    `InputError` for another theory or a disc's mode that crosses no two nodal lines, and what the
+    solvers raise. The last few are kept, so that what is kept of a mode, its shape under a finger,
+    is found again.
     """
     si.require_one_of("theory", theory, PLATE_THEORIES)
     return _working_mode(actuator, theory, pace)
@@ -178,8 +176,6 @@ def _working_mode(actuator: Actuator, theory: PlateTheory, pace: Pace) -> Workin
         return _disc(actuator)
     if theory == "solid":
         return solid_working_mode(actuator, solid_mode(actuator, pace=pace))
-    if theory == "shear":
-        return _sheared(actuator)
     beam = beam_response(actuator, theory)
     shape, middle = beam.mode, beam.plate.width / 2
     lobe = _beam_lobe(beam)[0], middle
@@ -216,26 +212,6 @@ def solid_working_mode(
         line=ModeLine(solid.position, solid.deflection),
         solid=solid,
         beam=_beam_beside(plate),
-    )
-
-
-def _sheared(plate: RectangularPlate) -> WorkingMode:
-    try:
-        near = beam_response(plate).mode.frequency
-    except OutOfRangeError:
-        near = bare_frequency(plate, plate.working_label)
-    found = shear_working(plate, near)
-    return WorkingMode(
-        label=label_name(plate.working_label),
-        resonance_frequency=found.mode.frequency,
-        half_wavelength=found.half_wavelength,
-        quality_factor=plate.quality_factor,
-        amplitude_per_volt=found.amplitude_per_volt,
-        model=found.mode.model,
-        lobe=found.lobe,
-        frequency_error=found.mode.frequency_error,
-        modal_mass=found.modal_mass,
-        line=ModeLine(found.position, found.deflection),
     )
 
 

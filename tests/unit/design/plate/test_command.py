@@ -131,7 +131,6 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, Any]]:
         "beam_response",
         SimpleNamespace(mode=SimpleNamespace(frequency=33e3), amplitude_per_volt=9e-8),
     )
-    stand_in("shear_mode", SimpleNamespace(frequency=30.3e3))
     # What is made up here must not answer for a solved plate, nor the other way round.
     command.solved_plate.cache_clear()
     yield asked
@@ -151,13 +150,11 @@ def test_an_analysis_is_around_the_mode_asked_for(display: Display, parts: dict[
     assert (one.amplitude_per_volt, one.largest_per_volt) == (40e-9, 120e-9)
     assert (one.mode.lobe, one.working.alone_per_volt) == ((41e-3, 24e-3), 39e-9)
     assert (one.beam_frequency, one.beam_amplitude_per_volt) == (33e3, 9e-8)
-    assert parts["shear_mode"][0] == (plate, (4, 0), 30e3)
     assert parts["plate_sound"][0] == (one.response, one.resonance, 30e3, 15.0)
     assert told == [
         "mode (4,0) and its response", "all modes in the band", "airborne sound",
     ]  # fmt: skip
     said = one.summary()
-    assert said["shear_plate"]["error_against_solid"] == pytest.approx(0.01)
     assert (said["current_A"], said["apparent_power_VA"], said["input_power_W"]) == (
         pytest.approx((75e-3, 0.5625, 0.3375))
     )
@@ -199,18 +196,6 @@ def test_the_table_has_each_mode_of_the_band(display: Display, parts: dict[str, 
     assert second.alone_per_volt == third.alone_per_volt == 0
     # By default about as many frequencies as the response was solved at, its resonance among them.
     assert one.response.frequencies.size in (200, 201)
-
-
-def test_what_has_no_shear_mode_goes_without(
-    display: Display, parts: dict[str, Any], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def none(*_: Any) -> Any:
-        raise InputError("no such mode")
-
-    monkeypatch.setattr(command, "shear_mode", none)
-    one = analyze_plate(display, mode=(4, 0))
-    assert one.shear_frequency is None
-    assert one.summary()["shear_plate"] is None
 
 
 def test_what_cannot_be_is_refused_before_anything_is_solved(

@@ -71,7 +71,7 @@ def theory_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
         (
             model,
             shown(frequency, HZ),
-            "–" if half is None else shown(half, M),
+            shown(half, M),
             "–" if amplitude is None else shown(amplitude, M, 3),
         )
         for model, frequency, half, amplitude in (used, *others)

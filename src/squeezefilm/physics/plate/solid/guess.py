@@ -1,7 +1,7 @@
 """Where to look for a mode of a plate.
 
 A uniform beam takes ceramic to be everywhere. Where a plate carries it on a part of its face only,
-the shear plate is the guide: it sees the strips where they are, and costs a second.
+the beam of pieces is the guide: it has the strips where they are.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ import math
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import ConvergenceError, InputError, SqueezefilmError
+from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.physics.plate.beam.modes import free_beam_mode, timoshenko_frequency
+from squeezefilm.physics.plate.beam.pieces import beam_pieces, pieced_beam_mode
 from squeezefilm.physics.plate.laminate import plate_laminate, section_with
-from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.shear.modes import shear_mode
+from squeezefilm.physics.plate.layout import RectangularPlate, turned
 from squeezefilm.physics.plate.solid.mesh import require_thin
 from squeezefilm.physics.plate.solid.modes import Label
 
@@ -24,8 +24,8 @@ _COVERED = 0.8
 
 def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
     """A first guess of a mode's frequency (Hz): a Timoshenko beam with the mode's wave number, or
-    the shear plate where ceramics cover little of it. Raises `InputError` for a mode that does not
-    bend the plate, `OutOfRangeError` for one of waves across the thickness."""
+    `pieced_frequency` where ceramics cover little of it. Raises `InputError` for a mode that does
+    not bend the plate, `OutOfRangeError` for one of waves across the thickness."""
     frequency = _guess(plate, label)
     require_thin(plate, frequency, f"mode ({label[0]},{label[1]}) near")
     return frequency
@@ -41,8 +41,8 @@ def _guess(plate: RectangularPlate, label: Label) -> float:
             "frequency or in a band",
             quantity="mode",
         )
-    if plate.coverage < _COVERED and (guess := screened_frequency(plate, label)) is not None:
-        return guess
+    if plate.coverage < _COVERED and _wave_number(plate, label):
+        return pieced_frequency(plate, label)
     if label[1] == 0:
         try:
             return free_beam_mode(section, plate.length, label[0]).frequency
@@ -71,16 +71,25 @@ def _wave_number(plate: RectangularPlate, label: Label) -> float:
     )
 
 
-def screened_frequency(plate: RectangularPlate, label: Label) -> si.Hertz | None:
-    """The frequency of a mode by the shear plate (Hz), searched around that of a wave in the bare
-    plate: see `shear_mode`. None where the shear plate knows no such mode: then the caller's own
-    guess must do.
+def pieced_frequency(plate: RectangularPlate, label: Label) -> si.Hertz:
+    """The frequency of a bending mode of a plate that is covered in part (Hz).
+
+    By the beam of pieces where all lines run one way, within 13 % of solved plates as
+    `beam_response` is. With lines both ways that of a wave between the bare plate and the covered
+    one, by how much is covered.
     """
-    wave = _wave_number(plate, label)
-    if wave == 0:
-        return None
-    bare = timoshenko_frequency(math.pi / wave, section_with(plate, "plane_strain", 0.0, 0.0))
-    try:
-        return shear_mode(plate, label, float(bare), with_error=False).frequency
-    except (InputError, ConvergenceError):
-        return None
+    if min(label) == 0:
+        pieces = beam_pieces(plate if label[0] else turned(plate), "plane_strain")
+        try:
+            return pieced_beam_mode(pieces, max(label)).frequency
+        except SqueezefilmError:
+            pass
+    half = math.pi / _wave_number(plate, label)
+    bare, covered = (
+        float(timoshenko_frequency(half, section))
+        for section in (
+            section_with(plate, "plane_strain", 0.0, 0.0),
+            plate_laminate(plate, "plane_strain"),
+        )
+    )
+    return bare + plate.coverage * (covered - bare)

@@ -43,7 +43,6 @@ def plate(**changes: Any) -> Any:
         "mode": SimpleNamespace(amplitude_per_volt=1.2346e-7, lobe=(41.5e-3, 24.5e-3)),
         "largest_per_volt": 1.9e-7,
         "beam_frequency": 1.021 * 33581.26,
-        "shear_frequency": 0.9 * 33581.26,
         "load": LOAD,
         "circuit": CIRCUIT,
         "circuit_said": "",
@@ -83,7 +82,6 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
         "Quality factor 212.3 from the losses of its materials",
         "Effective coupling 0.123",
         "As a Timoshenko beam 34.286 kHz +2.1 %",
-        "As a shear plate 30.223 kHz −10.0 %",
         "At 15 V 12.3 mA 0.0926 VA, 0.0432 W",
         "Equivalent circuit C0 5.43 nF R1 123 Ω, L1 98.8 mH, C1 123 pF",
         *WARM_LINES,
@@ -97,12 +95,6 @@ def test_a_plate_is_said_with_all_that_there_is() -> None:
         "! a doubt",
         "! it is hot",
     ]
-
-
-def test_what_was_not_asked_for_is_not_there() -> None:
-    lines = said(shear_frequency=None)
-    assert lines[-3:] == ["piezoelectric_solid_3d; 12 modes", "! a doubt", "! it is hot"]
-    assert not [line for line in lines if "shear" in line]
 
 
 def test_a_mode_without_a_circuit_says_why_and_a_weak_one_how_much_of_it_is_its_own() -> None:

@@ -52,7 +52,7 @@ def test_the_other_half_is_the_mirror_image(along: Parity, sign: float) -> None:
         lambda: harmonic_response(PLATE, np.array([6.9e6, 7e6])),
         lambda: screened_modes(PLATE, (15e3, 7e6)),
         lambda: solve_modes(PLATE, mode=(400, 0)),
-        # With ceramics on a part of its face only, the shear plate guesses.
+        # With ceramics on a part of its face only, the beam of pieces guesses.
         lambda: solve_modes(PARTLY_COVERED, mode=(0, 400)),
     ],
 )
