@@ -23,7 +23,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq
 
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.physics.contact.sharing.balance import share_load
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable
 from squeezefilm.physics.contact.sharing.pad import pad_friction, pad_points

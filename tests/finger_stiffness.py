@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from squeezefilm.core.materials import Gas
+from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.physics.contact.finger.load import compiled_finger
 from squeezefilm.physics.contact.finger.load_kernel import between
-from squeezefilm.physics.contact.finger.skin import Skin
 from squeezefilm.physics.contact.rough_contact import ContactLaw
 
 

@@ -3,7 +3,7 @@
     python tools/levitation_fit.py
 
 prints the two numbers of each person (decay length and friction at rest), those of the seventy
-strokes, the defaults of `physics.contact.finger.fingertip` and `physics.contact.finger.people` that
+strokes, the defaults of `physics.contact.finger.fingertip` that
 follow; how a person who was left out is predicted from the others, beside the mean and spread of
 the others without physics; how the log-normal population predicts a stroke beside a resample of the
 strokes; and what partial levitation makes of the same people, of skins that move by their own
@@ -28,8 +28,7 @@ from squeezefilm.measure.fits.friction.person import PersonFit, fitted_person, w
 from squeezefilm.measure.recordings.kinds import FrictionCurve, FrictionDecays
 from squeezefilm.measure.recordings.read import check_folder
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
-from squeezefilm.physics.contact.finger.fingertip import Finger
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Finger, Skin
 from squeezefilm.physics.contact.rough_contact import RoughContact
 from squeezefilm.physics.contact.sharing.levitation import levitation_friction, levitation_scale
 from squeezefilm.physics.display import load_display

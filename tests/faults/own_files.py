@@ -21,7 +21,7 @@ from squeezefilm.design.search.store import FILE as DESIGNS
 from squeezefilm.design.search.store import DesignStore
 from squeezefilm.design.sweep.points import FILE as ANSWERS
 from squeezefilm.design.sweep.points import Answer, Kept, Point
-from squeezefilm.design.sweep.report.compared import compared_rows
+from squeezefilm.design.sweep.report.terminal import compared_rows
 from squeezefilm.instruments.session.record.trace import export_trace
 from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 from squeezefilm.lab.keys import Keys

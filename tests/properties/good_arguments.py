@@ -201,7 +201,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "constants": np.array([120e9, 75e9, 75e9, 110e9, 21e9, -5.0, 16.0, 12.0, 8e-9, 7e-9]) + 0j,
         "frequency": np.array([60e3, 70e3]),
     },
-    "physics.plate.ring.pair.crest_speed": {"travelling": 1e-6},
+    "design.plate.ring_pair.crest_speed": {"travelling": 1e-6},
     "physics.plate.solid.screening.screened_modes": {"band": (30e3, 60e3)},
     "physics.plate.parts.Sector": {"inner_radius": 1e-3, "outer_radius": 2e-3},
     "physics.plate.parts.Part": {

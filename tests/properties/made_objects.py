@@ -25,8 +25,7 @@ from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.pad_place import PadPlace
 from squeezefilm.physics.contact.asperities import AsperityLaw
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.physics.contact.finger.fingertip import Finger
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Finger, Skin
 from squeezefilm.physics.contact.sharing.balance import LoadSharing, share_load
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.physics.contact.sharing.pad import FrictionRipple, PadPosture

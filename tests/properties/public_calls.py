@@ -101,8 +101,8 @@ NOT_CALLED = {
     physics.film.periodic.nested.levels_of physics.film.periodic.nested.refine
     physics.film.periodic.nested.steadied physics.film.periodic.small.fill_small
     physics.film.periodic.small.reduced physics.film.periodic.solution.extrapolated_field
-    physics.film.closed.small.small_vibration physics.film.closed.small.small_pressure
-    physics.film.closed.small.flow_factor physics.film.closed.small.SmallVibration
+    physics.film.periodic.small.small_vibration physics.film.periodic.small.small_pressure
+    physics.film.periodic.small.flow_factor physics.film.periodic.small.SmallVibration
     physics.film.planar.balance.Balance physics.film.planar.balance.Balancer
     physics.film.planar.balance.Balancer.solve physics.film.planar.balance.Film
     physics.film.planar.balance.derivative physics.film.planar.balance.resampled

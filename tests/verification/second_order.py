@@ -10,7 +10,7 @@ import numpy as np
 from scipy.signal import cont2discrete, lfilter, ss2tf
 
 from squeezefilm.core.quantities import FloatArray
-from squeezefilm.physics.render.resonator.carrier import carrier_block
+from squeezefilm.physics.render.resonator.envelope import carrier_block
 
 
 class Carried(NamedTuple):

@@ -12,9 +12,9 @@ from tests.verification.trapped_film import trapped_load
 
 from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeError
 from squeezefilm.physics.film.closed import limits, linear
-from squeezefilm.physics.film.closed.small import small_vibration
 from squeezefilm.physics.film.gap import PaperGap
 from squeezefilm.physics.film.gas import slip_law
+from squeezefilm.physics.film.periodic.small import small_vibration
 
 EVERY_SIGMA = np.geomspace(1e-12, 1e12, 200)
 

@@ -11,8 +11,7 @@ from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.kernel import newton
 from squeezefilm.physics.film.periodic.profile import flexural_profile
-from squeezefilm.physics.film.periodic.records import Cells, Gap, Room
-from squeezefilm.physics.film.periodic.resolution import collocation_times
+from squeezefilm.physics.film.periodic.resolution import Cells, Gap, Room, collocation_times
 
 STRIP_LOADS = {
     (0.1, 1.0): 1.000108, (0.1, 10.0): 1.005188, (0.1, 100.0): 1.010778,

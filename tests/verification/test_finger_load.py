@@ -14,8 +14,8 @@ from squeezefilm.core.presets import friction_folder
 from squeezefilm.physics.chain.friction import friction_law
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.chain.touch import load_ratios, touch
+from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.physics.contact.finger.load import finger_impedance
-from squeezefilm.physics.contact.finger.skin import Skin
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.loaded_mode import loaded_mode

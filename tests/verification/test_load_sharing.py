@@ -18,8 +18,7 @@ from squeezefilm.physics.contact.asperities import (
     CompiledAsperities,
     gaussian_overlap,
 )
-from squeezefilm.physics.contact.finger.fingertip import Finger
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Finger, Skin
 from squeezefilm.physics.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.physics.contact.sharing.film_panels import DEEPEST_EXCURSION
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table

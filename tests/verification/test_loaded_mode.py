@@ -9,7 +9,7 @@ from squeezefilm.core.materials import Gas
 from squeezefilm.physics.chain.friction import friction_law
 from squeezefilm.physics.chain.touch import load_ratios, touch
 from squeezefilm.physics.contact.asperities import AsperityLaw
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.loaded_mode import LoadedMode, loaded_mode, mean_square_wave

@@ -229,7 +229,7 @@ def to_be_solved(
     go without) is told on standard error; `quiet` as in `working`. A vibration of a given
     `amplitude` needs no voltage. Raises what `foreseen` raises.
     """
-    from squeezefilm.physics.plausibility.foreseen import foreseen
+    from squeezefilm.physics.plausibility.checks import foreseen
 
     volts = read_option(voltage, "voltage", "V") if amplitude is None else 0.0
     seen = foreseen(target, volts)

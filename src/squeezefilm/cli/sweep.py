@@ -84,9 +84,13 @@ def sweep(asked: SweepOptions) -> None:
     import os
 
     from squeezefilm.design.sweep.answers import asked_for
-    from squeezefilm.design.sweep.report.compared import compared_rows, show_comparison
     from squeezefilm.design.sweep.report.page import require_kind, wishes, write_sweep
-    from squeezefilm.design.sweep.report.terminal import show_answers, show_sweep
+    from squeezefilm.design.sweep.report.terminal import (
+        compared_rows,
+        show_answers,
+        show_comparison,
+        show_sweep,
+    )
     from squeezefilm.design.sweep.sweep import SweepRequest, sweep_until_stopped
     from squeezefilm.measure.fits.friction.person import with_finger
     from squeezefilm.physics.display import load_display

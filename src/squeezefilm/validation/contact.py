@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.validation.frozen import FROZEN, MODELS
 from squeezefilm.validation.values import ClaimValue
 

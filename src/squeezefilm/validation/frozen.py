@@ -19,8 +19,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import Gas
 from squeezefilm.physics.contact.asperities import AsperityLaw
-from squeezefilm.physics.contact.finger.fingertip import Finger
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Finger, Skin
 from squeezefilm.physics.contact.rough_contact import ContactLaw
 from squeezefilm.physics.contact.sharing.balance import share_load
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.design.analysis.published_claims import Claim, read_claims
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.validation.command import judge
 from squeezefilm.validation.contact import DIRECTION_VALUES
 from squeezefilm.validation.frozen import FROZEN

@@ -9,7 +9,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.contact.asperities import AsperityLaw
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.physics.contact.sharing.balance import share_load
 from squeezefilm.physics.contact.sharing.gas_table import film_table
 from squeezefilm.physics.contact.sharing.levitation import levitation_friction, levitation_scale

@@ -17,7 +17,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.physics.chain.prediction import Prediction
-from squeezefilm.physics.contact.finger.people import rest_friction_factor
+from squeezefilm.physics.contact.finger.fingertip import rest_friction_factor
 from squeezefilm.physics.display import DECAY_LENGTH, Display
 from squeezefilm.physics.perception.felt import (
     Rubbed,

@@ -21,7 +21,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.formats.traces import text_of_file
 from squeezefilm.core.hard_limits import SWEEP_STEPS, require_within
-from squeezefilm.design.sweep.options import OPTIONS, Option
+from squeezefilm.design.sweep.verbs import OPTIONS, Option
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.parameters import number_paths, unit_at
 

@@ -18,9 +18,8 @@ from squeezefilm.core.kept.store import in_passing
 from squeezefilm.core.results import config_hash, to_json
 from squeezefilm.design.sweep.answers import numbers_of
 from squeezefilm.design.sweep.lines import Lines
-from squeezefilm.design.sweep.options import OPTIONS
 from squeezefilm.design.sweep.tasks import Lost, Workers
-from squeezefilm.design.sweep.verbs import VERBS
+from squeezefilm.design.sweep.verbs import OPTIONS, VERBS
 from squeezefilm.physics.display import Display
 
 

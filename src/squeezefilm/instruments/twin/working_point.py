@@ -12,7 +12,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.chain.area_map import at_best_place
-from squeezefilm.physics.chain.chosen_mode import chosen_mode
+from squeezefilm.physics.chain.free_vibration import chosen_mode
 from squeezefilm.physics.chain.friction import TABLE_SPEEDS, friction_law
 from squeezefilm.physics.chain.touch import load_ratios
 from squeezefilm.physics.display import Display

@@ -24,9 +24,8 @@ from squeezefilm.physics.chain.friction_models import (
     ModelKind,
 )
 from squeezefilm.physics.chain.pad_place import PadPlace
-from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED, Finger
+from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED, Finger, Skin
 from squeezefilm.physics.contact.finger.load import compiled_finger
-from squeezefilm.physics.contact.finger.skin import Skin
 from squeezefilm.physics.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.physics.contact.sharing.balance import require_balanced
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table

@@ -21,8 +21,7 @@ from squeezefilm.core.errors import InputError, OutOfRangeError, OutOfRangeWarni
 from squeezefilm.core.progress import NO_HURRY, Pace
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.physics.chain.area_map import at_best_place
-from squeezefilm.physics.chain.chosen_mode import chosen_mode
-from squeezefilm.physics.chain.free_vibration import FreeVibration, free_vibration
+from squeezefilm.physics.chain.free_vibration import FreeVibration, chosen_mode, free_vibration
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.physics.chain.friction_table import FrictionTable

@@ -9,8 +9,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE
 from squeezefilm.core.errors import UnreachableError
 from squeezefilm.physics.chain.area_map import at_best_place
-from squeezefilm.physics.chain.chosen_mode import chosen_mode
-from squeezefilm.physics.chain.free_vibration import amplitude_per_volt
+from squeezefilm.physics.chain.free_vibration import amplitude_per_volt, chosen_mode
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace, pad_place

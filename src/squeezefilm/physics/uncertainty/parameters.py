@@ -16,7 +16,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.distributions import Distribution, LogNormal, Uniform
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import Piezoceramic
-from squeezefilm.physics.contact.finger.people import DECAY_LENGTH_SPREAD
+from squeezefilm.physics.contact.finger.fingertip import DECAY_LENGTH_SPREAD
 from squeezefilm.physics.display import DECAY_LENGTH, Display, NamedDisplay
 from squeezefilm.physics.plausibility.checks import described_numbers
 

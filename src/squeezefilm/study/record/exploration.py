@@ -15,7 +15,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.formats.traces import Table, table_from_csv
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.perception.path_runs import straight_runs
+from squeezefilm.physics.perception.path_percepts import straight_runs
 from squeezefilm.physics.plate.layout import AnnularStator
 from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.study.record.store import StudyStore
@@ -46,7 +46,7 @@ class Exploration:
         moving_speed: path over the time spent above `RESTING_SPEED` (m/s); NaN if it never moved.
         moving_share: share of the time in touch spent above `RESTING_SPEED`.
         reversals: of the motion along x, rests left out.
-        passes: straight stretches one way, of 4 mm or more (`physics.perception.path_runs`).
+        passes: straight stretches one way, of 4 mm or more (`physics.perception.path_percepts`).
         along_x_share: share of the passes' way that goes along x more than along y; NaN without.
         coverage: share of the face's cells of 5 mm that the finger's middle came over; NaN where
             the face is not known.

@@ -12,7 +12,7 @@ from squeezefilm.core.kit.model_looks import look_of
 from squeezefilm.core.kit.numbers import M, N, shown
 from squeezefilm.design.analysis.analyze import Analysis, analyze
 from squeezefilm.design.analysis.curves import PAPER_CRITERION, pressure_profiles, wavelength_curves
-from squeezefilm.design.analysis.report.friction_figures import criterion_line, working_point
+from squeezefilm.design.analysis.report.figures import criterion_line, working_point
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.beam.modes import euler_bernoulli_frequency, timoshenko_frequency
 from squeezefilm.physics.plate.laminate import Laminate, plate_laminate

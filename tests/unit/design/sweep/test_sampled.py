@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.sweep.sampled import axes_of_ranges
+from squeezefilm.design.sweep.plan import axes_of_ranges
 from squeezefilm.physics.display import load_display
 
 PLATE = load_display("biet2008-plate")

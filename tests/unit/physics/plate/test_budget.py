@@ -7,7 +7,7 @@ from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.progress import Pace
 from squeezefilm.design.plate.command import solve_plate
 from squeezefilm.design.plate.solved import Hurry
-from squeezefilm.physics.chain.chosen_mode import chosen_mode
+from squeezefilm.physics.chain.free_vibration import chosen_mode
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import RectangularPlate

@@ -10,8 +10,8 @@ from squeezefilm.physics.plate.beam.response import beam_response
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.size import band_seconds, expected_seconds, solve_size
 from squeezefilm.physics.plate.working_mode import working_mode
+from squeezefilm.physics.plausibility.checks import foreseen
 from squeezefilm.physics.plausibility.expected import Expectation, expectation
-from squeezefilm.physics.plausibility.foreseen import foreseen
 
 
 def of(name: str) -> Expectation:

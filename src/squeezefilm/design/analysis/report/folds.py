@@ -12,7 +12,6 @@ from squeezefilm.design.analysis.report.decisions import (
     sensitivity_rows,
     wanted_rows,
 )
-from squeezefilm.design.analysis.report.described_values import display_values
 from squeezefilm.design.analysis.report.first_screen import doubted, first_screen
 from squeezefilm.design.analysis.report.model_rows import (
     MISSED_HEADING,
@@ -23,7 +22,11 @@ from squeezefilm.design.analysis.report.model_rows import (
     theory_rows,
     weight_rows,
 )
-from squeezefilm.design.analysis.report.point_rows import electronics_rows, place_rows
+from squeezefilm.design.analysis.report.point_rows import (
+    display_values,
+    electronics_rows,
+    place_rows,
+)
 from squeezefilm.design.analysis.report.rows import (
     electrical_rows,
     more_rows,

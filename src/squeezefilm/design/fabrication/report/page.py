@@ -28,8 +28,7 @@ from squeezefilm.core.kit.page_style import (
     text_table,
 )
 from squeezefilm.core.kit.sheet import pdf, sheet_figure, views_figure
-from squeezefilm.design.analysis.report.described_values import display_values
-from squeezefilm.design.analysis.report.point_rows import electronics_rows
+from squeezefilm.design.analysis.report.point_rows import display_values, electronics_rows
 from squeezefilm.design.fabrication.facets import CHORD_ERROR, triangles_of, volume_error
 from squeezefilm.design.fabrication.report.drawing_sheet import drawing_sheet
 from squeezefilm.design.fabrication.report.rows import (

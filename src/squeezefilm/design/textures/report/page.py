@@ -69,7 +69,7 @@ def drive_waveform(result: RenderAnalysis) -> Waveform:
         InputError: a display without a voltage, a control rate that does not divide 192 kHz, or a
             carrier above what that rate can carry.
     """
-    from squeezefilm.physics.render.resonator.carrier import carrier_block, samples_per_command
+    from squeezefilm.physics.render.resonator.envelope import carrier_block, samples_per_command
 
     p, stroke = result.prediction, result.stroke
     if p.voltage is None:

@@ -20,8 +20,7 @@ from squeezefilm.measure.recordings.kinds import FrictionCurve
 from squeezefilm.measure.recordings.read import read_recording
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.prediction import predict
-from squeezefilm.physics.contact.finger.fingertip import FASTEST, SLOWEST
-from squeezefilm.physics.contact.finger.people import MEAN_SPREAD
+from squeezefilm.physics.contact.finger.fingertip import FASTEST, MEAN_SPREAD, SLOWEST
 from squeezefilm.physics.display import DECAY_LENGTH, Display, NamedDisplay, load_display
 
 _LENGTHS = np.geomspace(0.3e-6, 100e-6, 120)

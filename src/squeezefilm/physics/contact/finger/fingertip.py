@@ -1,4 +1,24 @@
-"""The fingertip as the film and the contact see it."""
+"""The fingertip as the film and the contact see it.
+
+The skin at ultrasonic frequency: nearly inertial, moved a little by the film's pressure.
+
+A patch of skin over a ridge is a mass per area m on a stiffness k and a damping c per area. The
+alternating pressure of film and asperities moves it by y = p/D, D = k − m ω² + iωc, so that the gap
+swings by b = a − y instead of a; in the mean the skin is soft and only carries the load.
+
+With a stiffness Z of film and asperities |b/a| = |D/(D + Z)|. Without damping the gap swings less
+than the plate, and damping makes it swing more, where k − m ω² > −|Z|²/(2 Re Z): on an elastic
+skin, which rides along with the plate, or one that is light against the interface. On a heavier
+skin without stiffness the gap swings more than the plate, and damping takes from that.
+
+How fingers differ from person to person, as far as friction on vibrating glass was published.
+
+Seventy free strokes of 14 people, each fitted by its authors with a Gaussian of the amplitude:
+Monnoyer, Diaz, Bourdin and Wiertlewski, IEEE Trans. Haptics 11 (2018) 579. Decay lengths ℓ of the
+levitation model that fall to half at the same amplitude, and frictions at rest µ0, are log-normal
+as far as these strokes can tell, and correlated. Who made which stroke was not published, so that a
+stroke counts as a person. `tools/levitation_fit.py` prints the numbers.
+"""
 
 from __future__ import annotations
 
@@ -19,12 +39,43 @@ from squeezefilm.core.hard_limits import (
     RIDGE_PERIOD,
     RIDGES,
     ROUGHNESS,
+    SKIN_DAMPING,
+    SKIN_MASS,
     SKIN_ROUGHNESS,
+    SKIN_STIFFNESS,
     require_within,
 )
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.physics.contact.finger.skin import Skin
 from squeezefilm.physics.contact.rough_contact import ContactLaw, RoughContact
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class Skin:
+    """Mass, stiffness and damping of the skin per area of plateau, at ultrasonic frequency.
+
+    The defaults are derived from 43 fingertips pressed on glass with 0.5 N at 34.59 kHz (Monnoyer,
+    Diaz, Bourdin and Wiertlewski, IEEE Transactions on Haptics 11 (2018) 579, read off a figure):
+    medians of 18.9 N·s/m and 0.112 g, a magnitude of 33 N·s/m on average. What film and asperities
+    of the default finger leave of these medians to the skin at a vanishing amplitude is 1.2 kg/m²
+    and no damping: the film alone loses as much. Area and interface are assumed, and the amplitude
+    of the measurement was not read (see `load`). No stiffness is known: a skin on which its
+    stiffness weighs more than its inertia would raise the resonance, which none of the 43 did.
+    """
+
+    mass_per_area: Annotated[si.KilogramPerSquareMetre, SKIN_MASS] = 1.2
+    stiffness_per_area: Annotated[si.PascalPerMetre, SKIN_STIFFNESS] = 0.0
+    damping_per_area: Annotated[si.PascalSecondPerMetre, SKIN_DAMPING] = 0.0
+
+    @si.checked_numbers
+    def dynamic_stiffness(self, frequency: Annotated[si.Hertz, si.Above(0.0)]) -> complex:
+        """k − m ω² + iωc in Pa/m, ω = 2π frequency."""
+        omega = 2 * np.pi * frequency
+        return complex(
+            self.stiffness_per_area - self.mass_per_area * omega**2,
+            self.damping_per_area * omega,
+        )
+
 
 Moisture = Literal["dry", "normal", "moist"]
 
@@ -224,3 +275,30 @@ def _require_ridges(side: si.Metre, period: si.Metre) -> None:
     shown, finest = (si.format_quantity(one, si.Unit("m")) for one in (side, side / RIDGES.most))
     enough = f"a contact of {shown} may have a ridge_period of {finest} or more"
     require_within(RIDGES, side // period, enough=enough)
+
+
+PEOPLE = 14
+"""How many made the strokes."""
+DECAY_LENGTH_SPREAD: si.Dimensionless = 0.345
+"""Standard deviation of ln ℓ over the strokes."""
+REST_FRICTION_SPREAD: si.Dimensionless = 0.491
+"""Standard deviation of ln µ0 over the strokes."""
+CORRELATION: si.Dimensionless = 0.34
+"""Of ln ℓ with ln µ0 over the strokes."""
+MEAN_SPREAD: si.Dimensionless = DECAY_LENGTH_SPREAD / math.sqrt(PEOPLE)
+"""Standard error of the mean of ln ℓ, with each person counted once."""
+
+
+@si.checked_numbers
+def rest_friction_factor(
+    share: Annotated[si.DimensionlessArray, si.Above(0.0), si.Below(1.0)],
+    decay_ratio: Annotated[si.DimensionlessArray, si.Above(0.0)],
+) -> si.DimensionlessArray:
+    """µ0 of people over the median µ0, not exceeded with probability `share` by people whose ℓ is
+    `decay_ratio` times the median ℓ; all of shape (n,). Raises `InputError` for other shapes."""
+    from scipy.special import ndtri
+
+    si.require_alike(share=share, decay_ratio=decay_ratio)
+    apart = math.sqrt(1 - CORRELATION**2) * ndtri(share)
+    along = CORRELATION * np.log(decay_ratio) / DECAY_LENGTH_SPREAD
+    return np.exp(REST_FRICTION_SPREAD * (along + apart))

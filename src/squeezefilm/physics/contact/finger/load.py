@@ -20,7 +20,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.materials import Gas
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.physics.film.gap import squeeze_number
 
 if TYPE_CHECKING:

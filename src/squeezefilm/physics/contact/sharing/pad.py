@@ -16,8 +16,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.contact.finger.fingertip import Finger
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Finger, Skin
 from squeezefilm.physics.contact.rough_contact import ContactLaw
 from squeezefilm.physics.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable

@@ -23,10 +23,10 @@ from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.core.progress import CountProgress
 from squeezefilm.physics.film.gas import Aim, require_film, slip_law
-from squeezefilm.physics.film.periodic.records import Resolution
 from squeezefilm.physics.film.periodic.resolution import (
     CELLS,
     TIMES,
+    Resolution,
     first_guess,
     refined,
     resolution_of,

@@ -34,8 +34,7 @@ from squeezefilm.physics.film.periodic.profile import (
     profile_from_function,
     sampled_grid,
 )
-from squeezefilm.physics.film.periodic.records import Resolution
-from squeezefilm.physics.film.periodic.resolution import CELLS, first_guess
+from squeezefilm.physics.film.periodic.resolution import CELLS, Resolution, first_guess
 from squeezefilm.physics.film.periodic.small import LARGEST, enlarged, reduced, small_film
 from squeezefilm.physics.film.periodic.solution import (
     NO_FIELD,

@@ -34,7 +34,7 @@ from squeezefilm.physics.film.periodic.lanes import (
     sub,
     total,
 )
-from squeezefilm.physics.film.periodic.records import Cells, Gap, Room, Times
+from squeezefilm.physics.film.periodic.resolution import Cells, Gap, Room, Times
 
 # `reassoc` and `contract` only: NaN must stay visible, so `nnan` and `ninf` stay off.
 _FAST = {"reassoc", "contract", "arcp", "nsz"}

@@ -16,8 +16,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.film.periodic.batch import ROUNDS
 from squeezefilm.physics.film.periodic.profile import evaluate
-from squeezefilm.physics.film.periodic.records import Resolution
-from squeezefilm.physics.film.periodic.resolution import refined, resolution_of
+from squeezefilm.physics.film.periodic.resolution import Resolution, refined, resolution_of
 from squeezefilm.physics.film.periodic.solution import HARMONICS, Found
 
 NEWTON_SHARE = 0.03

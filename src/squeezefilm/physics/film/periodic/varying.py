@@ -16,7 +16,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.film.gas import Aim, Gas
 from squeezefilm.physics.film.periodic.kernel import newton, prolong
-from squeezefilm.physics.film.periodic.records import Cells, Gap, Resolution, Room
+from squeezefilm.physics.film.periodic.resolution import Cells, Gap, Resolution, Room
 from squeezefilm.physics.film.periodic.uniform import (
     CHECK,
     COARSE,

@@ -13,8 +13,7 @@ import pytest
 
 from squeezefilm.core.kit import style
 from squeezefilm.design.analysis.analyze import Analysis
-from squeezefilm.design.analysis.report.figures import FIGURES
-from squeezefilm.design.analysis.report.plate_figures import half_power
+from squeezefilm.design.analysis.report.figures import FIGURES, half_power
 
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 KEYS = ("area", "response", "band")

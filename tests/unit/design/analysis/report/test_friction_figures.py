@@ -12,7 +12,7 @@ from tests.unit.made_curves import GRID, made
 
 from squeezefilm.core.kit.model_looks import look_of
 from squeezefilm.core.kit.style import BAND
-from squeezefilm.design.analysis.report.friction_figures import own_friction
+from squeezefilm.design.analysis.report.figures import own_friction
 
 
 def test_the_own_model_is_drawn_within_its_band() -> None:

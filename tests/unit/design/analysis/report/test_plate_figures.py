@@ -11,7 +11,7 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from tests.unit.drawn import labelled, words
 
-from squeezefilm.design.analysis.report.plate_figures import (
+from squeezefilm.design.analysis.report.figures import (
     frequency_response,
     half_power,
 )

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from squeezefilm.design.analysis.area_odds import judged_area
-from squeezefilm.design.analysis.report.area_figures import active_area as figure_of
+from squeezefilm.design.analysis.report.figures import active_area as figure_of
 from squeezefilm.design.analysis.report.point_rows import place_rows
 from squeezefilm.physics.chain.active_area import active_area, percent
 from squeezefilm.physics.chain.pad_place import place_words

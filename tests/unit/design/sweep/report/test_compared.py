@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.sweep.report.compared import compared_rows, show_comparison
+from squeezefilm.design.sweep.report.terminal import compared_rows, show_comparison
 
 TABLE = """voltage_V,speed_m_per_s,relative_friction,reason
 10.0,0.1,0.8,

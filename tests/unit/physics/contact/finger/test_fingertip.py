@@ -10,8 +10,7 @@ from squeezefilm.core import presets
 from squeezefilm.core.config import load
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.physics.contact.asperities import AsperityLaw
-from squeezefilm.physics.contact.finger.fingertip import Finger
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Finger, Skin
 from squeezefilm.physics.contact.rough_contact import RoughContact
 from squeezefilm.physics.display import Display, load_display
 

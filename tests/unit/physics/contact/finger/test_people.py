@@ -7,7 +7,7 @@ import pytest
 from scipy.stats import qmc
 
 from squeezefilm.core.distributions import LogNormal
-from squeezefilm.physics.contact.finger.people import (
+from squeezefilm.physics.contact.finger.fingertip import (
     CORRELATION,
     DECAY_LENGTH_SPREAD,
     REST_FRICTION_SPREAD,

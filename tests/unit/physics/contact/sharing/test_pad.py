@@ -10,8 +10,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.physics.contact.asperities import AsperityLaw
-from squeezefilm.physics.contact.finger.fingertip import Finger
-from squeezefilm.physics.contact.finger.skin import Skin
+from squeezefilm.physics.contact.finger.fingertip import Finger, Skin
 from squeezefilm.physics.contact.sharing.balance import share_load, share_load_tied
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable
 from squeezefilm.physics.contact.sharing.kernel import CompiledFilms

@@ -16,7 +16,7 @@ from squeezefilm.physics.film.periodic.nested import (
     refine,
     steadied,
 )
-from squeezefilm.physics.film.periodic.records import Resolution
+from squeezefilm.physics.film.periodic.resolution import Resolution
 from squeezefilm.physics.film.periodic.uniform import (
     CHECK,
     COARSE,

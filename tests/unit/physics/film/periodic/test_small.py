@@ -9,12 +9,17 @@ import pytest
 
 from squeezefilm.core.errors import ConvergenceError
 from squeezefilm.physics.film.closed.linear import relative_damping, relative_stiffness
-from squeezefilm.physics.film.closed.small import flow_factor, small_pressure, small_vibration
 from squeezefilm.physics.film.gas import slip_law
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.profile import flexural_profile, profile_from_function
-from squeezefilm.physics.film.periodic.small import LEAST_DEPTH, enlarged
+from squeezefilm.physics.film.periodic.small import (
+    LEAST_DEPTH,
+    enlarged,
+    flow_factor,
+    small_pressure,
+    small_vibration,
+)
 
 
 @pytest.mark.parametrize("shape", ["strip", "disc"])

@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.physics.film.gas import Aim, Gas
-from squeezefilm.physics.film.periodic.records import Resolution
-from squeezefilm.physics.film.periodic.resolution import collocation_times
+from squeezefilm.physics.film.periodic.resolution import Resolution, collocation_times
 from squeezefilm.physics.film.periodic.uniform import (
     CHECK,
     COARSE,

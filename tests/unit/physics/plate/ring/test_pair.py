@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.plate.layout import DiscPlate
-from squeezefilm.physics.plate.ring.modes import AnnularMode, annular_modes
-from squeezefilm.physics.plate.ring.pair import (
+from squeezefilm.design.plate.ring_pair import (
     crest_speed,
     electrode_split,
     least_standing_wave_ratio,
     most_travelling,
 )
+from squeezefilm.physics.plate.layout import DiscPlate
+from squeezefilm.physics.plate.ring.modes import AnnularMode, annular_modes
 from squeezefilm.physics.plate.ring.section import alternate_sectors, bonded_disc
 
 

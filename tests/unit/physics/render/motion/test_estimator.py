@@ -28,8 +28,8 @@ from squeezefilm.physics.render.motion.sensor import (
 )
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.physics.render.resonator import kernel as compensation_kernel
-from squeezefilm.physics.render.resonator.carrier import carrier_block
 from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope, preview_work
+from squeezefilm.physics.render.resonator.envelope import carrier_block
 
 ESTIMATOR = MotionEstimator(MotionModel(), 2e-5)
 

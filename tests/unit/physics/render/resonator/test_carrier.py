@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.render.resonator.carrier import carrier_block, samples_per_command
+from squeezefilm.physics.render.resonator.envelope import carrier_block, samples_per_command
 
 
 def test_a_block_goes_on_where_the_last_one_ended() -> None:

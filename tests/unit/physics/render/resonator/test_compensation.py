@@ -11,13 +11,13 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import to_json
 from squeezefilm.physics.render.resonator import kernel
-from squeezefilm.physics.render.resonator.carrier import carrier_block, samples_per_command
 from squeezefilm.physics.render.resonator.compensation import (
     DrivenEnvelope,
     compensated_drive,
     preview_samples,
     preview_work,
 )
+from squeezefilm.physics.render.resonator.envelope import carrier_block, samples_per_command
 from squeezefilm.physics.render.resonator.square_swing import (
     fastest_compensated_speed,
     least_cycle,
