@@ -337,7 +337,10 @@ def score(path: str | Path, observations: Sequence[Observation]) -> tuple[Score,
     scores = []
     for foretold in prediction.predictions:
         for seen in observations:
-            if seen.answer == foretold.answer and _alike(foretold.conditions, seen.conditions):
+            if seen.answer == foretold.answer and all(
+                math.isclose(value, seen.conditions.get(key, math.nan), rel_tol=0.01)
+                for key, value in foretold.conditions.items()
+            ):
                 scores.append(_scored(foretold, seen))
     if not scores:
         predicted = ", ".join(foretold.answer for foretold in prediction.predictions)
@@ -347,13 +350,6 @@ def score(path: str | Path, observations: Sequence[Observation]) -> tuple[Score,
             "conditions); give the recording that the prediction was made for"
         )
     return tuple(scores)
-
-
-def _alike(predicted: dict[str, float], seen: Any) -> bool:
-    return all(
-        key in seen and math.isclose(value, seen[key], rel_tol=0.01)
-        for key, value in predicted.items()
-    )
 
 
 def _scored(predicted: Predicted, seen: Observation) -> Score:

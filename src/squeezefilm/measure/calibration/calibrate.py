@@ -382,11 +382,9 @@ def _next(
     amplitude = float(np.nanmedian(made.with_finger))
     # The error of the law at the first is that in the joint draws, by the seed.
     where = (Touching(amplitude), Touching(amplitude / 2))
-
-    def next_told(_: str, share: float) -> None:
-        tell("what to measure next", share)
-
-    curves = friction_of_points(finger.mixture, finger.points, where, next_told)
+    curves = friction_of_points(
+        finger.mixture, finger.points, where, lambda _, share: tell("what to measure next", share)
+    )
     if finger.draws is not None:
         curves = finger.draws.with_error(curves, where, seed)
     curves = np.where(np.isfinite(curves), curves, 1.0)

@@ -44,11 +44,6 @@ def _through(wave: si.ComplexArray, at: Fixture) -> si.ComplexArray:
     return np.asarray(2 * at.reference * (1 - wave) / wave)
 
 
-def _divided(gain: si.ComplexArray, at: Fixture) -> si.ComplexArray:
-    """Impedance of what stands above a shunt, by the shunt's voltage over that of both."""
-    return np.asarray(at.shunt * (1 / gain - 1))
-
-
 IMPEDANCES: Mapping[tuple[str, ...], Made] = {
     ("magnitude", "phase"): lambda z, phase, at: _polar(z, phase),
     ("resistance", "reactance"): lambda r, x, at: r + 1j * x,
@@ -92,6 +87,7 @@ IMPEDANCES: Mapping[tuple[str, ...], Made] = {
     ("reflection", "phase"): lambda s, phase, at: _reflected(_polar(s, phase), at),
     ("transmission", "transmission_imaginary"): lambda re, im, at: _through(re + 1j * im, at),
     ("transmission", "phase"): lambda s, phase, at: _through(_polar(s, phase), at),
-    ("gain", "phase"): lambda h, phase, at: _divided(_polar(h, phase), at),
+    # Of what stands above a shunt, by the shunt's voltage over that of both.
+    ("gain", "phase"): lambda h, phase, at: at.shunt * (1 / _polar(h, phase) - 1),
 }
 """The pairs of which one must be named, those first that say most, and what each makes."""

@@ -200,7 +200,6 @@ def detection_words(compared: DetectionComparison) -> list[str]:
 
 
 _TICKS = (0.003, 0.01, 0.03, 0.1)
-_COLOURS = (style.BLUE, style.ORANGE, style.GREEN, style.INK)
 # Micrometres and milligrams, on the axis of a figure.
 _SHOWN = {"m": ("µm", 1e6), "kg": ("mg", 1e6)}
 
@@ -229,28 +228,6 @@ def comparison_figure(compared: CurveComparison) -> Figure:
         axes.plot(amplitude, score.friction, **look, label=label)
     axes.plot([], [], **style.GUIDE, label="other models and shapes")
     measured_points(axes, curve)
-    style.legend_beside(axes)
-    return figure
-
-
-@style.drawn
-def all_curves_figure(compared: FolderComparison) -> Figure:
-    """Every measured curve over its friction at rest, and the default model beside each."""
-    figure = style.new_figure(
-        "Published friction over the amplitude, and the default model",
-        "the default, lines, its friction at rest fitted; measured, points",
-        5,
-    )
-    axes = figure.subplots()
-    for number, curve in enumerate(compared.curves):
-        colour, amplitude = _COLOURS[number % len(_COLOURS)], 1e6 * curve.curve.vibration_amplitude
-        name = style.plain(curve.curve.told.name, 40)
-        axes.plot(
-            amplitude, curve.curve.friction / curve.at_rest, "o", color=colour, ms=4, label=name
-        )
-        axes.plot(amplitude, curve.default.friction / curve.at_rest, "-", color=colour, lw=1.2)
-    style.friction_axes(axes, top=axes.get_ylim()[1])
-    axes.set_ylabel("friction over friction at rest")
     style.legend_beside(axes)
     return figure
 

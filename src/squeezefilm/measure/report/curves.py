@@ -41,8 +41,6 @@ beside two shapes without physics and the published levitation model of 2016.
 **What was never measured in them**: metal and coated surfaces, forces above 0.8 N, frequencies
 below 29 kHz, moisture, and speed as the only change. The numbers were read off figures, with an
 error of about 1 % of an axis.
-
-![Published friction beside the default model](../pictures/published-friction.png)
 """
 
 
@@ -153,9 +151,6 @@ def write_friction_docs(compared: FolderComparison, root: Path | None = None) ->
     Raises `InputError` where the package is installed without one.
     """
     docs = checkout(root) / "docs"
-    write_whole(
-        docs / "pictures" / "published-friction.png", style.png(beside.all_curves_figure(compared))
-    )
     for detected in compared.detections:
         write_whole(
             docs / "pictures" / "published-thresholds.png",
