@@ -1,5 +1,4 @@
-"""What long work tells of itself while it runs, and how long it may take: handed down to what
-works."""
+"""Progress of long work, and how long it may take: handed down to what works."""
 
 from __future__ import annotations
 
@@ -19,11 +18,8 @@ ShareProgress = Callable[[str, float], None]
 
 @dataclass(frozen=True, slots=True)
 class Deadline:
-    """A time (s, of `clock`) by which work must have ended.
-
-    `reserved` is what is expected to come after it (s), `slowness` how many times longer than
-    expected work takes here.
-    """
+    """A time (s, of `clock`) by which work must have ended, with `reserved` (s) for what comes
+    after it; `slowness` is how many times longer than expected work takes here."""
 
     ends: float
     clock: Callable[[], float] = field(default=time.monotonic, compare=False, repr=False)
@@ -76,10 +72,8 @@ NO_HURRY = Pace()
 def said_with_time_left(
     say: SayProgress, clock: Callable[[], float] = time.monotonic
 ) -> ShareProgress:
-    """A listener to shares that tells them in words, with the time that is left.
-
-    The time is told from what the shares took so far: ``"fine mesh (40 %, about 12 s left)"``.
-    """
+    """A listener to shares that tells them in words, with the time that is left by what they took
+    so far: ``"fine mesh (40 %, about 12 s left)"``."""
     begun = clock()
 
     def tell(text: str, fraction: float) -> None:
