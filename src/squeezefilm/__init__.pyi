@@ -494,7 +494,7 @@ if TYPE_CHECKING:
     ) -> dict[str, StudyAnalysis]:
         """The analysis of a study's answers, by display."""
     class AdaptiveDesign(_AdaptiveDesign):
-        """What a Bayesian choice of stimuli starts from."""
+        """Start of a Bayesian choice of stimuli."""
         def __init__(
             self,
             stimuli: tuple[float, ...],

@@ -33,7 +33,7 @@ Interest = Literal["threshold and width", "all"]
 @reads_text
 @dataclass(frozen=True, slots=True)
 class AdaptiveDesign:
-    """What a Bayesian choice of stimuli starts from.
+    """Start of a Bayesian choice of stimuli.
 
     Args:
         stimuli: intensities to choose from, two or more, in the unit of the stimulus.

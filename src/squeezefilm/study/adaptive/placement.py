@@ -23,7 +23,7 @@ from squeezefilm.core.errors import InputError
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class PlacementModel:
-    """What is answered to each stimulus under each value of the parameters.
+    """Chances of the answers to each stimulus under each value of the parameters.
 
     Args:
         parameters: values of each parameter on a grid, by name; cells are their combinations, the
@@ -79,12 +79,12 @@ class PlacementModel:
 
     @property
     def sizes(self) -> tuple[int, ...]:
-        """How many values each parameter has."""
+        """Numbers of values of the parameters."""
         return tuple(len(values) for values in self.parameters.values())
 
     @property
     def nuisance(self) -> int:
-        """How many cells in a row differ by what is integrated out."""
+        """Number of cells in a row that differ by what is integrated out."""
         return math.prod(self.sizes[self.interest :])
 
     def first_weights(self) -> si.DimensionlessArray:

@@ -17,7 +17,7 @@ from squeezefilm.study.psychometric.function import AXES, Axis
 
 @dataclass(frozen=True, slots=True)
 class StaircaseRule:
-    """How a staircase moves, and when it ends.
+    """Rule by which a staircase moves and ends.
 
     Args:
         start: first intensity, in the unit of the stimulus.

@@ -1,1 +1,1 @@
-"""What a study asks: its design, its trials and their order, what it takes."""
+"""Designs of studies: its design, its trials and their order, what it takes."""

@@ -35,12 +35,12 @@ class Board:
 
     @property
     def ridges(self) -> int:
-        """How many, a cut one too."""
+        """Number of ridges, a cut one too."""
         return int(self.begin.size)
 
     @property
     def says(self) -> str:
-        """What the study calls its length, in words."""
+        """Words for the length that the study calls period."""
         one = self.grating
         asked, period = (
             si.format_quantity(x, si.Unit("m"), 4) for x in (one.spatial_period, one.period)

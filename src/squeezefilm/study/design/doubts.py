@@ -1,4 +1,4 @@
-"""What is doubtful of a design before anybody is asked: its range, its displays, its attention."""
+"""Doubts of a design before anybody is asked: its range, its displays, its attention."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a task may ask of surfaces: what match-to-sample matches with, and amounts to compare."""
+"""Demands of a task on surfaces: what match-to-sample matches with, and amounts to compare."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 
 MatchedWith = Literal["real gratings", "stimuli"]
-"""What match-to-sample offers as answers."""
+"""Answers that match-to-sample offers."""
 Exploring = Literal["strokes", "free"]
-"""How people explore: to and fro along x, or over the whole face."""
+"""Ways to explore: to and fro along x, or over the whole face."""
 
 
 def require_matching(

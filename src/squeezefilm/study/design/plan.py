@@ -1,4 +1,4 @@
-"""What running a design takes: trials, time, orders, and what of it is assumed."""
+"""Plan of running a design: trials, time, orders, and what of it is assumed."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class StudyPlan(Result):
         return tuple(key for key, one in found if one.evidence == "assumed")
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints; keys carry units."""
+        """The JSON of ``--json``; keys carry units."""
         design = self.design
         return {
             "name": design.name,

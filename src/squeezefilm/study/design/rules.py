@@ -51,7 +51,7 @@ class TrialRules:
         force: si.Newton,
         touch: si.Dimensionless,
     ) -> str:
-        """Which rule an exploration breaks, in words that a participant may read; empty for none.
+        """The rule that an exploration breaks, in a participant's words; empty for none.
 
         NaN is what is not known. No movement is said first: speed follows from it.
         """

@@ -14,7 +14,7 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 
 
 _LEAST_RANGE = 2.0
-"""Of a Bayesian series' differences, highest over lowest."""
+"""Least ratio of a Bayesian series' highest difference to its lowest."""
 
 
 @si.checked_numbers

@@ -213,7 +213,7 @@ class StudyDesign:
         )
 
     def answer_to(self, *surfaces: Stimulus) -> str:
-        """What is right to answer to a trial's surfaces; an empty text where nothing is.
+        """The right answer to a trial's surfaces; an empty text where nothing is.
 
         For match-to-sample the alternative that the stimulus `matches`, else that of the same
         period (to 1e-9 m), or itself. For two intervals the one with more of what is `judged`.
@@ -236,11 +236,11 @@ class StudyDesign:
         return self.described.right(surfaces, self.judged_value)
 
     def judged_value(self, one: Stimulus) -> float:
-        """How much (SI) a stimulus has of what is judged; of a period the whole one."""
+        """Amount (SI) of what is judged that a stimulus has; of a period the whole one."""
         return one.period if self.judged == "spatial_period" else one.amount(self.judged)
 
     def catch_condition(self, catch: CatchTrial) -> Condition:
-        """What a catch trial presents: its stimulus, in tasks of several surfaces with the
+        """Surfaces of a catch trial: its stimulus, in tasks of several surfaces with the
         reference in an order in which its answer is right.
 
         Raises `InputError` if the answer is right in no order.
@@ -324,9 +324,9 @@ class StudyDesign:
         raise InputError(f"'{name}' is none of: {known}", quantity="adaptive_series")
 
     def comparison(self, series: AdaptiveCondition, intensity: float) -> Stimulus:
-        """What an adaptive series presents beside the reference at an intensity: more of what is
-        varied, by that part of the reference's value. Raises `InputError` if there can't be so
-        much of it."""
+        """The stimulus that an adaptive series presents beside the reference at an intensity: more
+        of what is varied, by that part of the reference's value. Raises `InputError` if there can't
+        be so much of it."""
         here = self.stimulus(self.reference)
         value = here.amount(series.varied) * (1.0 + intensity)
         return here.varied(f"{here.name} +{100 * intensity:.3g} %", series.varied, value)

@@ -134,7 +134,7 @@ def orders(
 
 
 def conditions(design: StudyDesign) -> tuple[Condition, ...]:
-    """What the trials of a repetition present, once each.
+    """Surfaces of the trials of a repetition, once each.
 
     One stimulus each; in tasks of several surfaces each other stimulus with the reference in all
     orders, and for same-different as often (the same, the same), half with each of the two.
@@ -175,7 +175,7 @@ def trial_count(design: StudyDesign) -> int:
 
 
 def expected_duration(design: StudyDesign) -> si.Second:
-    """How long one participant takes (s): trials at `trial_duration`, and the breaks."""
+    """Time that one participant takes (s): trials at `trial_duration`, and the breaks."""
     planned = trials(design, 0, 0)
     return len(planned) * design.trial_duration + sum(trial.pause for trial in planned)
 
@@ -246,7 +246,7 @@ def _display_trials(
 def _blocks(
     design: StudyDesign, place: int, participant: int, seed: int
 ) -> list[list[tuple[Phase, Condition, str]]]:
-    """What each block presents, in its order: the repetitions, and catch trials between them."""
+    """Surfaces of each block, in its order: the repetitions, and catch trials between them."""
     every = conditions(design)
     rows = orders(
         len(every), design.blocks * design.repetitions, participant, seed + place, design.order

@@ -55,7 +55,7 @@ class StimulusCorrect:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class IdentificationAnalysis(Result):
-    """What an identification study says.
+    """Analysis of an identification study.
 
     Attributes:
         name: of the study.
@@ -103,12 +103,12 @@ class IdentificationAnalysis(Result):
 
     @property
     def participants(self) -> int:
-        """How many people answered."""
+        """Number of people who answered."""
         return int(self.counts.shape[0])
 
     @property
     def trials(self) -> int:
-        """How many main trials."""
+        """Number of main trials."""
         return int(self.matrix.trials)
 
     @property
@@ -184,7 +184,7 @@ class IdentificationAnalysis(Result):
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class IdentificationRequest:
-    """What `analyze_identification` is asked for."""
+    """Arguments of `analyze_identification`."""
 
     participant: ArrayLike
     stimulus: ArrayLike
@@ -248,7 +248,7 @@ def _quoted(intervals: tuple[Interval, ...], people: int) -> Interval:
 
 
 def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
-    """What `analyze_identification` finds of a request. Raises as it does."""
+    """The analysis of a request. Raises as `analyze_identification` does."""
     tell = asked.progress or (lambda _: None)
     tell("counting")
     counts, matrix = _counted(asked)
@@ -293,7 +293,7 @@ def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
 def _intervals(
     counts: si.IntArray, matrix: ConfusionMatrix, asked: IdentificationRequest, notes: list[str]
 ) -> tuple[Interval, ...]:
-    """Of the proportion correct: over trials, and over people where there are two or more."""
+    """Intervals of the proportion correct: over trials, and over people where there are two."""
     level = asked.level
     intervals = [proportion_interval(matrix.correct, matrix.trials, level)]
     if counts.shape[0] > 1:

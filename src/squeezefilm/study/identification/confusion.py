@@ -18,7 +18,7 @@ from squeezefilm.core.errors import InputError
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ConfusionMatrix:
-    """How often each answer was given to each stimulus.
+    """Counts of each answer to each stimulus.
 
     Args:
         counts: trials, shape (answers, stimuli); whole numbers from 0 up.

@@ -1,4 +1,4 @@
-"""How people worked: drift over the session, and whether they attended."""
+"""The course of a session: drift over the session, and whether they attended."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _DOUBTFUL = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Drift:
-    """How something changed from a person's first trial to their last, over people.
+    """Change of a quantity from a person's first trial to their last, over people.
 
     Attributes:
         quantity: what changed, in words.
@@ -55,8 +55,8 @@ class Attention:
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """How people worked on one display: what drifted, and who attended; empty where nothing was
-    recorded."""
+    """The course of a session on one display: what drifted, and who attended; empty where nothing
+    was recorded."""
 
     drift: tuple[Drift, ...]
     attention: tuple[Attention, ...]

@@ -1,4 +1,4 @@
-"""How many people a study needs, by simulating it: the share of studies that find the difference.
+"""Numbers of people that a study needs, by the share of simulated ones that find a difference.
 
 The question "8 against 10 mm" is answered by a test over people of how well they tell the two
 stimuli apart (`distinction_scores`). Studies are simulated with a seed of their own for each number
@@ -42,7 +42,7 @@ def above_0(scores: si.FloatArray) -> tuple[si.Dimensionless, si.Dimensionless]:
 
 
 def distinction_scores(counts: ArrayLike, first: int, second: int) -> si.DimensionlessArray:
-    """How well each person tells two stimuli apart, by counts (participants, answers, stimuli):
+    """Each person's score of telling two stimuli apart, by counts (participants, answers, stimuli):
     [p(a|A) − p(a|B)] + [p(b|B) − p(b|A)], p(x|Y) the share of answers x to stimulus Y.
 
     0 if the two are felt alike whatever the preference for an answer, 2 if never confused and

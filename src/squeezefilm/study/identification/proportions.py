@@ -70,7 +70,7 @@ def resampled_counts(counts: ArrayLike, resamples: int, seed: int) -> si.IntArra
 
 
 def expansion(participants: int, level: float) -> float:
-    """How many standard deviations of a bootstrap of n clusters an interval must reach:
+    """Number of standard deviations of a bootstrap of n clusters an interval must reach:
     √(n/(n−1)) t_{n−1}, instead of the normal quantile (Hesterberg 2015,
     10.1080/00031305.2015.1089789, "expanded percentile interval")."""
     t = float(stats.t.isf((1 - level) / 2, participants - 1))

@@ -31,12 +31,12 @@ _SPREADS, _PLACES, _GUESSES = 24, 21, 13
 _LEAST_PART, _LEAST_TRIALS, _LEAST_PEOPLE = 10, 12, 3
 _ABOVE_CHANCE = 1.6448536269514722
 _SURE = 3.0
-"""How many times likelier, as a power of e, lapses beyond the rule's must be."""
+"""Least ln ratio by which lapses beyond the rule's must be likelier."""
 
 
 @dataclass(frozen=True, slots=True)
 class PersonJudgement:
-    """How the rule judges one person on one display.
+    """Judgement of one person on one display by the rule.
 
     Attributes:
         person: the pseudonym.
@@ -153,7 +153,7 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
 
 
 def _habits(mine: Answers) -> list[str]:
-    """What of somebody's answers has nothing to do with the surfaces."""
+    """Habits of somebody's answers that have nothing to do with the surfaces."""
     rule, names, reasons = rule_of(mine.design), mine.design.answers, []
     if not names and mine.trials > 2 and np.unique(mine.estimate).size == 1:
         reasons.append(f"gives the number {mine.estimate[0]:g} to everything")
@@ -202,7 +202,7 @@ def _one_of_two(mine: Answers) -> bool:
 
 
 def _signal(mine: Answers) -> tuple[si.FloatArray, si.IntArray]:
-    """What is presented of what is asked, in two intervals signed, and whether it was said."""
+    """Amount presented of what is asked, in two intervals signed, and whether it was said."""
     if mine.design.task == "two-interval":
         logs = np.log(mine.values)
         return np.asarray(logs[mine.first] - logs[mine.second]), mine.choice == 0

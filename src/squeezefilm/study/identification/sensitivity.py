@@ -152,7 +152,7 @@ def _enough_counts(counts: ArrayLike) -> si.IntArray:
 def _standard_error(
     criteria: si.FloatArray, positions: si.FloatArray, totals: si.FloatArray
 ) -> si.FloatArray:
-    """Of the d′ of neighbours, from the Fisher information of the first of a batch."""
+    """Standard error of the d′ of neighbours, from the information of the first of a batch."""
     cuts, steps = criteria.shape[1], positions.shape[1] - 1
     covariance = np.linalg.inv(_information(criteria, positions, totals)[0])
     to_d = np.zeros((steps, cuts + steps))

@@ -35,7 +35,7 @@ class PenalisedLikelihood:
 
     @property
     def model(self) -> kernel.Model:
-        """What is fitted, as the kernel takes it."""
+        """The model that is fitted, as the kernel takes it."""
         return kernel.Model(self.code, self.free, self.low, self.high, self.beta)
 
     def maximum(self, start: si.FloatArray) -> tuple[si.FloatArray, float]:

@@ -90,7 +90,7 @@ class PsychometricFit(Result):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What has to be known of this fit before a number of it is used, in sentences."""
+        """Sentences to be read before a number of this fit is used."""
         found = []
         if self.falls:
             found.append(
@@ -131,7 +131,7 @@ class PsychometricFit(Result):
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FitRequest:
-    """What `fit_psychometric` is asked for."""
+    """Arguments of `fit_psychometric`."""
 
     intensity: ArrayLike
     positive: ArrayLike

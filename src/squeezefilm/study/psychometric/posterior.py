@@ -185,7 +185,7 @@ def _one_guess(
 
 
 def _coordinate(at: int, theta: si.FloatLike) -> si.FloatArray:
-    """Where a θ stands on the grid."""
+    """Coordinate of a θ on the grid."""
     rate = at in (kernel.LAPSE, kernel.GUESS)
     return np.asarray(np.arcsin(np.sqrt(theta)) if rate else theta)
 

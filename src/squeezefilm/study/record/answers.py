@@ -63,7 +63,7 @@ class Answers:
 
     @property
     def trials(self) -> int:
-        """How many."""
+        """Number of trials."""
         return int(self.participant.size)
 
     @property

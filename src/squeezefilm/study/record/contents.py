@@ -1,4 +1,4 @@
-"""What a study's file may hold: checked once when it is opened, so that all else may rely on it.
+"""Contents that a study's file may hold: checked once, so that all else may rely on it.
 
 A file may come from elsewhere, or be damaged. Identifiers and the names of traces go into names
 of files and are searched for byte by byte, so nothing but what this program makes is let in.
@@ -107,7 +107,7 @@ def _row_problems(
 
 
 def _trial_problems(rows: Rows, design: StudyDesign) -> Iterator[str]:
-    """What no column shows alone: whether answers fit their trials, and trials their design."""
+    """Problems that no column shows alone: of answers to their trials, and trials of a design."""
     gratings = [alternative.name for alternative in design.alternatives]
     stimuli = [stimulus.name for stimulus in design.stimuli]
     catches = [trial.stimulus.name for trial in design.catch]
@@ -211,4 +211,4 @@ _CHECKS: dict[str, Check] = {
         _moment,
     ),
 }
-"""What the columns must hold, in whichever table they are."""
+"""Conditions on the columns, in whichever table they are."""

@@ -39,12 +39,12 @@ _OF = {
     "trial": "participant = ?",
     "participant": "uuid = ?",
 }
-"""Which rows of each table are a participant's; each table before those it refers to."""
+"""Conditions on a participant's rows in each table; each before those it refers to."""
 
 
 @dataclass(frozen=True)
 class Deletion:
-    """What was taken out. `searched` counts the files in which nothing was found afterwards;
+    """Counts of what was taken out. `searched` are the files in which nothing was found afterwards;
     `left` are files and folders of other origin among them, which are as they were."""
 
     enrolled: bool
@@ -182,7 +182,7 @@ def _require_gone(store: StudyStore, sittings: Sittings, identifiers: set[str]) 
 
 
 def _own(store: StudyStore) -> list[Path]:
-    """What lies among a study's files and was not written by this program, sorted."""
+    """Files among a study's that were not written by this program, sorted."""
     exports = exported_folders(store)
     backups = {path for some in _backup_files(store) for path in some}
     ours = backups | {store.exports / LIST, *(folder for _, folder in exports)}

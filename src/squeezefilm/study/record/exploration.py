@@ -1,4 +1,4 @@
-"""How a finger explored: way, speed, passes, coverage, force; of a trace, or of an answer."""
+"""Exploration by a finger: way, speed, passes, coverage, force; of a trace, or of an answer."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _FARTHEST: si.Metre = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Exploration:
-    """What a finger did in one trial.
+    """Exploration of one trial by a finger.
 
     Attributes:
         duration: from the first sample to the last (s).
@@ -190,7 +190,7 @@ def coverage(
 LONGEST_STEP: si.Second = 1.5 * PATH_PERIOD
 """Between two samples of a path; a longer one is a lifted finger."""
 MEASURES = ("peak_speed_m_per_s", "time_in_touch_s", "passes", "along_x_share", "coverage")
-"""What `ExploredTrials.measures` gives of an answer, units in the names."""
+"""Keys of `ExploredTrials.measures`, units in the names."""
 NO_MEASURES: dict[str, float | None] = dict.fromkeys(MEASURES)
 
 
@@ -220,7 +220,7 @@ class ExploredTrials:
         return found
 
     def measures(self, display: str, traces: list[str]) -> dict[str, float | None]:
-        """Of an answer: peak speed (m/s), time in touch (s), passes, share of their way along x
+        """Measures of an answer: peak speed (m/s), time in touch (s), passes, their share along x
         (1), coverage of the face (1); of two surfaces sums, the greater peak and mean shares.
 
         None for what is not known: without a path all of them, without the display's file coverage.
@@ -255,7 +255,7 @@ class ExploredTrials:
 
 
 def explored_table(table: Table, face: tuple[si.Metre, si.Metre] | None = None) -> Exploration:
-    """How a finger explored, from the table of its path. Raises what `exploration` raises."""
+    """Exploration by a finger, from the table of its path. Raises what `exploration` raises."""
     time, x, y = (table.column(name) for name in ("time_s", "x_m", "y_m"))
     return exploration(time, x, y, face=face, longest_step=LONGEST_STEP)
 

@@ -24,7 +24,7 @@ _SHOWN = 5
 
 @dataclass(frozen=True)
 class Merge:
-    """What a merge did: rows added and rows that were there, by table; traces copied; and the
+    """Outcome of a merge: rows added and rows that were there, by table; traces copied; and the
     participants' numbers that several have (their orders are the same, which costs balance)."""
 
     added: dict[str, int]

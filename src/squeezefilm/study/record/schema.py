@@ -125,7 +125,7 @@ TABLES = (
     "response",
     "set_aside",
 )
-"""What merges from other stations, each table after those it refers to. Keys come first."""
+"""Tables that merge from other stations, each table after those it refers to. Keys come first."""
 
 UPGRADE_1 = next(one for one in SCHEMA.split(";") if "CREATE TABLE set_aside" in one)
-"""What version 1 lacks."""
+"""Statement that gives a file of version 1 what it lacks."""

@@ -38,7 +38,7 @@ else:
 MOST_SITTINGS = 500
 FILE = ".sittings.json"
 _PATIENCE: si.Second = 5.0
-"""How long a change waits for another program's."""
+"""Longest wait of a change for another program's."""
 
 
 @dataclass(frozen=True)
@@ -143,14 +143,14 @@ class Sittings:
         return [self.file] if os.path.lexists(self.file) else []
 
     def _half_written(self) -> list[Path]:
-        """What is left of writes that were killed."""
+        """Files left of writes that were killed."""
         if not self.file.parent.is_dir():
             return []
         name = re.compile(rf"\.{re.escape(self.file.name)}\.[a-z0-9_]+")
         return sorted(one for one in self.file.parent.iterdir() if name.fullmatch(one.name))
 
     def _all(self) -> Mapping[str, Sitting]:
-        """What the file holds now; read again only where another program has replaced it."""
+        """Contents of the file now; read again only where another program has replaced it."""
         try:
             found = self.file.stat()
         except FileNotFoundError:

@@ -84,7 +84,7 @@ COLUMNS = (
     Column("device_sha256", "Hash of the display's description"),
     Column("calibration_sha256", "Hash of its calibration"),
 )
-"""What every export holds, in this order."""
+"""Columns of every export, in this order."""
 
 SURFACES = ("stimulus", "second_stimulus", "third_stimulus")
 """Columns with the names of what a trial presented, in its order."""
@@ -152,7 +152,7 @@ def presented(design: StudyDesign, name: str, row: Mapping[str, Any]) -> Stimulu
 
 
 class _Surfaces:
-    """What exports say of a surface beside its name, each worked out once."""
+    """Cells of surfaces in exports, each worked out once."""
 
     def __init__(self) -> None:
         # By the surface itself, which is kept: what a series chose is made anew for each row.
@@ -234,7 +234,7 @@ SESSION_COLUMNS = (
         )
     ),
 )
-"""What every export says of sessions, in this order."""
+"""Columns of sessions in every export, in this order."""
 
 
 def session_table(store: StudyStore) -> list[dict[str, Cell]]:
@@ -272,7 +272,7 @@ SIMULATED_NOTE = "simulated participant"
 
 
 def origin_of(store: StudyStore) -> str:
-    """What to label results with: people, simulated, both mixed, or nobody."""
+    """Label of results: people, simulated, both mixed, or nobody."""
     notes = [json.loads(row["conditions"]) for row in store.rows("SELECT conditions FROM session")]
     simulated = [note.get("note") == SIMULATED_NOTE for note in notes]
     if not simulated:

@@ -1,1 +1,1 @@
-"""What studies show, of people and of simulated ones: pages, figures, the terminal."""
+"""Reports of studies, of people and of simulated ones: pages, figures, the terminal."""

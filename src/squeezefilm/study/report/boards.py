@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 TOLERANCE: si.Metre = 20e-6
-"""Of widths, where none is asked for: what an etched board keeps; assumed."""
+"""Tolerance of widths, where none is asked for: what an etched board keeps; assumed."""
 
 _GAP: si.Metre = 12e-3
 _LAYERS = {"BOARD": Layer(7), "RIDGES": Layer(1)}
@@ -99,11 +99,11 @@ def _numbers(board: Board) -> dict[str, object]:
 
 
 HEAD = ("Board", "Period", "Ridge", "Groove", "Ridges", "Ridge height", "Board size", "Material")
-"""Of `board_rows`."""
+"""Head of `board_rows`."""
 
 
 def board_rows(found: tuple[Board, ...], tolerance: si.Metre) -> list[tuple[str, ...]]:
-    """What is to be made, as texts."""
+    """Rows of what is to be made, as texts."""
     within = f"± {shown(tolerance, M, 2)}"
     return [
         (

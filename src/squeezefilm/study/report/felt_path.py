@@ -1,4 +1,4 @@
-"""What a path would have felt like: its figure, and the words for the terminal."""
+"""A path as it would have been felt: its figure, and the words for the terminal."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def _over_surface(axes: Axes, found: FeltPath) -> None:
 
 
 def _said(found: FeltPath) -> str:
-    """What is felt in either direction, in words."""
+    """Words for what is felt in either direction."""
     parts = []
     for name, direction in found.directions.items():
         if direction.clearest_d_prime > found.observer.detection_criterion:

@@ -141,7 +141,7 @@ def _p(p: float) -> str:
 
 
 def _deviance(fit: OrderedSensitivity | ChoiceModel) -> str:
-    """How well a model fits, in words."""
+    """Words for the fit of a model."""
     freedom = f"{fit.degrees_of_freedom} degrees of freedom"
     return f"G² = {fit.deviance:.1f} with {freedom} (p {_p(fit.p_value)})"
 

@@ -222,7 +222,7 @@ def _screening(analysis: StudyAnalysis) -> str:
 
 
 def _worked(analysis: StudyAnalysis) -> str:
-    """How people explored, who attended, and the methods section."""
+    """Sections on exploration and attention, and the methods section."""
     found = ""
     if head := exploration_head(analysis):
         caption = "Means over people by stimulus; in brackets the t interval over people"

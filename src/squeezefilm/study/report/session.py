@@ -20,7 +20,7 @@ from squeezefilm.study.report.terminal import TerminalExaminer, ask_acknowledgem
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class SessionRequest:
-    """What `run_study` is asked for."""
+    """Arguments of `run_study`."""
 
     design: str | Path
     store: str | Path

@@ -36,7 +36,7 @@ REMARK = (
 
 
 def remarks(design: StudyDesign) -> tuple[str, ...]:
-    """What must be read beside the answers to a match-to-sample design: the paper's remark where
+    """Sentences to be read beside the answers to a design: the paper's remark where
     real gratings are matched, else what the answers assume."""
     from squeezefilm.study.simulated.recalled import assumed
 
@@ -126,7 +126,7 @@ def write_simulated(
 
 
 def _seen(study: SimulatedStudy, index: int) -> str:
-    """What was answered on a display in match-to-sample, and what the model sees."""
+    """Section of a display: its answers in match-to-sample, and what the model sees."""
     heading = f"What the model sees on {escape(printable(study.tables.design.displays[index]))}"
     reasons = text_table(f"Reasons the model sees. {LEGEND}", REASONS, reason_rows(study, index))
     if study.matches is None:
@@ -143,7 +143,7 @@ def drawing(study: SimulatedStudy, key: str) -> Figure:
 
 
 def reason_rows(study: SimulatedStudy, index: int) -> list[list[str]]:
-    """What the model sees of each stimulus on a display, as texts."""
+    """Rows of what the model sees of each stimulus on a display, as texts."""
     return [
         [
             name,

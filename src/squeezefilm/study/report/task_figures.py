@@ -34,7 +34,7 @@ def _scale(analysis: TaskAnalysis) -> tuple[float, str]:
 
 @style.drawn
 def answers(analysis: TaskAnalysis) -> Figure:
-    """What was answered against the stimulus: psychometric functions, or the scale of numbers."""
+    """Answers against the stimulus: psychometric functions, or the scale of numbers."""
     figure = style.new_figure(_said(analysis), data_of(analysis), 4.4)
     axes = figure.subplots()
     if analysis.measure == "exponent":
@@ -116,7 +116,7 @@ def _named(axes: Axes, names: list[str]) -> None:
 
 
 def _share(one: PersonFunction, difference: FloatArray) -> FloatArray:
-    """Of answers that the one with more has more, at differences of logarithms, without a bias."""
+    """Share of right answers (1) at differences of logarithms, without a bias."""
     from scipy.special import ndtr
 
     spread = math.log1p(one.weber_fraction) / QUARTILE

@@ -1,4 +1,4 @@
-"""What the terminal shows of a study, and how it asks a participant."""
+"""A study at the terminal: what is shown of it, and the questions to a participant."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ _GRATING = ("Name", "Period", "Groove", "Length means")
 
 
 def _grating(one: Stimulus | Grating) -> tuple[str, str, str, str]:
-    """What a virtual and a real grating both have, as `_GRATING` heads it; a shape has none."""
+    """Cells of a virtual or a real grating, as `_GRATING` heads it; a shape has none."""
     if one.period != one.period:
         return one.name, "–", "–", "–"
     period, crossed = shown(one.period, M, 3), getattr(one, "second_period", math.nan)

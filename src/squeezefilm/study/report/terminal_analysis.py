@@ -1,4 +1,4 @@
-"""What the terminal shows of an analysed study, and of simulated participants."""
+"""An analysed study, and simulated participants, at the terminal."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 _SHOWN_PEOPLE = 24
-"""Of more people the terminal shows the population only."""
+"""Most people of whom the terminal shows each; of more it shows the population only."""
 
 
 def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:

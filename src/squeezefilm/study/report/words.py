@@ -25,7 +25,7 @@ _SURE = 0.05
 
 
 def read_first(analysis: StudyAnalysis) -> list[str]:
-    """What somebody with a minute should know, in sentences."""
+    """Sentences for somebody with a minute."""
     from squeezefilm.study.tasks.findings import TaskAnalysis
 
     people = f"{analysis.participants} {_people(analysis)}"
@@ -117,7 +117,7 @@ def _screening_first(screening: Screening) -> list[str]:
 
 
 SCREENING_HEAD = ("Participant", "z", "Judged")
-"""Of `screening_rows`."""
+"""Head of `screening_rows`."""
 
 
 def screening_rows(screening: Screening, named: bool = False) -> list[tuple[str, ...]]:
@@ -316,7 +316,7 @@ def whose(origin: str) -> str:
 
 
 def condition_head(analysis: TaskAnalysis) -> tuple[str, ...]:
-    """Of `condition_rows`: what is counted depends on the task."""
+    """Head of `condition_rows`: what is counted depends on the task."""
     in_parts = analysis.is_adaptive and analysis.task == "two-interval"
     counted = "Right" if in_parts else TASKS[analysis.task].counted
     return ("Stimulus", "Value", "Trials", "People", counted, "d′")
@@ -345,7 +345,7 @@ def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
 
 
 PERSON_HEAD = ("Participant", "Estimate", "Interval", "Trials", "Remark")
-"""Of `person_rows`."""
+"""Head of `person_rows`."""
 
 
 def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
@@ -364,13 +364,13 @@ def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
 
 
 def exploration_head(analysis: StudyAnalysis) -> tuple[str, ...]:
-    """Of `exploration_rows`; empty where no path was kept."""
+    """Head of `exploration_rows`; empty where no path was kept."""
     known = [key for key, rows in analysis.exploration.items() if rows]
     return ("Stimulus", *map(key_words, known)) if known else ()
 
 
 def exploration_rows(analysis: StudyAnalysis) -> list[tuple[str, ...]]:
-    """How people explored each stimulus: means over people with their intervals."""
+    """Exploration of each stimulus: means over people with their intervals."""
     known = [rows for rows in analysis.exploration.values() if rows]
     names = list(dict.fromkeys(row.name for rows in known for row in rows))
     found = []

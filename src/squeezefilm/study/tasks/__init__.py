@@ -1,1 +1,1 @@
-"""What the answers of each task say: thresholds, sensitivity, exponents, and how people worked."""
+"""Analyses of each task's answers: thresholds, sensitivity, exponents, and how people worked."""

@@ -112,7 +112,7 @@ def analyze_answers(
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _How:
-    """How a display is analysed, see `analyze_answers`; `display` is its number."""
+    """Settings of a display's analysis, see `analyze_answers`; `display` is its number."""
 
     name: str
     display: int
@@ -263,7 +263,7 @@ def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
 
 
 def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
-    """What response times are told apart by: the comparison, the difference or the stimulus."""
+    """Conditions of response times: the comparison, the difference or the stimulus."""
     if (main.series >= 0).any():
         return main.series, tuple(series.name for series in main.design.adaptive)
     # By value, as they are read, and not in the order in which somebody met them first.

@@ -50,7 +50,7 @@ def model_of(main: Answers) -> DifferenceModel:
 
 
 def told(main: Answers) -> NDArray[np.bool_]:
-    """Of each trial whether its answer is what the model counts: "different", or what is right."""
+    """True for each trial whose answer is what the model counts: "different", or what is right."""
     counts = model_of(main).counts
     return np.asarray(main.choice == (main.right if counts < 0 else counts))
 
@@ -62,7 +62,7 @@ def apart(main: Answers) -> si.FloatArray:
 
 
 def on_grid_of_differences(main: Answers) -> PeopleOnGrid:
-    """What each person's answers say of their Weber fraction; `bias` is their criterion, in
+    """Likelihoods of each person's Weber fraction; `bias` is their criterion, in
     standard deviations of one percept (0 where the task has none)."""
     model, hit, distance = model_of(main), told(main), apart(main)
     every = np.unique(distance)

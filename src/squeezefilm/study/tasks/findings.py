@@ -1,4 +1,4 @@
-"""What the analysis of a task other than match-to-sample finds: one result for all of them."""
+"""The result of analyses of all tasks other than match-to-sample."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class PersonFunction:
 
 @dataclass(frozen=True, slots=True)
 class ConditionFinding:
-    """What was answered to one comparison or stimulus.
+    """Answers to one comparison or stimulus.
 
     Attributes:
         name: of the stimulus, or of the pair.
@@ -69,7 +69,7 @@ class ConditionFinding:
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class TaskAnalysis(Result):
-    """What the answers of a two-interval, same-different or magnitude task say on one display.
+    """Analysis of a two-interval, same-different or magnitude task on one display.
 
     Attributes:
         name: of the study and the display.
@@ -128,12 +128,12 @@ class TaskAnalysis(Result):
 
     @property
     def participants(self) -> int:
-        """How many people answered."""
+        """Number of people who answered."""
         return len(self.people)
 
     @property
     def main_number(self) -> Estimate | None:
-        """What the population's `measure` is."""
+        """The population's `measure`."""
         return self.pooled
 
     def summary(self) -> dict[str, Any]:

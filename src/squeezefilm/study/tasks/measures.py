@@ -1,4 +1,4 @@
-"""What each task measures of people: of each, of the population, and by condition."""
+"""Measures of people by task: of each, of the population, and by condition."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _POPULATION = "posterior, mixed model"
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Measured:
-    """What a task's own analysis gives."""
+    """Results of a task's own analysis."""
 
     measure: str
     persons: list[PersonEstimate]
@@ -57,7 +57,7 @@ class Measured:
 
 
 def measured(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
-    """What the analysis of the answers' task gives, with a robust number where there is one.
+    """Results of the analysis that the answers' task has, with a robust number where there is one.
 
     `level` is of the intervals (1), `seed` of resampling; `tell` hears each step.
     """

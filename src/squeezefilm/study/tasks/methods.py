@@ -32,7 +32,7 @@ _QUEST_PLUS = "Watson 2017, 10.1167/17.3.10"
 
 
 def methods_text(answers: Answers, display: int) -> str:
-    """What a paper says of a display's trials: participants, stimuli, task, orders, analysis.
+    """Methods section on a display's trials: participants, stimuli, task, orders, analysis.
 
     Written from the design and from the answers that there are: of what was not recorded nothing
     is said.

@@ -62,7 +62,7 @@ def lapse_weights() -> si.DimensionlessArray:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PersonLikelihood:
-    """What one person's answers say of x; arrays of shape (cells,).
+    """Likelihood of x by one person's answers; arrays of shape (cells,).
 
     Attributes:
         x: the middle of each cell, rising, in the population's unit.
@@ -137,7 +137,7 @@ class Population:
 
     @property
     def size(self) -> int:
-        """How many people."""
+        """Number of people."""
         return int(self._logs.shape[0])
 
     def lapses(self) -> si.DimensionlessArray:
@@ -148,7 +148,7 @@ class Population:
 
     @property
     def lapse_note(self) -> str:
-        """What is to be said where answers at random are more than the model knows; else "".
+        """A note where answers at random are more than the model knows; else "".
 
         A surface that is not felt is guessed too. The model then takes a part of the guesses for a
         lack of sharpness.

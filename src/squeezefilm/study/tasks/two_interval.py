@@ -48,7 +48,7 @@ from squeezefilm.study.tasks.population import (
 )
 
 QUARTILE = 0.6744897501960817
-"""Of a normal deviate: 75 % lie below."""
+"""Quartile of a normal deviate: 75 % lie below."""
 # From 5 to 95 % of a normal distribution, which is what the kernel calls the width.
 _WIDTH = 2 * 1.6448536269514722
 _SPREADS, _BIASES = 81, 41
@@ -56,7 +56,7 @@ _MOST = 600.0
 
 
 def comparisons(main: Answers) -> tuple[si.IntArray, NDArray[np.bool_]]:
-    """Of each trial the surface compared with the reference, and whether it was said to have
+    """The surface compared with the reference in each trial, and whether it was said to have
     more."""
     values, design = main.values, main.design
     here = design.judged_value(design.stimulus(design.reference))
@@ -87,7 +87,7 @@ def spread_edges(main: Answers, cells: int) -> si.FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class PeopleOnGrid:
-    """What each person's answers say.
+    """Likelihoods of each person's answers.
 
     Attributes:
         names: of the people.
@@ -121,7 +121,7 @@ class PeopleOnGrid:
         )
 
     def estimates(self, level: si.Dimensionless) -> list[PersonEstimate]:
-        """Of each person's Weber fraction: the posterior's median and central interval, with the
+        """Each person's Weber fraction: the posterior's median and central interval, with the
         lapse rates that all people's answers speak for."""
         lapses = self.population.lapses()
         found = []
@@ -146,7 +146,7 @@ class PeopleOnGrid:
 
 
 def on_grid(main: Answers, tell: Callable[[str], None]) -> PeopleOnGrid:
-    """What each person's answers to two intervals say of their Weber fraction."""
+    """Likelihoods of each person's Weber fraction by their answers to two intervals."""
     edges = spread_edges(main, _SPREADS)
     middle = 0.5 * (edges[1:] + edges[:-1])
     apart, first = differences(main), (main.choice == 0).astype(float)
@@ -226,7 +226,7 @@ def condition_finding(
     level: si.Dimensionless,
     d_prime: Estimate | None = None,
 ) -> ConditionFinding:
-    """What was answered in a part of the trials (a mask or indices), given which of all are hits:
+    """Answers in a part of the trials (a mask or indices), given which of all are hits:
     the share of hits with its interval over trials."""
     hits, trials = int(hit[part].sum()), int(hit[part].size)
     bounds = proportion_interval(hits, trials, level)

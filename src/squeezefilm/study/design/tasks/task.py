@@ -1,4 +1,4 @@
-"""What a task is: what it presents, asks and takes for right, and how answers follow from percepts.
+"""The record of a task: what it presents, asks, takes for right, and makes of percepts.
 
 A study plans, runs, simulates, plans its size, analyses, shows and exports by this record alone; a
 new task is a module beside this one, and its name here and in `every_task`.
@@ -22,12 +22,12 @@ Task = Literal[
 Condition = tuple[str, ...]
 """The names of what one trial presents, in their order."""
 Judged = Callable[[Stimulus], float]
-"""How much a surface has of what is judged (SI)."""
+"""Amount of what is judged that a surface has (SI)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Percepts:
-    """What people perceive on one trial, of each surface in its order.
+    """Percepts of people on one trial, of each surface in its order.
 
     Attributes:
         level: of what is judged, on its scale, shape (surfaces, people).
@@ -54,7 +54,7 @@ class Decision:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DifferenceModel:
-    """How often a difference of d′ is answered so that it counts as told, by a person who attends.
+    """Chance that a difference of d′ is told, by a person who attends.
 
     Attributes:
         rate: of d′ and a person's criterion, which broadcast.
@@ -135,4 +135,4 @@ def kinds_of(surfaces: Sequence[Stimulus]) -> list[int]:
 
 
 CLEARER = "Of the two directions the one in which a rhythm is clearer decides."
-"""What tasks on a scale assume of free exploration."""
+"""Assumption of tasks on a scale about free exploration."""
