@@ -12,8 +12,8 @@ from squeezefilm.core import quantities as si
 from squeezefilm.design.search.candidate import Design, Evaluated
 from squeezefilm.design.search.space import Space
 
-LEAST_PAIRS = 12
-"""From fewer designs nothing is learned."""
+LEAST_PLATES = 4
+"""From fewer plates nothing is learned."""
 
 _FOLDS = 8
 # As rough as what neighbouring modes do to single designs, in the square of a logarithm.
@@ -82,22 +82,22 @@ def learned(
         and solution.design in screened
         and not screened[solution.design].reason
     ]
-    if len(pairs) < LEAST_PAIRS:
+    numbers: dict[Design, int] = {}
+    plate = np.array([numbers.setdefault(after.design.plate, len(numbers)) for _, after in pairs])
+    if len(numbers) < LEAST_PLATES:
         return None
     places = np.array([_features(space, before) for before, _ in pairs])
-    numbers: dict[Design, int] = {}
-    plate = np.array([numbers.setdefault(one.design.plate, len(numbers)) for _, one in pairs])
     fits, errors, raw = {}, {}, {}
     for key in CORRECTED:
         values = np.array(
             [_logarithm(before.numbers.get(key), after.numbers.get(key)) for before, after in pairs]
         )
         good = np.isfinite(values)
-        if np.count_nonzero(good) < LEAST_PAIRS:
+        if np.unique(plate[good]).size < LEAST_PLATES:
             continue
         x, y = places[good], values[good]
         left = np.empty(y.size)
-        for fold in range(_FOLDS):
+        for fold in np.unique(plate[good] % _FOLDS):
             out = plate[good] % _FOLDS == fold
             left[out] = y[out] - _spline(x[~out], y[~out])(x[out])
         errors[key], raw[key] = float(np.std(left)), float(np.sqrt(np.mean(y**2)))

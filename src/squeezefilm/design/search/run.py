@@ -26,7 +26,7 @@ from squeezefilm.design.search.candidate import (
     plates_of,
     reference_of,
 )
-from squeezefilm.design.search.correction import Correction, learned
+from squeezefilm.design.search.correction import LEAST_PLATES, Correction, learned
 from squeezefilm.design.search.evolution import POPULATION, Proposals
 from squeezefilm.design.search.found import DesignSearch, FrontMember, Glimpse, glimpse_of
 from squeezefilm.design.search.reasons import empty_corners, limit_reasons
@@ -197,9 +197,9 @@ class SearchRun:
         while (left := most - len(self._plates_solved())) > 0:
             self._learn()
             self._screen_beside_the_front(pool)
-            chosen = worth_solving(
-                self.requirements, self._seen, self._corrections, min(_BATCH, left)
-            )
+            # Half of the few that may be solved are chosen by what the first half corrects.
+            count = min(_BATCH, max(LEAST_PLATES, left // 2), left)
+            chosen = worth_solving(self.requirements, self._seen, self._corrections, count)
             if not chosen:
                 return
             self._say_solving("the best that were screened")

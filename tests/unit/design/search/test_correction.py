@@ -1,10 +1,12 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.unit.design.search.made_up import formula, random_designs, requirements
 
-from squeezefilm.design.search.correction import LEAST_PAIRS, learned
+from squeezefilm.design.search.correction import LEAST_PLATES, learned
 
 
 def test_a_smooth_factor_is_learned_and_its_error_is_told() -> None:
@@ -29,8 +31,6 @@ def test_a_smooth_factor_is_learned_and_its_error_is_told() -> None:
 
 def test_noise_is_not_learned() -> None:
     """What differs from design to design without a rule is left, and told as the error."""
-    from dataclasses import replace
-
     wanted, draw = requirements(), np.random.default_rng(2)
     designs = random_designs(wanted, 80)
     screened = {one: formula(wanted, one, "screened") for one in designs}
@@ -47,8 +47,30 @@ def test_noise_is_not_learned() -> None:
 
 def test_from_few_designs_nothing_is_learned() -> None:
     wanted = requirements()
-    designs = random_designs(wanted, LEAST_PAIRS - 1)
+    designs = random_designs(wanted, LEAST_PLATES - 1)
     screened = {one: formula(wanted, one, "screened") for one in designs}
     assert (
         learned(wanted.spaces[0], screened, [formula(wanted, d, "solved") for d in designs]) is None
     )
+
+
+def test_from_four_plates_one_factor_is_learned() -> None:
+    """A theory that is off by the same share everywhere is corrected by the first few plates."""
+    wanted = requirements()
+    designs = random_designs(wanted, 12)
+    screened = {design: formula(wanted, design, "screened") for design in designs}
+    solved = []
+    for design in designs[:LEAST_PLATES]:
+        before = screened[design]
+        numbers = {
+            **before.numbers,
+            "resonance_frequency": 0.93 * before.numbers["resonance_frequency"],
+        }
+        solved.append(replace(before, level="solved", numbers=numbers))
+    correction = learned(wanted.spaces[0], screened, solved)
+    assert correction is not None
+    unseen = [screened[design] for design in designs[LEAST_PLATES:]]
+    for corrected, before in zip(correction.of_all(unseen), unseen, strict=True):
+        assert corrected["resonance_frequency"] == pytest.approx(
+            0.93 * before.numbers["resonance_frequency"], rel=1e-6
+        )
