@@ -65,7 +65,6 @@ MINIMUM = {
         "physics.film.validity.reduced_reynolds_number",
         "physics.film.validity.knudsen_number",
         "physics.film.validity.crest_squeeze_number",
-        "physics.contact.sharing.paper.relative_friction_from_pressure",
         "physics.contact.asperities.exponential_pressure",
         "physics.contact.finger.fingerpad.skin_displacement_per_friction",
         "physics.contact.sliding.skin_vibration.texture_frequency",

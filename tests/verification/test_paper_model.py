@@ -124,10 +124,6 @@ def test_friction_is_what_the_film_does_not_carry() -> None:
     # Balance of forces: F = carried by the film + carried by the surface.
     carried = (contact_mean_pressure(gap()) - 1) * AMBIENT * CONTACT**2
     assert friction(2e-6) * FORCE + carried == pytest.approx(FORCE, rel=1e-14)
-    direct = paper.relative_friction_from_pressure(
-        contact_mean_pressure(gap()), FORCE, CONTACT, AMBIENT
-    )
-    assert direct == pytest.approx(friction(2e-6), rel=1e-12)
 
 
 def test_printed_equation_14_hardly_leaves_one() -> None:

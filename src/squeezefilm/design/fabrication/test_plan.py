@@ -4,7 +4,6 @@ the numbers it should give."""
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from squeezefilm.core import quantities as si
@@ -329,8 +328,3 @@ def _strokes(known: Known) -> TestStep:
         "friction-bench.csv",
         tuple(checks),
     )
-
-
-def ticked(steps: Sequence[TestStep]) -> int:
-    """How many numbers a plan has to tick."""
-    return sum(len(step.checks) for step in steps)

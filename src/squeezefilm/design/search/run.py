@@ -28,7 +28,7 @@ from squeezefilm.design.search.candidate import (
 )
 from squeezefilm.design.search.correction import LEAST_PLATES, Correction, learned
 from squeezefilm.design.search.evolution import POPULATION, Proposals
-from squeezefilm.design.search.found import DesignSearch, FrontMember, Glimpse, glimpse_of
+from squeezefilm.design.search.found import DesignSearch, FrontMember, Glimpse, glimpse_of, unbeaten
 from squeezefilm.design.search.reasons import empty_corners, limit_reasons
 from squeezefilm.design.search.requirements import NamedRequirements
 from squeezefilm.design.search.space import Space
@@ -36,7 +36,6 @@ from squeezefilm.design.search.store import DesignStore, requirements_hash
 from squeezefilm.design.search.tolerance import Made, made_of
 from squeezefilm.design.search.worth_solving import Seen, objectives_of, worth_solving
 from squeezefilm.design.sweep.tasks import Lost, Workers
-from squeezefilm.design.sweep.tradeoffs import front_of
 from squeezefilm.design.sweep.workers import workers
 
 # Screened designs to a task: one takes some ten milliseconds.
@@ -353,14 +352,7 @@ class SearchRun:
 
     def _front(self, seen: Seen | None = None) -> list[Evaluated]:
         """The feasible solved designs that none other beats, the first objective rising."""
-        wanted, made = self.requirements.limits.least_yield or 0.0, self._made
-        feasible = [
-            one
-            for one in (seen or self._seen)["solved"].values()
-            if one.is_feasible and (one.design not in made or made[one.design].kept >= wanted)
-        ]
-        rows = objectives_of(self.requirements, feasible)
-        return [feasible[k] for k in sorted(front_of(rows), key=lambda k: tuple(rows[k]))]
+        return unbeaten(self.requirements, (seen or self._seen)["solved"].values(), self._made)
 
     def _show_meanwhile(self, level: Level, found: Mapping[Design, Evaluated]) -> None:
         """Show what came in the middle of a batch, so seldom that it takes little of the time."""

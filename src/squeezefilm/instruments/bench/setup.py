@@ -14,8 +14,8 @@ from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.instruments.session.loop.tick import make_tick
 from squeezefilm.instruments.session.play.plan import PlayPlan, TextureTile, tile_of
 from squeezefilm.physics.chain.friction_table import FrictionTable
+from squeezefilm.physics.chain.played_texture import lowered
 from squeezefilm.physics.chain.prediction import Prediction, predict
-from squeezefilm.physics.chain.rendered_texture import lowered
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel

@@ -20,9 +20,8 @@ from squeezefilm.core.results import stamp, to_json
 from squeezefilm.lab.designing.form import display_of
 from squeezefilm.lab.designing.numbers import WorkingPoint, predicted
 from squeezefilm.physics.chain.friction_table import FrictionTable
-from squeezefilm.physics.chain.played_texture import FingerMotion, require_on_display
+from squeezefilm.physics.chain.played_texture import FingerMotion, lowered, require_on_display
 from squeezefilm.physics.chain.prediction import Prediction
-from squeezefilm.physics.chain.rendered_texture import lowered
 from squeezefilm.physics.chain.standing_wave import (
     factor_of_law,
     resonance_with_finger,

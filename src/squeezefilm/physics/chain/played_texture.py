@@ -16,16 +16,18 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import RENDER_STEPS, require_motion
+from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.plate.layout import Actuator, AnnularStator
 from squeezefilm.physics.render.motion.finger_path import FingerPath, OverPath
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke, Trajectory
 from squeezefilm.physics.render.program.inverse import FrictionInverse
-from squeezefilm.physics.render.program.lowering import Program
+from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import evaluate
 from squeezefilm.physics.render.program.wave import WaveCompensation
 from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.render.texture.image import Image
 from squeezefilm.physics.render.texture.pattern import SpeedScaled
+from squeezefilm.physics.texture_files.texture_file import TextureFile
 
 _METRE = si.Unit("m")
 
@@ -212,3 +214,23 @@ def require_on_display(actuator: Actuator, motion: FingerMotion) -> None:
                 f"the stroke covers {_metres(used)} along {name}, and the surface has "
                 f"{_metres(there)}; shorten the stroke"
             )
+
+
+def lowered(
+    texture: TextureFile,
+    p: Prediction,
+    inverse: FrictionInverse,
+    compensation: WaveCompensation | None = None,
+) -> Program:
+    """The program of a texture on a display whose largest amplitude and friction are predicted.
+
+    `inverse` reads the display's friction backwards. Raises what `lower` raises.
+    """
+    quantity = texture.texture.quantity
+    return lower(
+        texture.texture,
+        largest_amplitude=p.vibration_amplitude,
+        inverse=None if quantity == "amplitude" else inverse,
+        friction_coefficient=p.friction_coefficient if quantity == "friction_reduction" else None,
+        compensation=compensation,
+    )

@@ -24,6 +24,7 @@ from squeezefilm.physics.chain.pad_place import FacePlace
 from squeezefilm.physics.chain.played_texture import (
     FingerMotion,
     PlayedTexture,
+    lowered,
     require_on_display,
     require_on_image,
     single_period,
@@ -47,10 +48,7 @@ from squeezefilm.physics.render.fidelity.report import (
 )
 from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_named
 from squeezefilm.physics.render.motion.stroke import Stroke
-from squeezefilm.physics.render.program.inverse import FrictionInverse
-from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import Counters, render
-from squeezefilm.physics.render.program.wave import WaveCompensation
 from squeezefilm.physics.render.resonator.compensation import (
     COMPENSATIONS,
     Compensation,
@@ -391,24 +389,4 @@ def _played(
     name = texture.title or f"a texture of {texture.texture.quantity}"
     return PlayedTexture(
         name, program, under.inverse, finger, p.friction_coefficient, under.compensation, period
-    )
-
-
-def lowered(
-    texture: TextureFile,
-    p: Prediction,
-    inverse: FrictionInverse,
-    compensation: WaveCompensation | None = None,
-) -> Program:
-    """The program of a texture on a display whose largest amplitude and friction are predicted.
-
-    `inverse` reads the display's friction backwards. Raises what `lower` raises.
-    """
-    quantity = texture.texture.quantity
-    return lower(
-        texture.texture,
-        largest_amplitude=p.vibration_amplitude,
-        inverse=None if quantity == "amplitude" else inverse,
-        friction_coefficient=p.friction_coefficient if quantity == "friction_reduction" else None,
-        compensation=compensation,
     )

@@ -12,11 +12,11 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.chain import standing_wave
+from squeezefilm.physics.chain.played_texture import lowered
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.rendered_texture import (
     CONTROL_RATE,
     RenderAnalysis,
-    lowered,
     render_texture,
 )
 from squeezefilm.physics.chain.standing_wave import WAVES, UnderPad, wave_factors

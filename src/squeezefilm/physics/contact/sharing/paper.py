@@ -17,23 +17,6 @@ from squeezefilm.physics.film.closed.limits import PaperModel, contact_mean_pres
 from squeezefilm.physics.film.gap import PaperGap
 
 
-@si.closed_form(positive="mean_pressure normal_force contact_length ambient_pressure")
-def relative_friction_from_pressure(
-    mean_pressure: si.DimensionlessLike,
-    normal_force: si.NewtonLike,
-    contact_length: si.MetreLike,
-    ambient_pressure: si.PascalLike,
-) -> si.DimensionlessLike:
-    """µ′/µ = max(0, 1 − (⟨P̄⟩ − 1) p0 l0²/F) (dimensionless), paper eq 14 corrected; broadcasts.
-
-    `mean_pressure` is ⟨P̄⟩ over ambient, so the finger's pressure must be taken over ambient too;
-    the paper prints it in Pa. Zero where the film carries the finger entirely. Holds as long as
-    the friction coefficient of what stays in contact does not depend on its load.
-    """
-    over_pressure = (mean_pressure - 1) * ambient_pressure * contact_length**2
-    return np.maximum(0.0, 1 - over_pressure / normal_force)
-
-
 def _unclipped(gap: PaperGap, force: Any, ambient: float, model: PaperModel) -> Any:
     """1 − (⟨P̄⟩ − 1)/P_f, below zero where the finger would float away."""
     over_pressure = contact_mean_pressure(gap, model) - 1
