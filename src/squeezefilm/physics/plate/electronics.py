@@ -264,7 +264,7 @@ def _driven_harmonics(body: RingBody, own: int) -> list[int]:
 
 
 def driven_ceramics(plate: RectangularPlate) -> int:
-    """How many ceramics of a plate the amplifier drives, all in parallel."""
+    """Number of ceramics of a plate that the amplifier drives, all in parallel."""
     return sum(patch.electrode == "driven" for patch in plate.patches)
 
 

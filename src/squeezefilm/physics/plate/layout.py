@@ -66,7 +66,7 @@ class CeramicPatch:
 
     @property
     def drive_sign(self) -> int:
-        """Which way the drive bends it: polarity times poling, 0 where it is not driven."""
+        """Sign of the bending by the drive: polarity times poling, 0 where it is not driven."""
         return self.polarity * self.poling if self.electrode == "driven" else 0
 
 
@@ -257,7 +257,7 @@ def turned(plate: RectangularPlate) -> RectangularPlate:
 
 
 def _shared(start: float, extent: float, other: float, other_extent: float) -> float:
-    """How long two intervals lie over each other; negative for how far they lie apart."""
+    """Length over which two intervals overlap; negative for how far they lie apart."""
     return min(start + extent, other + other_extent) - max(start, other)
 
 

@@ -77,7 +77,7 @@ class AnnularStator:
 
     @property
     def wavelengths_around(self) -> si.Dimensionless:
-        """How many wavelengths fit on the mean circumference."""
+        """Number of wavelengths on the mean circumference."""
         return math.pi * self.mean_diameter / self.wavelength
 
 

@@ -122,7 +122,7 @@ class SurfaceShape(ABC):
 
 @dataclass(frozen=True, eq=False)
 class SolvedSurface(SurfaceShape):
-    """Of a plate solved in three dimensions: its response at frequency number `number`."""
+    """Surface of a plate solved in three dimensions: its response at frequency number `number`."""
 
     response: HarmonicResponse
     number: int
@@ -169,7 +169,7 @@ class SolvedSurface(SurfaceShape):
 
 @dataclass(frozen=True, eq=False)
 class BeamSurface(SurfaceShape):
-    """Of a plate taken as a beam: its working mode along the wave, the same all across."""
+    """Surface of a plate taken as a beam: its working mode along the wave, the same all across."""
 
     beam: BeamResponse
     words: ClassVar[str] = (
@@ -188,7 +188,7 @@ class BeamSurface(SurfaceShape):
 
 @dataclass(frozen=True, eq=False)
 class DiscSurface(SurfaceShape):
-    """Of a disc or a plate with a hole, u_z = W(r) cos mθ with θ from the x axis."""
+    """Surface of a disc or a plate with a hole, u_z = W(r) cos mθ with θ from the x axis."""
 
     mode: AnnularMode
     words: ClassVar[str] = "the disc's own mode alone, turned so that the x axis crosses antinodes"
@@ -223,7 +223,7 @@ class DiscSurface(SurfaceShape):
 
 @dataclass(frozen=True, eq=False)
 class TrackSurface(SurfaceShape):
-    """Of a stator whose amplitude was measured: |cos(πx/λ_half)| along the mean circumference."""
+    """Surface of a measured stator: |cos(πx/λ_half)| along the mean circumference."""
 
     words: ClassVar[str] = (
         "a standing wave along the track with one amplitude at all its antinodes, as measured "

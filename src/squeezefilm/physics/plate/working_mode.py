@@ -64,7 +64,7 @@ class ModeLine:
 
     @property
     def nodal_positions(self) -> si.MetreArray:
-        """Where the deflection is zero (m), between the points by straight lines as it is drawn."""
+        """Places where the deflection is zero (m), by straight lines between points."""
         return zero_crossings(self.position, self.deflection)
 
 

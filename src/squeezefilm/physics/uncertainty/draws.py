@@ -104,7 +104,7 @@ class Refusals:
 
     @property
     def sentence(self) -> str:
-        """How many were refused and why."""
+        """Sentence of how many were refused and why."""
         why = ", ".join(f"{why} ({count})" for why, count in self.reasons.most_common())
         laws = ", ".join(f"{name} ({count})" for name, count in self.heights.most_common())
         return (

@@ -20,7 +20,7 @@ _NEXT_TO_NOTHING = 0.02
 
 @dataclass(frozen=True)
 class Influence:
-    """How much of the variance of µ′/µ one input explains, alone and with all its company.
+    """Share of the variance of µ′/µ that one input explains, alone and with all its company.
 
     First-order and total Sobol' indices with the half width of their 95 % confidence interval.
     """
@@ -34,7 +34,7 @@ class Influence:
 
 @dataclass(frozen=True)
 class GroupInfluence:
-    """How much of the variance of µ′/µ goes away if all of a group were known (`alone`), and how
+    """Share of the variance of µ′/µ that goes away if all of a group were known (`alone`), and how
     much would be left if all but the group were (`total`), each with the half width of its 95 %
     confidence interval: no member has more of either, but for these errors and its own."""
 

@@ -173,7 +173,7 @@ def require_half_wave(frequency: float, times: Mapping[str, float], asked: str) 
 
 
 def kept_products(y: LineMesh, z: LineMesh, trunk: float) -> NDArray[np.bool_]:
-    """Which products of functions along y and z a `trunk` keeps, shape (y, z functions)."""
+    """True for products of functions along y and z that a `trunk` keeps, (y, z functions)."""
 
     def relative(mesh: LineMesh) -> si.FloatArray:
         highest = max(mesh.orders)
@@ -211,7 +211,7 @@ class BoxModel:
 
     @functools.cached_property
     def kept(self) -> NDArray[np.bool_]:
-        """Which products of y and z functions are used, shape (y, z functions)."""
+        """True for the products of y and z functions that are used, shape (y, z functions)."""
         return kept_products(self.y, self.z, self.trunk)
 
     def __post_init__(self) -> None:

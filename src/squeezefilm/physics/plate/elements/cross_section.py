@@ -71,7 +71,7 @@ class CrossSection:
 
 
 def potential_base(model: BoxModel) -> int:
-    """Where the codes of potentials start."""
+    """First code of potentials."""
     return 4 * model.y.nodes.size * model.z.nodes.size
 
 

@@ -129,7 +129,7 @@ class LineMesh:
 
     @property
     def elements(self) -> int:
-        """How many elements there are."""
+        """Number of elements."""
         return len(self.orders)
 
     @functools.cached_property

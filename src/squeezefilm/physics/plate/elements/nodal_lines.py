@@ -9,7 +9,7 @@ from squeezefilm.core.errors import InputError
 
 
 def zero_crossings(position: si.FloatArray, profile: si.FloatArray) -> si.FloatArray:
-    """Where a profile changes sign; values below 1e-6 of its largest count as none."""
+    """Places where a profile changes sign; values below 1e-6 of its largest count as none."""
     strong = np.abs(profile) > 1e-6 * np.max(np.abs(profile))
     x, w = position[strong], profile[strong]
     at = np.flatnonzero(np.signbit(w[1:]) != np.signbit(w[:-1]))
@@ -24,7 +24,7 @@ def profiles(shape: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray, float]
 
 
 def line_counts(shape: si.FloatArray, x: si.MetreArray, y: si.MetreArray) -> tuple[int, int]:
-    """How many nodal lines cross the length and how many the width, of a deflection (x, y).
+    """Numbers of nodal lines across the length and across the width, of a deflection (x, y).
 
     They are counted on the nearest product X(x) Y(y). Where two modes are near one another and
     share their motions, the lines of the shape itself are not straight and cannot be counted; the
@@ -38,7 +38,7 @@ def line_counts(shape: si.FloatArray, x: si.MetreArray, y: si.MetreArray) -> tup
 def within_nodes(
     position: si.MetreArray, nodes: si.MetreArray
 ) -> np.ndarray[tuple[int], np.dtype[np.bool]]:
-    """Which places lie between the outermost of some nodal lines, all where there are fewer than
+    """True for places between the outermost of some nodal lines, all where there are fewer than
     two: free ends move further than any finger meets."""
     si.require("nodes", nodes, si.Unit("m"), axes=1)
     if nodes.size < 2:

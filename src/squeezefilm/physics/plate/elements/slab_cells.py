@@ -40,7 +40,7 @@ class Cell:
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Where a cell stands: its slices in the order of the cell, mirrored or not."""
+    """Place of a cell: its slices in the order of the cell, mirrored or not."""
 
     cell: Cell
     nodes: range
@@ -69,7 +69,7 @@ class Group:
 
     @property
     def count(self) -> int:
-        """How many places there are."""
+        """Number of places."""
         return int(self.at.shape[1])
 
     @property

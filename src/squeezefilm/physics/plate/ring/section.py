@@ -182,7 +182,7 @@ class AnnularSection:
 
     @property
     def shear_times(self) -> dict[str, si.Second]:
-        """How long shear takes through each layer (s), by the name of its medium; the thickest of
+        """Time that shear takes through each layer (s), by the name of its medium; the thickest of
         several of a name."""
         times: dict[str, si.Second] = {}
         for layer in self.layers:
@@ -205,14 +205,14 @@ class AnnularSection:
 
     @property
     def mean_diameter(self) -> si.Metre:
-        """Where wavelengths are measured."""
+        """Diameter of the circle on which wavelengths are measured (m)."""
         return self.wave_diameter or sum(self.surface_radii)
 
 
 @si.checked_numbers
 @dataclass(frozen=True)
 class SectorDrive:
-    """Which sectors of the ceramic ring one channel drives: (start, end, polarity) in radians.
+    """Sectors of the ceramic ring that one channel drives: (start, end, polarity) in radians.
 
     Polarity is the direction of poling (+1 or −1) under one common electrode, or the sign of its
     voltage. Raises `GeometryError` for sectors that overlap.

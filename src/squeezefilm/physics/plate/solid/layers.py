@@ -17,7 +17,7 @@ from squeezefilm.physics.plate.solid.symmetry import SNAP
 
 @dataclass(frozen=True)
 class Resolution:
-    """How fine a plate is meshed.
+    """Fineness of a plate's mesh.
 
     `edge_layers` are distances of element edges from a ceramic's edge, in units of the thinner of
     plate and ceramic (`edge_layers_y` those across the slices), `bond_layers` those from a bond

@@ -316,7 +316,7 @@ class _Cells:
 def _ends(
     plate: RectangularPlate, parity: Symmetry, swapped: bool
 ) -> tuple[EndCondition, EndCondition, EndCondition, EndCondition]:
-    """How the model ends: at both ends of its x, then of its y."""
+    """Ends of the model: at both ends of its x, then of its y."""
     ends: list[EndCondition] = []
     for axis in (1, 0) if swapped else (0, 1):
         names = ("left", "right") if axis == 0 else ("front", "back")

@@ -79,12 +79,12 @@ class PlateModes(SolvedAgain):
 
     @property
     def count(self) -> int:
-        """How many modes there are."""
+        """Number of modes."""
         return self.frequencies.size
 
     @property
     def resolution(self) -> Resolution:
-        """How fine a response to match these modes is meshed."""
+        """Fineness of the mesh of a response to match these modes."""
         return COARSE if self.left_coarse else NORMAL
 
     @property
@@ -141,8 +141,8 @@ class PlateModes(SolvedAgain):
 
     @si.checked_numbers
     def nodal_positions(self, mode: int) -> si.MetreArray:
-        """Where w vanishes along the side that more nodal lines cross, of the shape's dominant
-        part (m): along the length, or along the width of a mode such as (0,7)."""
+        """Places where w vanishes (m) along the side that more nodal lines cross, of the shape's
+        dominant part: along the length, or along the width of a mode such as (0,7)."""
         along, across, _ = profiles(self.shapes[self._known(mode)])
         lines = zero_crossings(self.x, along), zero_crossings(self.y, across)
         return lines[0] if lines[0].size >= lines[1].size else lines[1]

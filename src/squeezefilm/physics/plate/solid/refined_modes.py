@@ -153,7 +153,7 @@ def _finer(piece: RefinedModes, finer: PlateModel, level: int, tolerance: float)
 
 
 def with_label(piece: RefinedModes, label: Label) -> RefinedModes:
-    """Of refined modes those that have these nodal lines."""
+    """The refined modes that have these nodal lines."""
     x, y, surface = surface_shapes(piece.solved, piece.vectors)
     keep = np.array([label_of(one, x, y) == label for one in surface])
     return dataclasses.replace(

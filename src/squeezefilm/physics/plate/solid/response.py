@@ -363,7 +363,7 @@ def _truncation(
     added: si.ComplexArray | None,
     admittance: si.ComplexArray,
 ) -> float:
-    """How much the admittance changes when each space loses its last quarter."""
+    """Change of the admittance when each space loses its last quarter."""
     pick = np.arange(0, omega.size, max(1, omega.size // 12))
     shorter = [_shortened(part) for part in parts]
     kept = np.concatenate(

@@ -40,8 +40,8 @@ class SolveSize(NamedTuple):
 
     @property
     def seconds(self) -> si.Second:
-        """Of all that a working mode takes (s): within a factor of 2 of the processor time on 14
-        plates, and by how fast the machine is and what else it does."""
+        """Time of all that a working mode takes (s): within a factor of 2 of the processor time on
+        14 plates, and by how fast the machine is and what else it does."""
         return self.coarse + self.refined + self.response
 
     def require_within(self, deadline: Deadline, budget: si.Second, instead: str = "") -> None:
@@ -57,7 +57,7 @@ class SolveSize(NamedTuple):
 
 
 def expected_seconds(solved: PlateModel) -> si.Second:
-    """How long a mesh takes to be factorised and searched (s): elements times the cube of their
+    """Time that a mesh takes to be factorised and searched (s): elements times the cube of their
     slices' unknowns, as `SolveSize.seconds` is right."""
     return _seconds(slab_count(solved.model))
 
@@ -100,7 +100,7 @@ def solve_size(plate: RectangularPlate, label: Label, frequency: si.Hertz) -> So
 
 @si.checked_numbers
 def band_seconds(plate: RectangularPlate, highest: si.Hertz) -> si.Second:
-    """How long the coarse meshes of all classes of symmetry take up to a frequency (Hz), each
+    """Time that the coarse meshes of all classes of symmetry take up to a frequency (Hz), each
     counted twice more to know how many modes there are (s).
 
     Raises what `solve_size` raises.

@@ -172,7 +172,7 @@ def _solved(
 
 
 def _slowness(found: list[CoarseModes], took: si.Second) -> float:
-    """How many times as long as expected the coarse meshes took: another machine, or a busy one.
+    """Time that the coarse meshes took over what was expected: another machine, or a busy one.
 
     Between 1 and 4: what is compiled for the first time is no measure of the next mesh.
     """
