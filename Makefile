@@ -69,11 +69,11 @@ slow: $(VENV)/test.stamp  ## run the tests that take seconds each, as CI does af
 gate: $(VENV)/test.stamp  ## reliability: crash, kill, disk, fuzz, token, watchdog …, with a table
 	@$(BIN)/python tools/gate.py
 
-# Solved anew, so that every line is seen that a test needs.
+# Solved anew, so that every line is seen that a test needs; which test ran it is kept for mutants.
 coverage: export SQUEEZEFILM_CACHE = off
 coverage: $(VENV)/test.stamp  ## branches that the quick tests take
 	@failed=0; \
-	$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(QUICK)" --cov --cov-report= \
+	$(PYTEST) -n $(WORKERS) -m "not campaign and not realtime $(QUICK)" --cov --cov-context=test --cov-report= \
 	  || failed=1; \
 	$(BIN)/coverage report --skip-covered --sort=-cover; \
 	exit $$failed

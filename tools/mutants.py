@@ -4,13 +4,14 @@
     python tools/mutants.py --report
 
 A sample is drawn by seed over all kinds of faults in turn. Each mutant is tried in a private copy
-of the working tree, never in the checkout, with compiled code cached apart, until a test fails. By
-the quick tests of the nearest files, by their names and imports, for `--budget` seconds of
-processor time together. What fails counts if the source passes it with nothing but a blank line
-more. What passes them all survived. `--nightly` asks the slow tests of those files too. The answers
-are appended to a file of JSON lines; a run that was cut off goes on where it stopped. Mutants that
-change nothing anybody could notice are named in ``tools/equivalent_mutants.toml`` with the reason,
-and do not count.
+of the working tree, never in the checkout, with compiled code cached apart, until a test fails: by
+quick tests that ran the line when `make coverage` was run last, or, of a line that nobody saw
+running since (compiled code, or a file changed after it), of the nearest files by names and
+imports, for `--budget` seconds of processor time together. What fails counts if the source passes
+it with nothing but a blank line more. What passes them all survived. `--nightly` asks the slow
+tests of those files too. The answers are appended to a file of JSON lines; a run that was cut off
+goes on where it stopped. Mutants that change nothing anybody could notice are named in
+``tools/equivalent_mutants.toml`` with the reason, and do not count.
 """
 
 from __future__ import annotations
@@ -35,6 +36,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from coverage import CoverageData
+
 import import_graph
 from mutant_report import print_report
 from mutations import Mutant, all_mutants, sample
@@ -47,6 +50,7 @@ MARKS = {
     "slow": "not campaign and (realtime or slow or nightly)",
 }
 _FILES = 12  # of tests that are asked by nearness
+_COVERING = 40  # tests that are asked since they ran the line
 _COMPILED = 4.0  # budgets of a module that numba compiles anew for each mutant
 _CUT_OFF = 2.0  # budgets, after which a test that was begun within one is slow
 _FAILED = re.compile(r"^(?:FAILED|ERROR) (.+)$", re.MULTILINE)
@@ -233,6 +237,30 @@ class Nearness:
         return [name for *_, name in sorted(ranked)]
 
 
+class Covering:
+    """The tests that ran a line when `make coverage` was run last."""
+
+    def __init__(self, file: Path) -> None:
+        self._data = CoverageData(str(file))
+        self._from = file.stat().st_mtime if file.exists() else 0.0
+        if file.exists():
+            self._data.read()
+
+    def tests(self, path: Path, line: int, files: Sequence[str]) -> list[str]:
+        """Those of a line of a file that has not changed since, one of each function's variants,
+        those of the given files first."""
+        if not self._from or path.stat().st_mtime > self._from:
+            return []
+        contexts = self._data.contexts_by_lineno(str(path)).get(line, [])
+        named = sorted({context.partition("|")[0] for context in contexts} - {""})
+        rank = {name: number for number, name in enumerate(files)}
+        functions = {test.partition("[")[0]: test for test in reversed(named)}
+        nearest = sorted(
+            functions.values(), key=lambda test: rank.get(test.partition("::")[0], len(rank))
+        )
+        return nearest[:_COVERING]
+
+
 class Report:
     """The file of answers: JSON lines, to which everything is appended at once."""
 
@@ -272,6 +300,7 @@ class Trial:
     def __init__(self, copy: Copy, report: Report, arguments: argparse.Namespace) -> None:
         self._copy, self._report = copy, report
         self._nearness = Nearness(copy.tree)
+        self._covering = Covering(ROOT / "out" / "coverage")
         self._budgets = {"quick": arguments.budget}
         if arguments.nightly:
             self._budgets["slow"] = arguments.slow_budget
@@ -301,13 +330,16 @@ class Trial:
         line |= {"room": mutant.room, "kind": mutant.site.kind, "function": mutant.site.function}
         line |= {"before": mutant.before, "after": mutant.site.after}
         line |= {"noticed": False, "marks": "", "said": "passed", "test": ""}
-        files = self._nearness.tests(mutant.module)[:_FILES]
+        files = self._nearness.tests(mutant.module)
+        covering = self._covering.tests(ROOT / "src" / mutant.path, mutant.line, files)
+        files = files[:_FILES]
+        asked = {"quick": covering or files, "slow": files}
         for marks in self._budgets if files else ():
-            answer = self._notices(mutant, files, marks)
+            answer = self._notices(mutant, asked[marks], marks)
             if answer is not None:
                 line |= {"noticed": True, "marks": marks, **asdict(answer)}
                 break
-        return line | {"asked": files, "seconds": round(processor_time() - started, 1)}
+        return line | {"asked": asked["quick"], "seconds": round(processor_time() - started, 1)}
 
 
 def where(mutant: Mutant) -> str:
