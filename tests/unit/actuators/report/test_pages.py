@@ -6,6 +6,7 @@ import itertools
 import json
 import re
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -18,7 +19,7 @@ from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis
 from squeezefilm.actuators.described import is_actuator
 from squeezefilm.actuators.report import motor, skin_stretch
 from squeezefilm.actuators.report.dispatch import AnalyzedActuator, analyze_actuator
-from squeezefilm.actuators.report.page import assumed_words
+from squeezefilm.actuators.report.page import assumed_words, write_page
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.kit import style
@@ -124,3 +125,18 @@ def test_a_file_that_is_wrong_is_refused_with_its_line(tmp_path: Path) -> None:
     file.write_text('name = "a"\ntitle = "b"\n[motor]\nslider_mass = "1 V"\n', encoding="utf-8")
     with pytest.raises(ConfigError, match="line 4"):
         analyze_actuator(file)
+
+
+def test_a_page_shows_what_it_is_given(tmp_path: Path) -> None:
+    made: Any = SimpleNamespace(
+        described=SimpleNamespace(title="A <motor>", name="mine", provenance={}),
+        summary=lambda: {"thrust_N": 1.5},
+        warnings=("it is warm",),
+    )
+    numbers = [("Thrust", "1.5 N", "at rest")]
+    path = write_page(made, tmp_path / "out", key_numbers=numbers, figures={}, more="<p>more</p>")
+    said = path.read_text(encoding="utf-8")
+    for text in ("A &lt;motor&gt;", "it is warm", "Thrust", "at rest", "<p>more</p>"):
+        assert text in said
+    told = json.loads((path.parent / "result.json").read_text(encoding="utf-8"))
+    assert told["thrust_N"] == 1.5

@@ -244,3 +244,10 @@ def test_a_plate_is_solved_once_for_its_voltages_and_forces(
     )
     assert found.answered == 8
     assert len(solves) == 2
+
+
+def test_an_option_of_another_verb_is_refused_with_who_takes_it() -> None:
+    with pytest.raises(
+        InputError, match=r"asked of predict; it goes with render: ask .* render\.N"
+    ):
+        sweep(STATOR, vary={"texture": "sine-3mm"}, ask="predict.relative_friction")

@@ -49,6 +49,8 @@ def test_the_count_of_every_slice_is_that_of_the_assembled_model(seed: int) -> N
         assert count.unknowns == solved.slabs.unknowns
         inside = [s.codes.size for s in solved.slabs.sections]
         np.testing.assert_array_equal(count.elements, inside)
+        assert count.squares == sum(size**2 for size in inside)
+        assert count.products == sum(size**3 for size in inside)
 
 
 def test_glass_with_small_ceramics_fits_into_four_gigabytes() -> None:

@@ -173,6 +173,15 @@ def test_an_antinode_lies_inside_the_face() -> None:
     assert antinode(x + 0 * y) == pytest.approx(1.0)
 
 
+def test_of_straight_nodal_lines_the_largest_lobe_between_them_counts() -> None:
+    """The ends move most of a free plate, and lie outside of the outermost nodal line."""
+    x = np.linspace(0, 1, 201)
+    lobes = np.sin(4 * np.pi * (x - 1 / 8)) * np.where((x < 1 / 8) | (x > 7 / 8), 2.0, 0.7)
+    along = np.repeat(lobes[:, None], 31, axis=1)
+    assert antinode(along, (4, 0)) == pytest.approx(0.7, rel=1e-3)
+    assert antinode(along.T, (0, 4)) == pytest.approx(0.7, rel=1e-3)
+
+
 def test_a_driven_mode_has_a_name_and_a_bandwidth() -> None:
     mode = DrivenMode(30e3, 60.0, (8, 0), 0.9, ("S", "S"), 1e-7, np.ones((3, 3)))
     assert mode.name == "(8,0)"
