@@ -72,7 +72,7 @@ def theory_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
             model,
             shown(frequency, HZ),
             shown(half, M),
-            "–" if amplitude is None else shown(amplitude, M, 3),
+            shown(amplitude, M, 3),
         )
         for model, frequency, half, amplitude in (used, *others)
     ]

@@ -18,7 +18,7 @@ MODE = SimpleNamespace(
     model="solid", resonance_frequency=30e3, half_wavelength=10e-3, amplitude_per_volt=100e-9
 )
 BEAM = SimpleNamespace(
-    model="beam", resonance_frequency=31e3, half_wavelength=None, vibration_amplitude=None
+    model="beam", resonance_frequency=31e3, half_wavelength=11e-3, vibration_amplitude=3e-6
 )
 
 
@@ -32,7 +32,7 @@ def analysis(voltage: float | None, **changes: Any) -> Any:
 def test_theories_are_compared_without_a_finger_each_at_its_resonance() -> None:
     used, other = theory_rows(analysis(20.0))
     assert used == ("solid (used)", "30 kHz", "10 mm", "2 µm")
-    assert other == ("beam", "31 kHz", "–", "–")
+    assert other == ("beam", "31 kHz", "11 mm", "3 µm")
     # Where the amplitude is given the free one is what is known.
     assert theory_rows(analysis(None))[0][3] == "1.5 µm"
 
