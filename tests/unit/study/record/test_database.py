@@ -619,9 +619,14 @@ def test_what_is_written_is_kept_by_all_that_sqlite_offers(tmp_path: Path) -> No
 def test_what_fails_within_a_transaction_leaves_the_file_as_it_was(tmp_path: Path) -> None:
     with StudyStore.create(tmp_path / "a.sqlite", gratings(), 7) as store:
         before = store.rows("SELECT COUNT(*) AS number FROM sqlite_master")
-        with pytest.raises(ValueError, match="no row"), store.transaction() as write:
-            write.execute("CREATE TABLE begun (number INTEGER)")
-            raise ValueError("no row")
+
+        def fail() -> None:
+            with store.transaction() as write:
+                write.execute("CREATE TABLE begun (number INTEGER)")
+                raise ValueError("no row")
+
+        with pytest.raises(ValueError, match="no row"):
+            fail()
         with store.transaction():  # the next one begins
             pass
         assert store.rows("SELECT COUNT(*) AS number FROM sqlite_master") == before
