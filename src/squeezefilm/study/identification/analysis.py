@@ -26,7 +26,7 @@ from squeezefilm.study.identification.information import (
     information_transfer,
 )
 from squeezefilm.study.identification.proportions import (
-    Interval,
+    StatedInterval,
     chance_test,
     participant_interval,
     permutation_test,
@@ -84,7 +84,7 @@ class IdentificationAnalysis(Result):
     origin: str
     matrix: ConfusionMatrix
     counts: si.IntArray
-    intervals: tuple[Interval, ...]
+    intervals: tuple[StatedInterval, ...]
     by_stimulus: tuple[StimulusCorrect, ...]
     participant_correct: si.DimensionlessArray
     chance_p: si.Dimensionless
@@ -117,7 +117,7 @@ class IdentificationAnalysis(Result):
         return self.matrix.proportion_correct
 
     @property
-    def interval(self) -> Interval:
+    def interval(self) -> StatedInterval:
         """The interval to quote: over participants, or Wilson's where there is one."""
         return _quoted(self.intervals, self.participants)
 
@@ -242,7 +242,7 @@ def _counted(asked: IdentificationRequest) -> tuple[si.IntArray, ConfusionMatrix
     return counts, ConfusionMatrix(counts.sum(axis=0), names, names)
 
 
-def _quoted(intervals: tuple[Interval, ...], people: int) -> Interval:
+def _quoted(intervals: tuple[StatedInterval, ...], people: int) -> StatedInterval:
     """The interval to quote: over participants, or Wilson's where there is one."""
     return intervals[-1] if people > 1 else intervals[0]
 
@@ -292,7 +292,7 @@ def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
 
 def _intervals(
     counts: si.IntArray, matrix: ConfusionMatrix, asked: IdentificationRequest, notes: list[str]
-) -> tuple[Interval, ...]:
+) -> tuple[StatedInterval, ...]:
     """Intervals of the proportion correct: over trials, and over people where there are two."""
     level = asked.level
     intervals = [proportion_interval(matrix.correct, matrix.trials, level)]

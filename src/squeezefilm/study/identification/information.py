@@ -23,7 +23,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.proportions import (
-    Interval,
+    StatedInterval,
     recentred_interval,
     resampled_counts,
 )
@@ -97,7 +97,7 @@ class InformationTransfer:
     """
 
     estimate: Bit
-    interval: Interval | None
+    interval: StatedInterval | None
     greatest: Bit
     trials: int
     participants: int

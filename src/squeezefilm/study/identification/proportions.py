@@ -23,7 +23,7 @@ from squeezefilm.study.psychometric.estimate import holding
 
 
 @dataclass(frozen=True, slots=True)
-class Interval:
+class StatedInterval:
     """An interval: its bounds, its level, and how it was made."""
 
     low: float
@@ -84,7 +84,7 @@ def recentred_interval(
     level: float = 0.95,
     least: float = -np.inf,
     greatest: float = np.inf,
-) -> Interval:
+) -> StatedInterval:
     """The spread of a bootstrap laid around the estimate, not around the bootstrap's own mean.
 
     Resampling repeats people, and statistics with a bias that grows as data thin out (information
@@ -103,7 +103,7 @@ def recentred_interval(
     low, high = estimate + wide * (np.quantile(values, [tail, 1 - tail]) - values.mean())
     # An unbiased estimate may lie beyond what can be, and all resamples to one side of their mean.
     low, high = holding(estimate, *np.clip([low, high], least, greatest))
-    return Interval(float(low), float(high), level, "participant bootstrap, recentred")
+    return StatedInterval(float(low), float(high), level, "participant bootstrap, recentred")
 
 
 Method = Literal["Wilson", "Jeffreys", "Clopper–Pearson"]
@@ -112,7 +112,7 @@ METHODS: tuple[Method, ...] = get_args(Method)
 
 def proportion_interval(
     successes: int, trials: int, level: si.Dimensionless = 0.95, method: Method = "Wilson"
-) -> Interval:
+) -> StatedInterval:
     """An interval of a proportion; trials are taken as independent.
 
     Wilson's score interval (1927, 10.1080/01621459.1927.10502953); the equal-tailed posterior
@@ -135,18 +135,18 @@ def proportion_interval(
         found = stats.binomtest(successes, trials).proportion_ci(
             level, "exact" if exact else "wilson"
         )
-        return Interval(float(found.low), float(found.high), level, method)
+        return StatedInterval(float(found.low), float(found.high), level, method)
     posterior = stats.beta(successes + 0.5, trials - successes + 0.5)
     tail = (1 - level) / 2
     low = 0.0 if successes == 0 else float(posterior.ppf(tail))
     high = 1.0 if successes == trials else float(posterior.isf(tail))
     ends = holding(successes / trials, low, high)
-    return Interval(float(ends[0]), float(ends[1]), level, method)
+    return StatedInterval(float(ends[0]), float(ends[1]), level, method)
 
 
 def participant_interval(
     counts: ArrayLike, level: si.Dimensionless = 0.95, resamples: int = 2000, seed: int = 0
-) -> Interval:
+) -> StatedInterval:
     """Percentile interval of the proportion correct over resampled participants.
 
     The percentiles lie further out than the level says, for few people (`expansion`).
@@ -166,7 +166,7 @@ def participant_interval(
     tail = float(stats.norm.sf(expansion(whole.shape[0], level)))
     correct = float(np.trace(whole.sum(axis=0)) / whole.sum())
     low, high = holding(correct, *np.quantile(right, [tail, 1 - tail]))
-    return Interval(float(low), float(high), level, "participant bootstrap")
+    return StatedInterval(float(low), float(high), level, "participant bootstrap")
 
 
 def chance_test(matrix: ConfusionMatrix) -> si.Dimensionless:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
     from squeezefilm.study.identification.confusion import ConfusionMatrix
     from squeezefilm.study.identification.course import Course
-    from squeezefilm.study.identification.proportions import Interval
+    from squeezefilm.study.identification.proportions import StatedInterval
     from squeezefilm.study.identification.screening import Screening
     from squeezefilm.study.psychometric.estimate import Estimate
     from squeezefilm.study.tasks.analyze import StudyAnalysis
@@ -241,7 +241,7 @@ def _scale_of(name: str) -> tuple[float, str]:
     return (100.0, " %") if name.startswith(parts) else (1.0, "")
 
 
-def between(found: Interval | Estimate | None, scale: float = 1.0, unit: str = "") -> str:
+def between(found: StatedInterval | Estimate | None, scale: float = 1.0, unit: str = "") -> str:
     """Both ends, the method and the level; a dash for none."""
     if found is None:
         return "–"
