@@ -348,6 +348,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "spatial_periods": (2e-3,),
         "speeds": (1.0,),
     },
+    "core.calibration_record.CalibratedAnswer": {"said": "mass", "draws": (0.02, 0.021)},
     "core.calibration_record.ComparedAnswer": {
         "said": "mass",
         "measured": "0.1 kg",

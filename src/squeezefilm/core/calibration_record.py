@@ -71,10 +71,20 @@ class ComparedAnswer:
 
 @si.checked_numbers
 @dataclass(frozen=True)
+class CalibratedAnswer:
+    """Draws of a number that the calibrated display answers with (in SI units, of equal weights),
+    with what the model is believed to be off by; `said` names it in words."""
+
+    said: str
+    draws: tuple[si.Dimensionless, ...]
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
 class CalibrationRecord:
     """A calibration as a file remembers it: the day (UTC), the version that made it, whether the
-    model explains what was observed, what came out in sentences, the recordings, and every
-    observation beside the model."""
+    model explains what was observed, what came out in sentences, the recordings, every observation
+    beside the model, and `answers` of the actuator with the digest `actuator`."""
 
     when: str
     version: str
@@ -82,6 +92,8 @@ class CalibrationRecord:
     said: tuple[str, ...] = ()
     recordings: tuple[UsedRecording, ...] = ()
     compared: tuple[ComparedAnswer, ...] = ()
+    answers: tuple[CalibratedAnswer, ...] = ()
+    actuator: str = ""
 
     @property
     def sentence(self) -> str:

@@ -6,6 +6,7 @@ Two qualities: `screening` takes a plate as a Timoshenko beam and answers while 
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 from dataclasses import dataclass
 from typing import Any
@@ -301,7 +302,7 @@ def calibration_of(display: Display) -> dict[str, Any] | None:
     record = display.calibration
     if record is None:
         return None
-    found: dict[str, Any] = to_json(record)
+    found: dict[str, Any] = to_json(dataclasses.replace(record, answers=()))
     return found | {
         "sentence": record.sentence,
         "responses": _responses(record),

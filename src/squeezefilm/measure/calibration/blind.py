@@ -40,7 +40,7 @@ from squeezefilm.measure.calibration.solved_answers import (
     solved_answers,
 )
 from squeezefilm.measure.calibration.steps import DRAW_TAKES, PLATE_TAKES, Steps
-from squeezefilm.measure.calibration.written_display import calibrated_display
+from squeezefilm.measure.calibration.written_display import actuator_digest, calibrated_display
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, NamedDisplay
@@ -146,8 +146,9 @@ def predict_measurement(
     `ask` names answers and their conditions as `question` reads them, such as
     "resonance_frequency" or "relative_friction: vibration_amplitude=1.7 um". `out` is a JSON file
     in SI units that is never overwritten; `score_prediction` compares it with recordings later.
-    Plates are drawn from the display's own spreads (a calibrated display: the posterior's) and
-    solved: a minute or so. See `measure.calibration.blind.predict_blind`.
+    A calibrated display answers from its calibration's draws, in a second, what these hold; else
+    plates are drawn from the display's own spreads and solved: a minute or so. See
+    `measure.calibration.blind.predict_blind`.
 
     Raises `InputError` for a question that cannot be read or answered, where nothing is asked, and
     for a file that is there already.
@@ -179,13 +180,18 @@ def predicted(
         else f"the calibration of {display.name} on {len(source.observations)} observations"
     )
     of_friction = [seen for seen in what if seen.answer == FRICTION]
-    drawn = isinstance(source, Display) and len(of_friction) < len(what)
-    seconds = _FRICTION * DRAW_TAKES if of_friction else 0.0, _SOLVED * PLATE_TAKES * drawn
+    known = _of_record(display, what) if isinstance(source, Display) else {}
+    drawn = [seen for seen in what if seen.answer != FRICTION and id(seen) not in known]
+    if known and not drawn:
+        how = f"the calibration in the description of {display.name}"
+    solved = _SOLVED if isinstance(source, Display) and drawn else 0
+    seconds = _FRICTION * DRAW_TAKES if of_friction else 0.0, solved * PLATE_TAKES
     steps = Steps(progress or (lambda _: None), seconds)
-    rows = _of_friction(display, of_friction, seed, steps.next()) | (
-        _of_plate(display, what, seed, steps.next())
+    rows = known | _of_friction(display, of_friction, seed, steps.next())
+    rows |= (
+        _of_plate(display, drawn, seed, steps.next())
         if isinstance(source, Display)
-        else _of_calibration(source, what)
+        else _of_calibration(source, drawn)
     )
     predictions = tuple(_predicted(seen, rows[id(seen)]) for seen in what)
     return BlindPrediction(display.name, how, predictions, stamp(display, seed), "")
@@ -208,25 +214,33 @@ def _predicted(seen: Observation, draws: si.FloatArray) -> Predicted:
     return Predicted(seen.answer, dict(seen.conditions), middle, (low, high), float(np.std(known)))
 
 
+def _of_record(display: Display, what: Sequence[Observation]) -> dict[int, si.FloatArray]:
+    """The answers that a calibrated display's file keeps, unless its actuator was changed since."""
+    record = display.calibration
+    if record is None or record.actuator != actuator_digest(display):
+        return {}
+    kept = {answer.said: np.array(answer.draws) for answer in record.answers}
+    asked = {id(seen): asked_by(seen).said for seen in what if seen.answer != FRICTION}
+    return {key: kept[said] for key, said in asked.items() if said in kept}
+
+
 def _of_calibration(source: Calibration, what: Sequence[Observation]) -> dict[int, si.FloatArray]:
     draws = {}
     for seen in what:
-        if seen.answer != FRICTION:
-            try:
-                draws[id(seen)] = source.answer(asked_by(seen))
-            except KeyError as error:
-                known = ", ".join(asked.said for asked in source.joint.asked)
-                raise InputError(
-                    f"the calibration did not compute the {asked_by(seen).said}; it has: {known}"
-                ) from error
+        try:
+            draws[id(seen)] = source.answer(asked_by(seen))
+        except KeyError as error:
+            known = ", ".join(asked.said for asked in source.joint.asked)
+            raise InputError(
+                f"the calibration did not compute the {asked_by(seen).said}; it has: {known}"
+            ) from error
     return draws
 
 
 def _of_plate(
-    display: Display, what: Sequence[Observation], seed: int, tell: ShareProgress
+    display: Display, wanted: Sequence[Observation], seed: int, tell: ShareProgress
 ) -> dict[int, si.FloatArray]:
     """Answers of plates drawn from the display's spreads, with what a model may be off by."""
-    wanted = [one for one in what if one.answer != FRICTION]
     if not wanted:
         return {}
     asked = tuple(dict.fromkeys(asked_by(one) for one in wanted))

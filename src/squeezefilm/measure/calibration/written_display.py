@@ -9,6 +9,8 @@ measured stands in its `calibration` (`core.calibration_record.CalibrationRecord
 from __future__ import annotations
 
 import dataclasses
+import json
+import re
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
@@ -17,11 +19,16 @@ import numpy as np
 
 from squeezefilm import __version__
 from squeezefilm.core import quantities as si
-from squeezefilm.core.calibration_record import CalibrationRecord, JointSpread, UsedRecording
+from squeezefilm.core.calibration_record import (
+    CalibratedAnswer,
+    CalibrationRecord,
+    JointSpread,
+    UsedRecording,
+)
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.distributions import Distribution, Normal, Uniform
-from squeezefilm.core.results import write_whole
+from squeezefilm.core.results import config_hash, to_json, write_whole
 from squeezefilm.measure.calibration.calibration import CalibratedValue, Calibration, Joint
 from squeezefilm.measure.calibration.friction_posterior import finger_mixture
 from squeezefilm.measure.calibration.identified import NOT_TOLD
@@ -36,6 +43,7 @@ from squeezefilm.physics.uncertainty.parameters import SKIN_COMPLIANCE, Paramete
 _ROWS = 256
 """Draws that the file holds: their 5 % and 95 % ends are within some hundredths of all of them."""
 _TOLD_WELL = 0.5
+_FRACTION = re.compile(r"-?\d+\.\d+(e[-+]?\d+)?|-?\d+e[-+]?\d+")
 
 
 def calibrated_display(
@@ -86,7 +94,25 @@ def calibrated_display(
             calibration.sentences,
             tuple(recordings),
             calibration.compared,
+            _answers(calibration.joint),
+            actuator_digest(changed),
         ),
+    )
+
+
+def actuator_digest(display: Display) -> str:
+    """A SHA-256 of an actuator's values to nine digits, which a file's text keeps."""
+    text = json.dumps(to_json(display.actuator), sort_keys=True)
+    return config_hash(_FRACTION.sub(lambda number: f"{float(number[0]):.9g}", text))
+
+
+def _answers(joint: Joint) -> tuple[CalibratedAnswer, ...]:
+    """Draws of the plate's answers, spread evenly over all that there are."""
+    rows = np.linspace(0, len(joint.answers) - 1, min(_ROWS, len(joint.answers))).astype(int)
+    return tuple(
+        CalibratedAnswer(asked.said, tuple(float(f"{value:.7g}") for value in column))
+        for asked, column in zip(joint.asked, joint.answers[rows].T, strict=True)
+        if np.all(np.isfinite(column))
     )
 
 

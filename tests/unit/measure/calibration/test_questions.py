@@ -1,12 +1,19 @@
 """Questions to a blind prediction, read from text."""
 
+import dataclasses
 import math
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+import squeezefilm as sf
+from squeezefilm.core.calibration_record import CalibratedAnswer, CalibrationRecord
 from squeezefilm.core.errors import InputError
+from squeezefilm.measure.calibration import blind
 from squeezefilm.measure.calibration.solved_answers import question
+from squeezefilm.measure.calibration.written_display import actuator_digest
 from squeezefilm.measure.fits.estimate import Observation
 
 
@@ -39,3 +46,26 @@ def test_what_was_observed_is_finite(changed: dict[str, Any], said: str) -> None
     observed = {"answer": "resonance_frequency", "value": 34e3, "standard_error": 17.0}
     with pytest.raises(InputError, match=said):
         Observation(**{**observed, **changed})
+
+
+def test_a_calibrated_file_answers_what_its_draws_hold(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without a plate solved, and as closely as it was measured; a changed plate is solved."""
+    plate = sf.load_display("biet2008-plate")
+    draws = tuple((33.2e3 + 5.0 * np.random.default_rng(1).standard_normal(256)).tolist())
+    answers = (CalibratedAnswer("resonance frequency", draws),)
+    record = CalibrationRecord(
+        "2026-11-28", "0.2.0", True, answers=answers, actuator=actuator_digest(plate)
+    )
+    file = tmp_path / "mine.toml"
+    sf.save_display(dataclasses.replace(plate, calibration=record), file)
+    monkeypatch.setattr(blind, "solved_answers", lambda *_: pytest.fail("a plate was solved"))
+    (found,) = sf.predict_measurement(file, "resonance_frequency", tmp_path / "a.json").predictions
+    assert found.median == pytest.approx(np.median(draws))
+    assert found.interval == pytest.approx(np.quantile(draws, [0.05, 0.95]))
+    thicker = sf.replaced(file, {"actuator.thickness": "2.001 mm"})
+    with pytest.raises(pytest.fail.Exception, match="was solved"):
+        sf.predict_measurement(thicker, "resonance_frequency", tmp_path / "b.json")
+    with pytest.raises(pytest.fail.Exception, match="was solved"):
+        sf.predict_measurement(file, "quality_factor", tmp_path / "c.json")
