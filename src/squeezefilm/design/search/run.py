@@ -196,8 +196,9 @@ class SearchRun:
         while (left := most - len(self._plates_solved())) > 0:
             self._learn()
             self._screen_beside_the_front(pool)
-            # Half of the few that may be solved are chosen by what the first half corrects.
-            count = min(_BATCH, max(LEAST_PLATES, left // 2), left)
+            # Of few plates half are chosen by what the first half corrects.
+            first = max(LEAST_PLATES, left // 2) if left == most else left
+            count = min(_BATCH, first, left)
             chosen = worth_solving(self.requirements, self._seen, self._corrections, count)
             if not chosen:
                 return
