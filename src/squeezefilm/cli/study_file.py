@@ -179,11 +179,14 @@ def delete_participant(
 def analyze(
     store: Annotated[
         Path,
-        typer.Argument(metavar="STUDY.sqlite|ANSWERS.csv", help="The study's file, or answers."),
+        typer.Argument(
+            metavar="STUDY.sqlite|ANSWERS",
+            help="The study's file; or answers of another program, a file or a folder of them.",
+        ),
     ],
     design: Annotated[
         str | None,
-        typer.Option(help="What answers in a CSV of another program were given to."),
+        typer.Option(help="What answers of another program were given to."),
     ] = None,
     columns: Annotated[
         str,
@@ -211,11 +214,11 @@ def analyze(
     intervals, and how people worked."""
     from squeezefilm.core.errors import InputError
     from squeezefilm.study.design.study_design import load_design
-    from squeezefilm.study.record.foreign import columns_of
+    from squeezefilm.study.record.foreign import SUFFIXES, columns_of
     from squeezefilm.study.report.terminal_analysis import show_analyses
     from squeezefilm.study.tasks.analyze import analyze_study
 
-    if design is None and (columns or values or store.suffix.lower() in (".csv", ".tsv")):
+    if design is None and (columns or values or store.suffix.lower() in SUFFIXES or store.is_dir()):
         raise InputError(
             f"{store} is analysed as answers of another program; say to which study they were "
             "given by --design NAME|FILE"

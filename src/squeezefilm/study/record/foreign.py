@@ -1,4 +1,5 @@
-"""Answers that another program recorded, from a CSV file with columns of its own names.
+"""Answers that another program recorded, from files with columns of its own names: CSV, or JSON as
+jsPsych saves it; one file, or a folder with one for each person or session.
 
 A row is a trial, or an answer that was given many times (`count`). Columns of the names that
 `study export` writes need not be told. Rows that cannot be what they say (pasted twice, another
@@ -14,10 +15,12 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from statistics import median
+from typing import Any
 
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.formats.traces import text_of_file
-from squeezefilm.core.hard_limits import FOREIGN_TRIALS, require_within
+from squeezefilm.core.hard_limits import FOREIGN_TRIALS, TABLE_BYTES, require_within
+from squeezefilm.core.regular_file import read_json
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.answers import EXPLORED, Answers, answers_of
 from squeezefilm.study.record.tables import SURFACES, Cell, presented, unguarded
@@ -37,6 +40,8 @@ WORDS = (
 COUNT = "count"
 MILLISECONDS = "response_time_ms"
 _MEASURED = (*NUMBERS, MILLISECONDS, COUNT)
+SUFFIXES = (".csv", ".tsv", ".json")
+"""Ends of the names of files with answers."""
 PEOPLE = "participants of another program"
 
 
@@ -47,8 +52,11 @@ def read_answers(
     values: Mapping[str, str] | None = None,
     decimal_comma: bool = False,
 ) -> Answers:
-    """The answers in a CSV file (comma, semicolon or tab) to a design's questions.
+    """The answers in a file to a design's questions, or in all files of a folder.
 
+    A file is CSV (comma, semicolon or tab), or JSON with a list of trials. Of a folder all files
+    that end in .csv, .tsv or .json are read, in the order of their names; one without a column for
+    the participant is of the person whom its name says.
     `columns` maps our names to the file's: "participant_id" (who, wanted), "stimulus" and
     "second_stimulus" (by the design's names), "choice" (one of the design's answers) or "estimate"
     (a number), "response_time_s" or "response_time_ms", "display" (the design's first, if left
@@ -56,10 +64,11 @@ def read_answers(
     `study export`. A row without an answer is left out: programs write such for what is no trial.
     What is right follows from the stimuli, and from the "intensity" of an "adaptive_series", unless
     "answer" says it.
-    Rows are taken to be in each person's order. `values` maps the file's words for answers and
-    stimuli to the design's, like "left" to "first"; `decimal_comma` reads "1,25".
+    Rows are taken to be in each person's order, and so are a person's files. `values` maps the
+    file's words for answers and stimuli to the design's, like "left" to "first"; `decimal_comma`
+    reads "1,25".
 
-    What cannot be is refused (`implausible.require_plausible_rows`): rows pasted twice, times in
+    What cannot be is refused (`require_plausible_rows`): rows pasted twice, times in
     another unit or below 0, a pair without the reference.
 
     Raises:
@@ -68,13 +77,31 @@ def read_answers(
     """
     limit = int(FOREIGN_TRIALS.most)
     how = dict(columns or {}), dict(values or {}), decimal_comma
-    numbered = list(itertools.islice(_rows(path, design, *how), limit + 1))
-    rows = [row for _, row in numbered]
-    if not rows:
-        raise InputError(f"{path} has no row with an answer; is the column of the choice right?")
-    require_within(FOREIGN_TRIALS, len(rows), enough="give a part of the file")
-    require_plausible_rows(path, design, numbered)
+    rows: list[dict[str, Cell]] = []
+    given: dict[str, int] = {}
+    known: dict[Answered, str] = {}
+    for file in _files(path):
+        found = _rows(file, design, *how, given=given, named=file != Path(path))
+        numbered = list(itertools.islice(found, limit + 1 - len(rows)))
+        if not numbered:
+            raise InputError(
+                f"{file} has no row with an answer; is the column of the choice right?"
+            )
+        require_plausible_rows(file, design, numbered, known)
+        rows += [row for _, row in numbered]
+        require_within(FOREIGN_TRIALS, len(rows), enough="give a part of them")
     return answers_of(design, rows, PEOPLE)
+
+
+def _files(path: str | Path) -> list[Path]:
+    """The file itself, or a folder's files of answers."""
+    folder = Path(path)
+    if not folder.is_dir():
+        return [folder]
+    files = sorted(file for file in folder.iterdir() if file.suffix.lower() in SUFFIXES)
+    if not files:
+        raise InputError(f"{path} has no file that ends in {', '.join(SUFFIXES)}")
+    return files
 
 
 def columns_of(text: str, quantity: str = "columns") -> dict[str, str]:
@@ -98,22 +125,17 @@ def _rows(
     columns: dict[str, str],
     values: dict[str, str],
     decimal_comma: bool,
+    *,
+    given: dict[str, int],
+    named: bool,
 ) -> Iterator[tuple[int, dict[str, Cell]]]:
-    lines = text_of_file(path).lstrip("\ufeff").splitlines()
-    head = lines[0] if lines else ""
-    delimiter = max(",;\t", key=head.count)
-    reader = csv.reader(lines, delimiter=delimiter)
-    names = [one.strip() for one in next(reader, [])]
-    places = _places(path, design, names, columns)
-    given: dict[str, int] = {}
-    for number, cells in enumerate(reader, 2):
-        if not any(cell.strip() for cell in cells):
-            continue
-        if len(cells) < len(names):
-            raise ConfigError(
-                f"has {len(cells)} cells where the header has {len(names)}", file=path, line=number
-            )
-        words = {key: unguarded(cells[at].strip()) for key, at in places.items()}
+    """Rows with their line (in JSON: trial); `given` counts those of each person, whom the file's
+    name says where it is `named` for one."""
+    names, lines = (_json if Path(path).suffix.lower() == ".json" else _csv)(path)
+    of_file = {"participant_id": Path(path).stem} if named else {}
+    places = _places(path, design, names, columns, of_file)
+    for number, cells in lines:
+        words = of_file | {key: unguarded(cells[at].strip()) for key, at in places.items()}
         if not words.get("choice") and not words.get("estimate"):
             continue
         for key in ("choice", *SURFACES, "answer"):
@@ -128,10 +150,49 @@ def _rows(
             yield number, {**row, "trial": row["trial"] or given[who]}
 
 
+def _csv(path: str | Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
+    """The names of columns, and each row's line and cells."""
+    lines = text_of_file(path).lstrip("\ufeff").splitlines()
+    head = lines[0] if lines else ""
+    reader = csv.reader(lines, delimiter=max(",;\t", key=head.count))
+    names = [name.strip() for name in next(reader, [])]
+
+    def rows() -> Iterator[tuple[int, list[str]]]:
+        for number, cells in enumerate(reader, 2):
+            if not any(cell.strip() for cell in cells):
+                continue
+            if len(cells) < len(names):
+                raise ConfigError(
+                    f"has {len(cells)} cells where the header has {len(names)}",
+                    file=path,
+                    line=number,
+                )
+            yield number, cells
+
+    return names, rows()
+
+
+def _json(path: str | Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
+    """The same of a list of trials; what a trial does not say is empty."""
+    trials = read_json(path, TABLE_BYTES, "a list of trials")
+    if not isinstance(trials, list) or not all(isinstance(trial, dict) for trial in trials):
+        raise ConfigError("holds no list of trials, as jsPsych's data.json() has it", file=path)
+    names = list(dict.fromkeys(name for trial in trials for name in trial))
+
+    def cells(trial: dict[str, Any]) -> list[str]:
+        return ["" if trial.get(name) is None else str(trial[name]) for name in names]
+
+    return names, ((number, cells(trial)) for number, trial in enumerate(trials, 1))
+
+
 def _places(
-    path: str | Path, design: StudyDesign, names: list[str], columns: dict[str, str]
+    path: str | Path,
+    design: StudyDesign,
+    names: list[str],
+    columns: dict[str, str],
+    known: Mapping[str, str],
 ) -> dict[str, int]:
-    """Where each of our columns is in the file."""
+    """Places of our columns in the file, but for what is `known` without one."""
     ours = (*WORDS, *NUMBERS, COUNT, MILLISECONDS)
     for key, theirs in columns.items():
         if key not in ours:
@@ -148,7 +209,7 @@ def _places(
     }
     wanted = ["participant_id", "stimulus", "choice" if design.answers else "estimate"]
     wanted += SURFACES[1 : design.described.surfaces]
-    lacking = [key for key in wanted if key not in places]
+    lacking = [key for key in wanted if key not in places and key not in known]
     if lacking:
         raise InputError(
             f"{path} has no column {', '.join(lacking)}; say which it is by "
@@ -238,6 +299,8 @@ def _count(path: str | Path, line: int, words: Mapping[str, str]) -> int:
     return int(found)
 
 
+Answered = tuple[tuple[str, ...], ...]
+"""The answers of a person, row by row."""
 Numbered = Sequence[tuple[int, Mapping[str, Cell]]]
 """Rows with their line in the file."""
 LONGEST_USUAL = 100.0
@@ -248,8 +311,15 @@ _ANSWERED = ("display", "phase", *SURFACES, "choice", "estimate")
 _TIMED = (*_ANSWERED, "response_time_s")
 
 
-def require_plausible_rows(path: str | Path, design: StudyDesign, rows: Numbered) -> None:
+def require_plausible_rows(
+    path: str | Path,
+    design: StudyDesign,
+    rows: Numbered,
+    known: dict[Answered, str] | None = None,
+) -> None:
     """Refuse rows that cannot be what they say, with their line.
+
+    `known` has the answers of people in other files, and takes up those of this one.
 
     Raises `ConfigError` for times below 0 or in milliseconds, a pair without the reference, an
     intensity outside its series, a number a thousand times another of the same person and stimulus,
@@ -263,7 +333,7 @@ def require_plausible_rows(path: str | Path, design: StudyDesign, rows: Numbered
             raise _refused(path, line, "response_time_s", f"{time:g} s is no response time")
         if design.compares:
             _require_pair(path, line, design, row)
-    known: dict[tuple[object, ...], str] = {}
+    known = {} if known is None else known
     for who, mine in people.items():
         _require_seconds(path, who, mine)
         _require_once(path, who, mine)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 from collections.abc import Callable
 from pathlib import Path
 
@@ -247,3 +248,48 @@ def test_an_estimate_without_a_logarithm_is_told_with_its_line(given: Given) -> 
     text = f"participant_id,stimulus,estimate\na,{design.stimuli[0].name},0\n"
     with pytest.raises(ConfigError, match="line 2: estimate: '0' is not above 0"):
         read_answers(given(text), design)
+
+
+def test_a_folder_holds_a_file_for_each_person(tmp_path: Path) -> None:
+    """As PsychoPy saves CSV and jsPsych JSON, with rows and columns that are no trials."""
+    folder = tmp_path / "data"
+    folder.mkdir()
+    csv = "participant,a,b,key,rt\nwho1,30 %,22 %,left,0.8\nwho1,42 %,30 %,left,0.7\n,,,,\n"
+    (folder / "1_friction.csv").write_text(csv, encoding="utf-8")
+    (folder / "2_friction.csv").write_text(csv.replace("0.", "1."), encoding="utf-8")
+    trials = [
+        {"trial_type": "instructions", "rt": 5301},
+        {"trial_type": "keyboard", "participant": "who2", "a": "18 %", "b": "30 %", "key": "right"},
+    ]
+    (folder / "who2.json").write_text(json.dumps(trials), encoding="utf-8")
+    (folder / "notes.txt").write_text("none", encoding="utf-8")
+    columns = columns_of("participant_id=participant, stimulus=a, second_stimulus=b, choice=key")
+    values = {"left": "first", "right": "second"}
+    answers = read_answers(folder, DESIGN, columns, values)
+    people = [answers.people[number] for number in answers.participant]
+    assert people == ["who1"] * 4 + ["who2"]
+    # A file that was copied holds the same answers at the same times.
+    again = "participant,a,b,key,rt\n" + "".join(
+        f"who1,30 %,22 %,left,0.{number}\n" for number in range(11, 40)
+    )
+    for name in ("3.csv", "3 (1).csv"):
+        (folder / name).write_text(again, encoding="utf-8")
+    with pytest.raises(ConfigError, match=r"3\.csv.*same answers and times.*keep one"):
+        read_answers(folder, DESIGN, {**columns, "response_time_s": "rt"}, values)
+
+
+def test_in_a_folder_a_files_name_may_be_the_person(tmp_path: Path) -> None:
+    row = [{"stimulus": "30 %", "second_stimulus": "22 %", "choice": "first"}]
+    for name in ("ann", "ben"):
+        (tmp_path / f"{name}.json").write_text(json.dumps(row), encoding="utf-8")
+    assert sorted(read_answers(tmp_path, DESIGN).people) == ["ann", "ben"]
+    with pytest.raises(InputError, match="no column participant_id"):
+        read_answers(tmp_path / "ann.json", DESIGN)
+    (tmp_path / "cat.json").write_text('{"choice": 1}', encoding="utf-8")
+    with pytest.raises(ConfigError, match="no list of trials"):
+        read_answers(tmp_path, DESIGN)
+
+
+def test_an_empty_folder_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"no file that ends in \.csv, \.tsv, \.json"):
+        read_answers(tmp_path, DESIGN)
