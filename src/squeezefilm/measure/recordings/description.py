@@ -68,7 +68,8 @@ class DescribedImpedance(Described):
 
     `reference` is the impedance that waves are told against, `shunt` the resistor between the
     device and ground over which a gain was taken, `compensated` whether the leads were, `band` the
-    frequencies that are kept.
+    frequencies that are kept. `open` and `short` are files of the same columns, taken with nothing
+    in the fixture and with its ends joined.
     """
 
     kind: Literal["impedance"]
@@ -79,6 +80,8 @@ class DescribedImpedance(Described):
     reference: Annotated[si.Ohm, RESISTANCE] | None = None
     shunt: Annotated[si.Ohm, RESISTANCE] | None = None
     compensated: bool | None = None
+    open: str = ""
+    short: str = ""
     band: Band | None = None
 
 

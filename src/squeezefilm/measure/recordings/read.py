@@ -16,6 +16,7 @@ from squeezefilm.measure.recordings.assembled import assembled, joined_sweeps
 from squeezefilm.measure.recordings.described import Described
 from squeezefilm.measure.recordings.description import (
     KINDS,
+    DescribedImpedance,
     DescribedSweeps,
     Description,
     load_description,
@@ -30,6 +31,7 @@ from squeezefilm.measure.recordings.files.text_table import decoded, read_text_t
 from squeezefilm.measure.recordings.files.touchstone import SUFFIX as TOUCHSTONE
 from squeezefilm.measure.recordings.files.touchstone import read_touchstone
 from squeezefilm.measure.recordings.files.universal import SUFFIXES, read_universal
+from squeezefilm.measure.recordings.fixture import fixture_description, without_fixture
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, Recording
 from squeezefilm.measure.recordings.quantities_read import Reading
 
@@ -204,6 +206,16 @@ def _read(file: Path, description: Description) -> tuple[Recording, list[Reading
     said = description.said
     if not isinstance(said, DescribedSweeps) or not said.sweeps:
         recording, reading = assembled(description, _table(file, description))
+        if isinstance(said, DescribedImpedance) and (said.open or said.short):
+            plain = fixture_description(description)
+            swept = {
+                key: assembled(plain, _table(file.parent / name, plain))[0]
+                for key, name in (("open", said.open), ("short", said.short))
+                if name
+            }
+            recording = without_fixture(recording, swept, description)
+            files = " and ".join(filter(None, (said.open, said.short)))
+            reading.facts.append(("without its fixture", f"by {files}"))
         return recording, [reading]
     parts: list[tuple[FrequencyResponse, Reading]] = []
     for response in said.responses():
