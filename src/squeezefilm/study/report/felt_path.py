@@ -49,7 +49,7 @@ def felt_path(found: FeltPath) -> Figure:
 
 
 def _over_surface(axes: Axes, found: FeltPath) -> None:
-    from squeezefilm.physics.perception.path_percepts import straight_runs
+    from squeezefilm.physics.perception.path_runs import straight_runs
 
     x, y = (np.concatenate([getattr(path, one) for path in found.paths]) for one in ("x", "y"))
     room = 0.1 * max(np.ptp(x), np.ptp(y)) + 1e-3

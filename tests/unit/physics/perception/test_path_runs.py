@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.physics.perception.path_percepts import straight_runs
+from squeezefilm.physics.perception.path_runs import straight_runs
 from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
 
