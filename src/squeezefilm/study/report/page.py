@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -116,14 +116,13 @@ def write_overview(
 ) -> Path:
     """Write a page per display, each in its own folder, and one to read first above them, with
     `more` sections (HTML) below; of simulated participants `named` is the study."""
-    folder = require_folder(folder)
-    for display, analysis in analyses.items():
-        write_study(analysis, folder / _folder_of(display), progress=progress)
+    folder, places = require_folder(folder), _folders_of(analyses)
+    for place, analysis in zip(places, analyses.values(), strict=True):
+        write_study(analysis, folder / place, progress=progress)
     sections, name, origin = "", named, "simulated"
-    for display, analysis in analyses.items():
+    for place, (display, analysis) in zip(places, analyses.items(), strict=True):
         name, origin = analysis.name.removesuffix(f", {display}"), analysis.origin
-        place = escape(_folder_of(display))
-        link = f'<p><a href="{place}/index.html">All numbers and figures</a></p>'
+        link = f'<p><a href="{escape(place)}/index.html">All numbers and figures</a></p>'
         sections += section(escape(printable(display)), bullets(read_first(analysis)) + link)
     text = page(
         escape(printable(f"{name}: what to read first")),
@@ -136,9 +135,13 @@ def write_overview(
     return folder / "index.html"
 
 
-def _folder_of(display: str) -> str:
-    """A name for a display's folder: of a file its name alone, wherever it lies."""
-    return Path(display).stem if display.endswith(".toml") else display
+def _folders_of(displays: Iterable[str]) -> list[str]:
+    """Names for displays' folders: of a file its name alone, numbered where two have the same."""
+    names = [Path(display).name.removesuffix(".toml") for display in displays]
+    return [
+        name if names.count(name) == 1 else f"{name}-{number}"
+        for number, name in enumerate(names, 1)
+    ]
 
 
 def study_figures(analysis: StudyAnalysis) -> dict[str, tuple[str, Figure]]:

@@ -306,7 +306,7 @@ def confusion_rows(matrix: ConfusionMatrix) -> tuple[tuple[str, ...], list[tuple
         )
         for name, percent, counts in zip(matrix.answers, matrix.percent, matrix.counts, strict=True)
     ]
-    return ("Answered \\ simulated", *matrix.stimuli), rows
+    return ("Answered \\ presented", *matrix.stimuli), rows
 
 
 def whose(origin: str) -> str:

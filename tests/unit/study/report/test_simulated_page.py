@@ -106,7 +106,7 @@ def test_every_answer_is_a_row(written: tuple[Path, list[Any], list[str]]) -> No
 
 def test_confusions_are_shares_of_a_column_with_their_counts() -> None:
     head, rows = confusion_rows(study().confusion(0))
-    assert head == ("Answered \\ simulated", "2 mm", "4 mm")
+    assert head == ("Answered \\ presented", "2 mm", "4 mm")
     assert rows == [("4 mm", "50 % (1)", "100 % (2)"), ("2 mm", "50 % (1)", "0 % (0)")]
     assert confusion_rows(study().confusion(1))[1] == [
         ("4 mm", "0 % (0)", "100 % (2)"),
@@ -171,7 +171,7 @@ def test_the_page_says_that_nobody_answered_and_shows_names_as_text(
     assert "<h2>What the model sees on biet2008-stator: 75.0 % right</h2>" in page
     assert "<h2>What the model sees on &lt;b&gt;plate: 100.0 % right</h2>" in page
     assert (
-        '<thead><tr><th scope="col">Answered \\ simulated</th><th scope="col">2 mm</th>'
+        '<thead><tr><th scope="col">Answered \\ presented</th><th scope="col">2 mm</th>'
         '<th scope="col">4 mm</th></tr></thead>\n<tbody>\n'
         '<tr><th scope="row">4 mm</th><td>50 % (1)</td><td>100 % (2)</td></tr>\n'
         '<tr><th scope="row">2 mm</th><td>50 % (1)</td><td>0 % (0)</td></tr>\n</tbody>' in page

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from tests.unit.drawn import words
 from tests.unit.printed import printed
 
 from squeezefilm.core.kit import style
+from squeezefilm.study.report import page as report
 from squeezefilm.study.report.page import TASK_FIGURES, study_figures, write_overview, write_study
 from squeezefilm.study.report.task_figures import answers, persons, sensitivity
 from squeezefilm.study.report.terminal_analysis import show_analyses
@@ -55,6 +58,19 @@ def test_the_page_holds_everything(
     text = write_overview({"plate": found}, tmp_path / "all").read_text(encoding="utf-8")
     assert read_first(found)[0] in text
     assert (tmp_path / "all" / "plate" / "index.html").exists()
+
+
+def test_displays_of_one_name_have_folders_of_their_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written: list[str] = []
+    monkeypatch.setattr(report, "write_study", lambda _, folder, **__: written.append(folder.name))
+    monkeypatch.setattr(report, "read_first", lambda _: [])
+    analysis: Any = SimpleNamespace(name="mine", origin="people")
+    displays = ("old/plate.toml", "new/plate.toml", "biet2008-plate")
+    page = write_overview(dict.fromkeys(displays, analysis), tmp_path / "all")
+    assert written == ["plate-1", "plate-2", "biet2008-plate"]
+    assert 'href="plate-2/index.html"' in page.read_text(encoding="utf-8")
 
 
 def test_figures_say_their_message(found: TaskAnalysis) -> None:

@@ -36,7 +36,7 @@ def test_each_display_has_its_confusions_and_main_numbers(
     assert half[: 1 + len(first)] == ["plate: simulated answers", *first]
     rest = half[1 + len(first) :]
     assert rest[:3] == [
-        "Answered \\ simulated 4 mm 8 mm",
+        "Answered \\ presented 4 mm 8 mm",
         "4 mm 100 % (4) 25 % (1)",
         "8 mm 0 % (0) 75 % (3)",
     ]

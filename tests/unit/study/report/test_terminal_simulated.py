@@ -59,7 +59,7 @@ def test_each_display_has_its_answers_and_its_reasons() -> None:
     columns = "Per cent of each column; rows are what was answered, columns simulated."
     assert lines[:10] == [
         "biet2008-plate, SIMULATED: 66.7 % right, 2 simulated participants, seed 5",
-        "Answered \\ simulated 2 mm 4 mm 8 mm",
+        "Answered \\ presented 2 mm 4 mm 8 mm",
         "2 mm 100 % (2) 0 % (0) 0 % (0)",
         "4 mm 0 % (0) 100 % (2) 100 % (2)",
         "8 mm 0 % (0) 0 % (0) 0 % (0)",
@@ -71,7 +71,7 @@ def test_each_display_has_its_answers_and_its_reasons() -> None:
     ]
     assert lines[10:20] == [
         "biet2008-stator, SIMULATED: 100.0 % right, 2 simulated participants, seed 5",
-        "Answered \\ simulated 2 mm 4 mm 8 mm",
+        "Answered \\ presented 2 mm 4 mm 8 mm",
         "2 mm 100 % (2) 0 % (0) 0 % (0)",
         "4 mm 0 % (0) 100 % (2) 0 % (0)",
         "8 mm 0 % (0) 0 % (0) 100 % (4)",
