@@ -230,7 +230,7 @@ class Nearness:
     def tests(self, module: str) -> list[str]:
         """The files of tests that reach a module: its own first, then by steps of import."""
         ranked = [
-            (not self.own(name, module), steps[module], len(steps), name)
+            (not self.own(name, module), steps.get(module, 0), len(steps), name)
             for name, steps in self._steps.items()
             if module in steps or self.own(name, module)
         ]
