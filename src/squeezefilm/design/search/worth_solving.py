@@ -18,6 +18,7 @@ from squeezefilm.design.sweep.tradeoffs import layers_of
 # A design is solved though the screening says that it breaks a limit by up to this share; it tells
 # frequencies better than what depends on losses.
 _DOUBT, _CORRECTED_DOUBT, _OF_FREQUENCY = 0.25, 0.08, 0.08
+_DEVIATIONS = 2.0  # of a corrected frequency, by which it may lie beyond a limit
 _FREQUENCIES = ("resonance_frequency", "highest_frequency")
 # By what share a corrected objective is taken to be off, where nothing or too much is known of it.
 _ERROR, _MOST_ERROR = 0.1, 0.2
@@ -142,12 +143,15 @@ def _expected(
             if one.design.shape == shape and not one.reason and one.design.plate not in known
         ]
         numbers: list[Mapping[str, float]] = [one.numbers for one in here]
-        doubt = _DOUBT
+        doubt, of_frequency = _DOUBT, _OF_FREQUENCY
         if correction is not None:
             numbers, doubt = list(correction.of_all(here)), _CORRECTED_DOUBT
+            # Else what lies just beyond a limit, and moves more for it, is solved again and again.
+            errors = [correction.errors[key] for key in _FREQUENCIES if key in correction.errors]
+            of_frequency = min([_OF_FREQUENCY, *(_DEVIATIONS * error for error in errors)])
         for one, expected in zip(here, numbers, strict=True):
             broken = breaches(expected, requirements.limits)
-            if all(b.excess <= (_OF_FREQUENCY if b.key in _FREQUENCIES else doubt) for b in broken):
+            if all(b.excess <= (of_frequency if b.key in _FREQUENCIES else doubt) for b in broken):
                 yield replace(one, numbers=expected)
 
 

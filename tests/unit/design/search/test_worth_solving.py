@@ -53,6 +53,19 @@ def test_a_frequency_is_believed_more_than_what_depends_on_losses() -> None:
     assert found == {21e3}  # by the formula 18 and 24 kHz are the next
 
 
+def test_a_corrected_frequency_is_believed_as_far_as_its_error() -> None:
+    """Else plates just beyond the limit, which move more, would be solved for nothing."""
+    solved = list(SCREENED)[:40]
+    correction = learned(WANTED.spaces[0], SCREENED, list(seen(solved)["solved"].values()))
+    assert correction is not None
+    error = correction.errors["resonance_frequency"]
+    assert error < 0.02
+    chosen = worth_solving(WANTED, seen(solved), [correction], 300)
+    expected = correction.of_all([SCREENED[design] for design in chosen])
+    least = min(numbers["resonance_frequency"] for numbers in expected)
+    assert 20e3 / (1 + 2 * error) <= least
+
+
 def test_what_was_solved_is_not_chosen_again_and_in_the_end_nothing_is() -> None:
     solved: list[Design] = []
     for _ in range(60):
