@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 from tests.shared import shared
 
-from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis, analyze_skin_stretch
+from squeezefilm.actuators.analysis.skin_stretch import (
+    SkinStretchAnalysis,
+    _warnings,
+    analyze_skin_stretch,
+)
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.report.dispatch import analyze_actuator
 from squeezefilm.core.errors import OutOfRangeError
@@ -64,3 +70,21 @@ def test_the_skin_is_as_stiff_as_its_modulus(found: SkinStretchAnalysis) -> None
 def test_a_voltage_that_undoes_the_poling_is_refused() -> None:
     with pytest.raises(OutOfRangeError, match="poling"):
         analyze_skin_stretch(DESCRIBED, voltage=400.0)
+
+
+def test_what_contactors_do_not_do_is_said() -> None:
+    array: Any = SimpleNamespace(
+        cradle=SimpleNamespace(count=60),
+        budget=SimpleNamespace(over=("The drive takes more than it may.",)),
+        normal_force=0.5,
+    )
+    still, slipping = SimpleNamespace(slipping=0), SimpleNamespace(slipping=7)
+    seating: Any = SimpleNamespace(touching=60)
+    wave: Any = SimpleNamespace(pull=slipping)
+    said = _warnings(array, cast(Any, still), wave, seating, 0.8)
+    assert said[0] == "The drive takes more than it may."
+    assert [text for text in said if text.startswith("7 of 60 contactors slip where the wave")]
+    assert len(said) == 2
+    seating.touching = 41
+    (*_, last) = _warnings(array, cast(Any, still), wave, seating, 0.8)
+    assert last == "41 of 60 contactors touch under 0.5 N; 0.8 N would seat all."
