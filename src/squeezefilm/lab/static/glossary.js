@@ -130,7 +130,7 @@ export const DISPLAY = {
 export const SEARCH = {
   finest_period: { name: "finest grating felt", text: "The shortest period of a square grating that the observer notices at the finger's speed, on the plate at full swing.", source: "the simulated observer; docs/explanation/observers.md" },
   temperature_rise: { name: "temperature rise", text: "Of the plate above the room, driven all the time at the resonance that it drifts to.", source: "heat lost in the plate, natural convection and radiation" },
-  screened_designs: { name: "screened", text: "Judged by the screening theory, some ten milliseconds each: it says which designs are worth solving, and why others fail.", source: "Timoshenko beam, shear plate; discs as they are solved" },
+  screened_designs: { name: "screened", text: "Judged by the screening theory, some ten milliseconds each: it says which designs are worth solving, and why others fail.", source: "Timoshenko beam; discs as they are solved" },
   solved_designs: { name: "solved", text: "In three dimensions, seconds each: only solved plates are on the front.", source: "finite elements; Fourier harmonics of a disc" },
   made_within: { name: "made within the limits", text: "The share of plates, made with the tolerances, that keep all limits.", source: "64 drawn by a scrambled Sobol sequence; the tolerances of the requirements" },
   empty_corners: { name: "empty corners", text: "Parts of what may be chosen in which no screened design meets the limits, and what stands in the way there.", source: "the screened designs, in five parts of every range" },

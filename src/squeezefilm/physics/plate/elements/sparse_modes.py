@@ -1,4 +1,4 @@
-"""Sparse matrices of rings and shear plates, gathered from elements; modes nearest to a shift."""
+"""Sparse matrices of rings, gathered from elements; modes nearest to a shift."""
 
 from __future__ import annotations
 
