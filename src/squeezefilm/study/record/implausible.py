@@ -1,0 +1,146 @@
+"""Rows of a file with answers that cannot be what they say, refused by their line."""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from statistics import median
+
+from squeezefilm.core.errors import ConfigError
+from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.record.tables import SURFACES, Cell
+
+Answered = tuple[tuple[str, ...], ...]
+"""The answers of a person, row by row."""
+Numbered = Sequence[tuple[int, Mapping[str, Cell]]]
+"""Rows with their line in the file."""
+LONGEST_USUAL = 100.0
+"""Median response time of somebody (s) above which it is held to be in milliseconds."""
+_FACTOR = 300.0
+_FEWEST = 12
+_ANSWERED = ("display", "phase", *SURFACES, "choice", "estimate")
+_TIMED = (*_ANSWERED, "response_time_s")
+
+
+def require_plausible_rows(
+    path: str | Path,
+    design: StudyDesign,
+    rows: Numbered,
+    known: dict[Answered, str],
+) -> None:
+    """Refuse rows that cannot be what they say, with their line.
+
+    `known` has the answers of people in other files, and takes up those of this one.
+
+    Raises `ConfigError` for times below 0 or in milliseconds, a pair without the reference, an
+    intensity outside its series, a number a thousand times another of the same person and stimulus,
+    a trial that is there twice, a part that was pasted twice, and two people with the same answers.
+    """
+    people: dict[str, list[tuple[int, Mapping[str, Cell]]]] = defaultdict(list)
+    for line, row in rows:
+        people[str(row["participant_id"])].append((line, row))
+        time = _value_of(row, "response_time_s")
+        if time < 0 or math.isinf(time):
+            raise _refused(path, line, "response_time_s", f"{time:g} s is no response time")
+        if design.compares:
+            _require_pair(path, line, design, row)
+    for who, mine in people.items():
+        _require_seconds(path, who, mine)
+        _require_once(path, who, mine)
+        _require_one_scale(path, who, mine)
+        key = tuple(tuple(str(row[name]) for name in _TIMED) for _, row in mine)
+        timed = any(_value_of(row, "response_time_s") > 0 for _, row in mine)
+        if len(mine) >= _FEWEST and key in known and timed:
+            raise _refused(
+                path,
+                mine[0][0],
+                "participant_id",
+                f"'{who}' has the same answers and times as '{known[key]}', row by row; keep one",
+            )
+        known.setdefault(key, who)
+
+
+def _require_pair(
+    path: str | Path, line: int, design: StudyDesign, row: Mapping[str, Cell]
+) -> None:
+    shown = [str(row[key]) for key in SURFACES[: design.described.surfaces]]
+    alike = design.task == "same-different" and len(set(shown)) == 1
+    if (design.reference not in shown and not alike) or not all(shown):
+        said = f"{' / '.join(shown)} has no reference ('{design.reference}') to be compared with"
+        raise _refused(path, line, "second_stimulus", said)
+    if row["adaptive_series"]:
+        series = design.series(str(row["adaptive_series"]))
+        part = _value_of(row, "intensity")
+        if part > 2 * series.highest or 0 < part < series.lowest / 2:
+            raise _refused(
+                path,
+                line,
+                "intensity",
+                f"{part:g} is outside the series '{series.name}' ({series.lowest:g} to "
+                f"{series.highest:g}, in parts of the reference: 0.2 is 20 %)",
+            )
+
+
+def _require_seconds(path: str | Path, who: str, mine: Numbered) -> None:
+    times = [time for _, row in mine if (time := _value_of(row, "response_time_s")) > 0]
+    if times and median(times) > LONGEST_USUAL:
+        raise _refused(
+            path,
+            mine[0][0],
+            "response_time_s",
+            f"'{who}' takes {median(times):g} s in the median; if these are milliseconds, say so "
+            'by columns = "response_time_ms=COLUMN"',
+        )
+
+
+def _require_once(path: str | Path, who: str, mine: Numbered) -> None:
+    first: dict[tuple[str, ...], int] = {}
+    again = []
+    trials: dict[tuple[str, str], tuple[int, int]] = {}
+    for line, row in mine:
+        place = str(row["display"]), str(row["trial"])
+        if place in trials and not row["set_aside"]:
+            said = f"trial {place[1]} of '{who}' is in line {trials[place][0]} already"
+            raise _refused(path, line, "trial", said)
+        trials[place] = line, line
+        if _value_of(row, "response_time_s") > 0:
+            cells = tuple(str(row[name]) for name in _TIMED)
+            again += [(first[cells], line)] if cells in first else []
+            first.setdefault(cells, line)
+    keys = [tuple(str(row[name]) for name in _ANSWERED) for _, row in mine]
+    half = len(mine) // 2
+    pasted = half >= _FEWEST and keys[:half] == keys[half:] and mine[0][0] != mine[half][0]
+    if pasted and len(set(keys)) > 1 and not first:
+        again = [(mine[0][0], mine[half][0])] * half
+    if len(again) >= max(3, 0.1 * len(mine)):
+        raise _refused(
+            path,
+            again[0][1],
+            "participant_id",
+            f"'{who}' has {len(again)} rows twice, this one in line {again[0][0]} already; was a "
+            "part pasted again?",
+        )
+
+
+def _require_one_scale(path: str | Path, who: str, mine: Numbered) -> None:
+    numbers = [one for _, row in mine if (one := _value_of(row, "estimate")) > 0]
+    if len(numbers) < _FEWEST:
+        return
+    for name in {str(row["stimulus"]) for _, row in mine}:
+        here = [(line, row) for line, row in mine if row["stimulus"] == name]
+        middle = median([_value_of(row, "estimate") for _, row in here])
+        for line, row in here:
+            ratio = _value_of(row, "estimate") / middle
+            if len(here) > 2 and not 1 / _FACTOR < ratio < _FACTOR:
+                said = f"'{who}' gave '{name}' {ratio:.3g} times the usual; is a unit another?"
+                raise _refused(path, line, "estimate", said)
+
+
+def _value_of(row: Mapping[str, Cell], key: str) -> float:
+    return float(str(row[key]))
+
+
+def _refused(path: str | Path, line: int, key: str, said: str) -> ConfigError:
+    return ConfigError(said, file=path, line=line, key=key)
