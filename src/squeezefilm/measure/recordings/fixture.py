@@ -38,7 +38,8 @@ def without_fixture(
 
     What lies in series with the device is told by the shorted fixture, what lies across it by the
     open one. Both are taken between their points by straight lines, and without their noise, which
-    averages should make small. Raises `ConfigError` where a fixture was not swept as far.
+    averages should make small. Raises `ConfigError` where a fixture was not swept as far, and
+    where it is as the device.
     """
     sweep = cast(ImpedanceSweep, device)
 
@@ -56,6 +57,13 @@ def without_fixture(
         return np.asarray(1 / admittance, dtype=complex)
 
     in_series = impedance("short") if "short" in fixtures else 0.0
-    across = 1 / (impedance("open") - in_series) if "open" in fixtures else 0.0
-    admittance = 1 / (1 / sweep.admittance - in_series) - across
+    with np.errstate(divide="ignore", invalid="ignore"):
+        across = 1 / (impedance("open") - in_series) if "open" in fixtures else 0.0
+        admittance = 1 / (1 / sweep.admittance - in_series) - across
+    if not np.all(np.isfinite(admittance)):
+        raise description.error(
+            "the fixture measures as the device does, so that nothing of it is left; name sweeps "
+            "of the fixture alone",
+            [next(iter(fixtures))],
+        )
     return dataclasses.replace(sweep, admittance=admittance, compensated=True)

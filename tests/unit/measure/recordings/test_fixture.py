@@ -53,3 +53,13 @@ def test_what_a_fixture_adds_is_taken_off(tmp_path: Path, files: tuple[str, ...]
     path = written(tmp_path, rows, described(told))
     with pytest.raises(ConfigError, match="swept beyond; sweep the fixture over the same"):
         read_recording(path)
+
+
+@pytest.mark.parametrize("files", [("short",), ("open", "short")])
+def test_a_fixture_that_is_the_device_is_refused(tmp_path: Path, files: tuple[str, ...]) -> None:
+    f = np.linspace(30e3, 40e3, 11)
+    rows = text("f,r,x", (f, 100 + 0 * f, -200 + 0 * f))
+    told = "\n".join(f'{name} = "a.csv"' for name in files)
+    path = written(tmp_path, rows, described(told))
+    with pytest.raises(ConfigError, match="measures as the device does"):
+        read_recording(path)
