@@ -79,6 +79,7 @@ class SearchView {
           this.farBox = element("div", { hidden: true }, this.far.screened.box, this.far.solved.box), this.time, this.age.box, this.end,
           this.stopButton),
         this.foundBox)));
+    this.text.value = sessionStorage.getItem(KEPT) ?? "";
     this.fresh = !this.lab.shared.search;
     this.lab.remember("search", this.fields);
     this.lab.keep(() => clearTimeout(this.settled));
@@ -95,7 +96,6 @@ class SearchView {
       const group = (label, names, kind) => element("optgroup", { label }, ...names.map((name) => element("option", { value: `${kind}:${name}`, text: name })));
       this.choice.replaceChildren(element("option", { value: "", text: "choose…" }), group("presets", presets, "preset"),
         ...(saved.length ? [group("searched here", saved, "file")] : []));
-      if (!this.text.value) this.text.value = sessionStorage.getItem(KEPT) ?? "";
       if (this.text.value) await this.check();
       else {
         this.choice.value = `preset:${presets[0]}`;
