@@ -23,7 +23,7 @@ from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.tolerance import Made
 from squeezefilm.design.sweep.tasks import Lost
 
-FEW = {"screened": 60, "solved": 10}
+FEW = {"screened": 40, "solved": 6}
 
 
 def _made(wanted: object, one: Evaluated) -> Made:
@@ -38,7 +38,7 @@ def by_formula(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def _search(folder: Path | None = None, **changes: int) -> DesignSearch:
     # What a folder keeps shows in a search that is too small for a good front.
-    size = {"screened": 400, "solved": 60} if folder is None else {"screened": 150, "solved": 24}
+    size = {"screened": 400, "solved": 60} if folder is None else {"screened": 100, "solved": 16}
     asked = size | {"seed": 1} | changes
     return run.search_designs(requirements(), out=folder, **asked)  # type: ignore[arg-type]
 
@@ -70,7 +70,7 @@ def small() -> DesignSearch:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(run, "evaluate_all", evaluated_by_formula)
         patch.setattr(run, "made_of", _made)
-        return _search(screened=150, solved=24)
+        return _search(screened=100, solved=16)
 
 
 @pytest.mark.usefixtures("by_formula")
@@ -138,7 +138,7 @@ def test_hosts_that_search_in_one_folder_end_with_what_all_have_solved(tmp_path:
 
 @pytest.mark.parametrize(
     "after",
-    [3, *(pytest.param(after, marks=pytest.mark.slow) for after in (25, 40, 78))],
+    [3, *(pytest.param(after, marks=pytest.mark.slow) for after in (15, 25, 50))],
 )
 @pytest.mark.usefixtures("by_formula")
 def test_a_search_that_was_stopped_goes_on(
@@ -155,7 +155,7 @@ def test_a_search_that_was_stopped_goes_on(
 
     monkeypatch.setattr(run, "evaluate_all", stopping)
     stopped, why = run.search_until_stopped(
-        run.SearchRequest(requirements(), screened=150, solved=24, out=tmp_path)
+        run.SearchRequest(requirements(), screened=100, solved=16, out=tmp_path)
     )
     assert (stopped.stopped, why) == (True, "stopped")
     monkeypatch.setattr(run, "evaluate_all", evaluated_by_formula)
