@@ -176,15 +176,24 @@ def _intervals(axes: Axes, found: SkinStretchAnalysis, free: float) -> None:
     um, mn = 1e6, 1e3
     low, _, high = (mn / um * one for one in drawn["skin_stiffness_N_per_m"])
     axes.fill_between(
-        [0, free], [0, free * low], [0, free * high], color="black", alpha=0.12, lw=0,
+        [0, free],
+        [0, free * low],
+        [0, free * high],
+        color="black",
+        alpha=0.12,
+        lw=0,
         label="skin, 5 to 95 %",
-    )  # fmt: skip
+    )
     x, y = um * found.tip.deflection, mn * found.tip.force
     (left, _, right), (below, _, above) = drawn["deflection_on_skin_m"], drawn["force_on_skin_N"]
     axes.errorbar(
-        x, y, xerr=[[max(0, x - um * left)], [max(0, um * right - x)]],
-        yerr=[[max(0, y - mn * below)], [max(0, mn * above - y)]], color=style.ORANGE, capsize=3,
-    )  # fmt: skip
+        x,
+        y,
+        xerr=[[max(0, x - um * left)], [max(0, um * right - x)]],
+        yerr=[[max(0, y - mn * below)], [max(0, mn * above - y)]],
+        color=style.ORANGE,
+        capsize=3,
+    )
     axes.set_ylim(0, 1.05 * mn * found.blocked_force)
 
 
@@ -210,11 +219,16 @@ def actuator_figure(found: SkinStretchAnalysis) -> Figure:
     for number, (name, thickness, colour) in enumerate(layers):
         left.add_patch(
             Rectangle(
-                (-mm * one.width / 2, bottom), mm * one.width, mm * thickness,
-                facecolor=colour, alpha=0.55, edgecolor="black", lw=0.8,
+                (-mm * one.width / 2, bottom),
+                mm * one.width,
+                mm * thickness,
+                facecolor=colour,
+                alpha=0.55,
+                edgecolor="black",
+                lw=0.8,
                 label=name if number < 2 else None,
             )
-        )  # fmt: skip
+        )
         bottom += mm * thickness
     half = mm * one.width / 2
     left.set(
@@ -256,9 +270,16 @@ def _contactors(axes: Axes, found: SkinStretchAnalysis, frame: int) -> None:
     x, y = (1e3 * place for place in found.array.cradle.places)
     moved = _DRAWN_TIMES * 1e3 * found.wave.displacements[frame]
     axes.quiver(
-        x, y, moved, np.zeros(moved.size), color=style.BLUE, angles="xy", scale_units="xy",
-        scale=1, width=0.006,
-    )  # fmt: skip
+        x,
+        y,
+        moved,
+        np.zeros(moved.size),
+        color=style.BLUE,
+        angles="xy",
+        scale_units="xy",
+        scale=1,
+        width=0.006,
+    )
     axes.plot(x[~slips], y[~slips], "o", ms=3, color="black", label="sticks")
     axes.plot(x[slips], y[slips], "o", ms=3, mfc="white", color=style.ORANGE, label="slips")
     side = found.array.cradle.pitch_along * 1e3
@@ -270,9 +291,13 @@ def _contactors(axes: Axes, found: SkinStretchAnalysis, frame: int) -> None:
 def _strain_map(figure: Figure, axes: Axes, wave: ShownWave, frame: int) -> None:
     most = 100 * float(np.max(np.abs(wave.strain)))
     drawn = axes.pcolormesh(
-        1e3 * wave.edges_x, 1e3 * wave.edges_y, 100 * wave.strain[frame].T,
-        cmap="RdBu_r", vmin=-most, vmax=most,
-    )  # fmt: skip
+        1e3 * wave.edges_x,
+        1e3 * wave.edges_y,
+        100 * wave.strain[frame].T,
+        cmap="RdBu_r",
+        vmin=-most,
+        vmax=most,
+    )
     figure.colorbar(drawn, ax=axes, shrink=0.8)
     axes.set(xlabel="along the finger (mm)", ylabel="across (mm)", aspect="equal")
     axes.set_title("strain along the finger (%)", fontsize="medium")

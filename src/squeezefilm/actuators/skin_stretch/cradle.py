@@ -59,11 +59,23 @@ class FingerCradle:
 
     def __post_init__(self) -> None:
         for name, number, pitch, side, span, radius in (
-            ("columns", self.columns, self.pitch_along, self.contactor_length, self.length,
-             self.radius_along),
-            ("rows", self.rows, self.pitch_across, self.contactor_width, self.width,
-             self.radius_across),
-        ):  # fmt: skip
+            (
+                "columns",
+                self.columns,
+                self.pitch_along,
+                self.contactor_length,
+                self.length,
+                self.radius_along,
+            ),
+            (
+                "rows",
+                self.rows,
+                self.pitch_across,
+                self.contactor_width,
+                self.width,
+                self.radius_across,
+            ),
+        ):
             shown = [si.format_quantity(one, _M) for one in (pitch, side, span)]
             if side > pitch:
                 raise GeometryError(

@@ -29,9 +29,16 @@ _INCH, _POINT = 25.4e-3, 25.4e-3 / 72
 _CAPITAL = 0.729
 # What an AutoCAD index stands for here; that of a CAD program's own palette is near it.
 _COLOURS = {
-    1: style.ORANGE, 3: style.GREEN, 5: style.BLUE, 6: style.PURPLE, 7: style.INK, 8: style.MUTED,
-    21: style.MINUS, 45: style.METAL, 151: style.PLUS,
-}  # fmt: skip
+    1: style.ORANGE,
+    3: style.GREEN,
+    5: style.BLUE,
+    6: style.PURPLE,
+    7: style.INK,
+    8: style.MUTED,
+    21: style.MINUS,
+    45: style.METAL,
+    151: style.PLUS,
+}
 _DASHES = {"CONTINUOUS": "-", "DASHED": (0, (6, 3)), "DASHDOT": (0, (9, 3, 1.5, 3))}
 _THIN = 0.18e-3 / _POINT
 
@@ -178,8 +185,11 @@ def _dimension(axes: Axes, one: Dimension, scale: float) -> None:
             _line(axes, turned(along, across + way), turned(along, one.at + way))
     low, high = sorted((ends[0][0], ends[1][0]))
     inside = not arrows_outside(high - low, size)
-    _line(axes, turned(low if inside else low - 2.2 * size, one.at),
-          turned(high if inside else high + 2.2 * size, one.at))  # fmt: skip
+    _line(
+        axes,
+        turned(low if inside else low - 2.2 * size, one.at),
+        turned(high if inside else high + 2.2 * size, one.at),
+    )
     way = size if inside else -size
     _arrow(axes, turned(low, one.at), turned(-way, 0.0))
     _arrow(axes, turned(high, one.at), turned(way, 0.0))

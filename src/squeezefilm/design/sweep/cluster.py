@@ -258,10 +258,17 @@ class _Asking(Generic[K, A]):
         number = next(self._numbers)
         self._keys[number], self._where[number] = key, worker
         future = self._client.submit(
-            _work, self._topic, number, worker, self._function, arguments,
+            _work,
+            self._topic,
+            number,
+            worker,
+            self._function,
+            arguments,
             key=f"{getattr(self._function, '__name__', 'task')}-{self._topic}-{number}",
-            workers=[worker] if worker else None, allow_other_workers=bool(worker), pure=False,
-        )  # fmt: skip
+            workers=[worker] if worker else None,
+            allow_other_workers=bool(worker),
+            pure=False,
+        )
         self._futures[number] = future
         future.add_done_callback(lambda one: self._came.put((number, one)))
         if number in self._there:

@@ -75,10 +75,21 @@ C_SUBSTEPS, C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE = range(34, 4
 C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(40, 46)
 CONSTANTS = 46
 COLUMNS = (
-    "time_s", "x_m", "y_m", "speed_m_per_s", "level_V", "frequency_Hz", "amplitude_m",
-    "relative_friction", "tangential_force_N", "normal_force_N", "voltage_V", "current_A",
-    "resonance_Hz", "skin_x_m",
-)  # fmt: skip
+    "time_s",
+    "x_m",
+    "y_m",
+    "speed_m_per_s",
+    "level_V",
+    "frequency_Hz",
+    "amplitude_m",
+    "relative_friction",
+    "tangential_force_N",
+    "normal_force_N",
+    "voltage_V",
+    "current_A",
+    "resonance_Hz",
+    "skin_x_m",
+)
 """Columns of the truth."""
 
 THERMAL = 10_000  # µs between looks at the temperature

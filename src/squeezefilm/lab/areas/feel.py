@@ -25,9 +25,15 @@ if TYPE_CHECKING:
     from squeezefilm.lab.server import Lab
 
 COLUMNS = (
-    "time_s", "x_m", "y_m", "speed_m_per_s", "wanted_amplitude_m", "amplitude_m",
-    "relative_friction", "tangential_force_N",
-)  # fmt: skip
+    "time_s",
+    "x_m",
+    "y_m",
+    "speed_m_per_s",
+    "wanted_amplitude_m",
+    "amplitude_m",
+    "relative_friction",
+    "tangential_force_N",
+)
 """Of a stroke's table."""
 MOST_ROWS = 200_000
 

@@ -58,9 +58,14 @@ def _over_surface(axes: Axes, found: FeltPath) -> None:
     values = found.stimulus.surface()(u[None, :], w[:, None], 0.08, 0.0)
     left, right, bottom, top = (1e3 * float(end) for end in ends)
     axes.imshow(
-        values, extent=(left, right, bottom, top), origin="lower", cmap="Greys", alpha=0.35,
-        aspect="equal", interpolation="nearest",
-    )  # fmt: skip
+        values,
+        extent=(left, right, bottom, top),
+        origin="lower",
+        cmap="Greys",
+        alpha=0.35,
+        aspect="equal",
+        interpolation="nearest",
+    )
     for path in found.paths:
         axes.plot(1e3 * path.x, 1e3 * path.y, color=style.METAL, lw=0.9)
         for run in straight_runs(path):

@@ -98,9 +98,14 @@ def explanation_table(study: PrototypeStudy) -> Table:
         for explanation in study.explanations
     ]
     head = (
-        "explanation", "solved for", "(8,0)", *MEASUREMENTS[:3], "open shift",
-        "amplitude at 15 V", "Q for 1.15 µm",
-    )  # fmt: skip
+        "explanation",
+        "solved for",
+        "(8,0)",
+        *MEASUREMENTS[:3],
+        "open shift",
+        "amplitude at 15 V",
+        "Q for 1.15 µm",
+    )
     return head, rows
 
 

@@ -118,9 +118,15 @@ def section_view(
     for one, key, tolerance, away, _ in _columns(said if fits else [(*s[:2], "") for s in said]):
         where = max(end for span in spans(one, cut) for end in span) + shift
         sheet.upright(
-            height(one.bottom), height(one.top), where, away + (right - where) / sheet.unit,
-            stretch=stretch, value_of=key, suffix=f"{_what(one)}{tolerance}", beside=True,
-        )  # fmt: skip
+            height(one.bottom),
+            height(one.top),
+            where,
+            away + (right - where) / sheet.unit,
+            stretch=stretch,
+            value_of=key,
+            suffix=f"{_what(one)}{tolerance}",
+            beside=True,
+        )
     bottom = top - 1e3 * (high - low) * sheet.scale * stretch
     label = "Section A–A" if isinstance(base.footprint, Rectangle) else "Section through the middle"
     larger = f"; heights drawn {stretch} times larger" if stretch > 1 else ""

@@ -40,14 +40,27 @@ _WIDE = 12.0
 _SHAPES = "osD^"
 _BROKEN: dict[str, Any] = {"color": style.MUTED, "ls": "", "marker": "x", "ms": 4, "mew": 0.8}
 _SOLVED_LOOK: dict[str, Any] = {
-    "ls": "", "marker": "o", "ms": 5, "mec": style.BLUE, "mfc": style.PAPER
-}  # fmt: skip
+    "ls": "",
+    "marker": "o",
+    "ms": 5,
+    "mec": style.BLUE,
+    "mfc": style.PAPER,
+}
 _COMPARED: dict[str, Any] = {
-    "color": style.ORANGE, "ls": "", "marker": "s", "ms": 8, "mec": style.PAPER
-}  # fmt: skip
+    "color": style.ORANGE,
+    "ls": "",
+    "marker": "s",
+    "ms": 8,
+    "mec": style.PAPER,
+}
 _RING: dict[str, Any] = {
-    "ls": "", "marker": "o", "ms": 13, "mfc": "none", "mec": style.INK, "mew": 1.5
-}  # fmt: skip
+    "ls": "",
+    "marker": "o",
+    "ms": 13,
+    "mfc": "none",
+    "mec": style.INK,
+    "mew": 1.5,
+}
 _CLOUD: dict[str, Any] = {"color": style.MUTED, "ls": "", "marker": ".", "ms": 5, "alpha": 0.45}
 
 

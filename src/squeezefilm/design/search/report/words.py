@@ -87,8 +87,9 @@ def asked_sentences(requirements: Requirements) -> list[str]:
     touch, room, drive = requirements.touch, requirements.workspace.room, requirements.drive
     finger = requirements.base.finger
     surface = requirements.base.surfaces[0].name
-    least, most = (" × ".join(shown(side, si.Unit("m")) for side in one) for one in
-                   (room.least, room.most))  # fmt: skip
+    least, most = (
+        " × ".join(shown(side, si.Unit("m")) for side in one) for one in (room.least, room.most)
+    )
     size = least if least == most else f"at least {least} and at most {most}"
     volts = shown(drive.voltage, si.Unit("V"))
     if drive.least_voltage not in (None, drive.voltage):
@@ -231,8 +232,11 @@ def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]
     told = ", ".join(f"{CRITERIA[key].said} by {count}" for key, count in breaks)
     failed = f"; {made.failed} could not be computed" if made.failed else ""
     alone = requirements.limits.unasked_of_made
-    unasked = " and ".join(one.said for one, _ in bounded(requirements.limits)
-                           if one.limit in alone or one.key == "surest_friction")  # fmt: skip
+    unasked = " and ".join(
+        one.said
+        for one, _ in bounded(requirements.limits)
+        if one.limit in alone or one.key == "surest_friction"
+    )
     return [
         f"Of {made.draws} plates made with the tolerances {si.percent(made.kept)} keep all limits"
         + (f" but those on {unasked}, which only a solved plate can be asked" if unasked else "")

@@ -17,10 +17,21 @@ next one's. Negative in inverted phase, which only a plan that may brake gives."
 COMMAND_TICK, COMMAND_TIME, COMMAND_AMPLITUDE, COMMAND_VOLTAGE = range(4)
 
 COLUMNS = (
-    "tick", "time_s", "sample_time_s", "x_m", "y_m", "speed_m_per_s", "wanted_amplitude_m",
-    "command_V", "device_level_V", "amplitude_m", "relative_friction", "lag_m", "lateness_s",
+    "tick",
+    "time_s",
+    "sample_time_s",
+    "x_m",
+    "y_m",
+    "speed_m_per_s",
+    "wanted_amplitude_m",
+    "command_V",
+    "device_level_V",
+    "amplitude_m",
+    "relative_friction",
+    "lag_m",
+    "lateness_s",
     "flags",
-)  # fmt: skip
+)
 """A row of the record, one per tick made:
 
 - `tick`: its number; numbers left out were lost. `time_s`: when it was due, tick/rate.
