@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import io
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -175,33 +175,19 @@ def _intervals(axes: Axes, found: SkinStretchAnalysis, free: float) -> None:
         return
     um, mn = 1e6, 1e3
     low, _, high = (mn / um * one for one in drawn["skin_stiffness_N_per_m"])
-    axes.fill_between(
-        [0, free],
-        [0, free * low],
-        [0, free * high],
-        color="black",
-        alpha=0.12,
-        lw=0,
-        label="skin, 5 to 95 %",
-    )
+    skins = ([0, free], [0, free * low], [0, free * high])
+    axes.fill_between(*skins, color="black", alpha=0.12, lw=0, label="skin, 5 to 95 %")
     x, y = um * found.tip.deflection, mn * found.tip.force
     (left, _, right), (below, _, above) = drawn["deflection_on_skin_m"], drawn["force_on_skin_N"]
-    axes.errorbar(
-        x,
-        y,
-        xerr=[[max(0, x - um * left)], [max(0, um * right - x)]],
-        yerr=[[max(0, y - mn * below)], [max(0, mn * above - y)]],
-        color=style.ORANGE,
-        capsize=3,
-    )
+    across = [[max(0, y - mn * below)], [max(0, mn * above - y)]]
+    along = [[max(0, x - um * left)], [max(0, um * right - x)]]
+    axes.errorbar(x, y, across, along, color=style.ORANGE, capsize=3)
     axes.set_ylim(0, 1.05 * mn * found.blocked_force)
 
 
 @style.drawn
 def actuator_figure(found: SkinStretchAnalysis) -> Figure:
     """One actuator's cross-section, and its line of deflection: free, on the skin, and blocked."""
-    from matplotlib.patches import Rectangle
-
     one, tip, um, mm = found.array.actuator, found.tip, 1e6, 1e3
     figure = style.new_figure(
         f"An actuator {mm * one.length:.3g} mm long, {mm * one.width:.3g} mm wide and "
@@ -217,18 +203,8 @@ def actuator_figure(found: SkinStretchAnalysis) -> Figure:
     ]
     bottom = -mm * sum(thickness for _, thickness, _ in layers) / 2
     for number, (name, thickness, colour) in enumerate(layers):
-        left.add_patch(
-            Rectangle(
-                (-mm * one.width / 2, bottom),
-                mm * one.width,
-                mm * thickness,
-                facecolor=colour,
-                alpha=0.55,
-                edgecolor="black",
-                lw=0.8,
-                label=name if number < 2 else None,
-            )
-        )
+        label = name if number < 2 else None
+        left.bar(0, mm * thickness, mm * one.width, bottom, color=colour, alpha=0.55, label=label)
         bottom += mm * thickness
     half = mm * one.width / 2
     left.set(
@@ -269,17 +245,8 @@ def _contactors(axes: Axes, found: SkinStretchAnalysis, frame: int) -> None:
     slips = found.wave.slips[frame]
     x, y = (1e3 * place for place in found.array.cradle.places)
     moved = _DRAWN_TIMES * 1e3 * found.wave.displacements[frame]
-    axes.quiver(
-        x,
-        y,
-        moved,
-        np.zeros(moved.size),
-        color=style.BLUE,
-        angles="xy",
-        scale_units="xy",
-        scale=1,
-        width=0.006,
-    )
+    true_length: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1}
+    axes.quiver(x, y, moved, np.zeros(moved.size), color=style.BLUE, width=0.006, **true_length)
     axes.plot(x[~slips], y[~slips], "o", ms=3, color="black", label="sticks")
     axes.plot(x[slips], y[slips], "o", ms=3, mfc="white", color=style.ORANGE, label="slips")
     side = found.array.cradle.pitch_along * 1e3
@@ -290,14 +257,8 @@ def _contactors(axes: Axes, found: SkinStretchAnalysis, frame: int) -> None:
 
 def _strain_map(figure: Figure, axes: Axes, wave: ShownWave, frame: int) -> None:
     most = 100 * float(np.max(np.abs(wave.strain)))
-    drawn = axes.pcolormesh(
-        1e3 * wave.edges_x,
-        1e3 * wave.edges_y,
-        100 * wave.strain[frame].T,
-        cmap="RdBu_r",
-        vmin=-most,
-        vmax=most,
-    )
+    cells = (1e3 * wave.edges_x, 1e3 * wave.edges_y, 100 * wave.strain[frame].T)
+    drawn = axes.pcolormesh(*cells, cmap="RdBu_r", vmin=-most, vmax=most)
     figure.colorbar(drawn, ax=axes, shrink=0.8)
     axes.set(xlabel="along the finger (mm)", ylabel="across (mm)", aspect="equal")
     axes.set_title("strain along the finger (%)", fontsize="medium")

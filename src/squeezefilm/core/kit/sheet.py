@@ -185,11 +185,8 @@ def _dimension(axes: Axes, one: Dimension, scale: float) -> None:
             _line(axes, turned(along, across + way), turned(along, one.at + way))
     low, high = sorted((ends[0][0], ends[1][0]))
     inside = not arrows_outside(high - low, size)
-    _line(
-        axes,
-        turned(low if inside else low - 2.2 * size, one.at),
-        turned(high if inside else high + 2.2 * size, one.at),
-    )
+    beyond = 0.0 if inside else 2.2 * size
+    _line(axes, turned(low - beyond, one.at), turned(high + beyond, one.at))
     way = size if inside else -size
     _arrow(axes, turned(low, one.at), turned(-way, 0.0))
     _arrow(axes, turned(high, one.at), turned(way, 0.0))
