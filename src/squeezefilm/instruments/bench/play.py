@@ -203,7 +203,7 @@ def _played(
             sensor=_replay(asked.sensor),
             show=asked.show,
             tap=asked.tap,
-            bench_only=asked.bench_only,
+            use="bench" if asked.bench_only else "own hand",
         )
 
 

@@ -24,7 +24,7 @@ _PICKUP_RE, _PICKUP_IM = 11, 12
 
 
 class Hearing(NamedTuple):
-    """What a pickup makes of the plate: volts per metre, ohms for the motional current, the share
+    """Numbers of a pickup: volts per metre of vibration, ohms for the motional current, the share
     of the capacitance's current that leaks, and noise (V)."""
 
     per_metre: float
@@ -33,8 +33,16 @@ class Hearing(NamedTuple):
     noise: float
 
 
+class Loops(NamedTuple):
+    """Gains of the plate's loops, the period of their step (µs), and the pickup they hear."""
+
+    gains: LoopGains
+    tick: int
+    ear: Hearing
+
+
 def hearing(pickup: PickupModel) -> Hearing:
-    """The numbers of a pickup; all 0 without one."""
+    """Numbers of a pickup; all 0 without one."""
     if pickup.kind == "none":
         return Hearing(0.0, 0.0, 0.0, 0.0)
     if pickup.kind == "sensing_patch":
@@ -71,22 +79,21 @@ def heard(plant: k.State, ear: Hearing) -> complex:
 def advance_held(
     until: int,
     wanted: int,
-    tick: int,
-    gains: LoopGains,
-    loops: tuple[LoopState, LoopCommand],
-    ear: Hearing,
+    loops: Loops,
+    held: tuple[LoopState, LoopCommand],
     plant: k.State,
     fingers: Fingers,
     path: k.Path,
     ring: si.Array,
     truth: si.Array,
 ) -> Any:
-    """`plant_kernel.advance` to `until` (µs) with a step of the loops at each `tick` (µs).
+    """`plant_kernel.advance` to `until` (µs) with a step of the loops at each of their ticks.
 
     `wanted` is the level (µV) that a free plate as identified would need; a plate that is not yet
     locked rests while it is 0. Returns the time reached, and the loops' state and command.
     """
-    state, command = loops
+    state, command = held
+    gains, tick, ear = loops
     counts = plant.counts
     while counts[k.NOW] < until:
         end = min((counts[k.NOW] // tick + 1) * tick, until)

@@ -27,7 +27,7 @@ from squeezefilm.instruments.control.plate_loop import (
 from squeezefilm.instruments.twin import plant_kernel as k
 from squeezefilm.instruments.twin.envelope_step import Fingers, FrictionTables
 from squeezefilm.instruments.twin.hand import Hand
-from squeezefilm.instruments.twin.held import advance_held, heard, hearing
+from squeezefilm.instruments.twin.held import Loops, advance_held, heard, hearing
 from squeezefilm.instruments.twin.settings import TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
@@ -139,8 +139,10 @@ class Plant:
                 "the twin's loops need a pickup, and its amplifier turns no phase: give the "
                 "settings a pickup and the loops a lowest_voltage of 0"
             )
-        self._loops, self._ear = loops, hearing(settings.pickup)
+        self._ear = hearing(settings.pickup)
+        self._loops: Loops | None = None
         if loops is not None:
+            self._loops = Loops(loops, settings.tick_us, self._ear)
             self._held = first_state(loops), LoopCommand(0, loops.highest_frequency, 0)
         self.truth = TruthRecord(settings.truth_rows, truth_file)
         friction = _friction(point)
@@ -185,9 +187,8 @@ class Plant:
             if self._loops is None:
                 reached = k.advance(until, level, carrier, *self._rest)
             else:
-                tick = self.settings.tick_us
                 reached, self._held = advance_held(
-                    until, level, tick, self._loops, self._held, self._ear, *self._rest
+                    until, level, self._loops, self._held, *self._rest
                 )
             if reached < until:
                 self.drain()

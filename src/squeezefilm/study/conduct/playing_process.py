@@ -141,7 +141,7 @@ class Bench:
     ) -> ResonanceSweep | None:
         with contextlib.closing(open_stream(self._streaming("none"))) as stream:
             host = DeviceHost(Link(stream))
-            require_safe_drive(SerialDrive(host, 1 / self._orders.rate), limits, study=True)
+            require_safe_drive(SerialDrive(host, 1 / self._orders.rate), limits, "study")
             return sweep_resonance(host, limits, carriers, voltage, settle=settle)
 
     def presentation(self, given: Surface, seed: int, name: str) -> tuple[str, TrialMotion]:
@@ -174,7 +174,7 @@ class Bench:
             duration=LONGEST_PRESENTATION,
             show=show,
             until=self._connection.poll,
-            study=True,
+            use="study",
         )
         trace = read_trace(outcome.trace)
         felt = dataclasses.replace(

@@ -6,14 +6,17 @@ host's copy only tells a mistake earlier.
 
 from __future__ import annotations
 
+from typing import Literal
+
 from squeezefilm.core.drive_limits import TOUCH_VOLTAGE, Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.device.ports import Drive
 
+Use = Literal["own hand", "study", "bench"]
+"""Who touches the plate: its user, participants, or nobody."""
 
-def require_safe_drive(
-    drive: Drive, limits: Limits, *, study: bool = False, bench_only: bool = False
-) -> None:
+
+def require_safe_drive(drive: Drive, limits: Limits, use: Use = "own hand") -> None:
     """Refuse a drive that does not stop by itself where that could hurt.
 
     A sound card plays on when its program hangs. It may be used on a bench that nobody is asked
@@ -22,12 +25,12 @@ def require_safe_drive(
     Args:
         drive: what drives the plate.
         limits: what it may give.
-        study: whether participants touch it.
-        bench_only: whether the user has said that this is a bench (`--bench-only`).
+        use: whose hand touches the plate: the user's, participants' in a study, or nobody's on a
+            bench, which the user has said (`--bench-only`).
 
     Raises:
-        InputError: a drive that does not stop by itself, above 42 V peak, in a study, or without
-            `bench_only`.
+        InputError: a drive that does not stop by itself, above 42 V peak or where a hand touches
+            the plate.
     """
     if drive.stops_by_itself:
         return
@@ -38,13 +41,13 @@ def require_safe_drive(
             f"{TOUCH_VOLTAGE:g} V peak; lower it, or use a device with a watchdog",
             quantity="voltage",
         )
-    if study:
+    if use == "study":
         raise InputError(
             f"{hangs}; in a study, where people touch the plate, it is not allowed at any "
             "voltage; use a device with a watchdog",
             quantity="drive",
         )
-    if not bench_only:
+    if use != "bench":
         raise InputError(
             f"{hangs}; it is allowed on a bench that nobody touches by chance: say so with "
             "bench_only, or use a device with a watchdog",

@@ -163,7 +163,7 @@ def test_a_session_plays_fades_ends_and_is_recorded_to_its_last_row(bench: Bench
     found = bench.run()
     assert found == PlayOutcome(Ending.DURATION, "", Path("trace"), 12, bench.now + 1000.0, USABLE)
     assert bench.done == [
-        ("safe", ("drive", "limits"), {"study": False, "bench_only": False}), "compiled",
+        ("safe", ("drive", "limits", "own hand"), {}), "compiled",
         "loop start", "begin", ("fade", pytest.approx(50, abs=1)),
         ("end", Ending.DURATION, ""), "loop stop", "drain", "judged", "record closed",
         "close serial:one",
@@ -268,12 +268,12 @@ def test_an_unsafe_drive_is_refused_before_the_loop_starts(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refused(*given: Any, **how: Any) -> None:
-        assert how == {"study": True, "bench_only": True}
+        assert (given[2], how) == ("study", {})
         raise InputError("it is not safe")
 
     monkeypatch.setattr(real_time, "require_safe_drive", refused)
     with pytest.raises(InputError):
-        bench.run(study=True, bench_only=True)
+        bench.run(use="study")
     assert bench.done == ["record closed", "close serial:one"]
 
 
