@@ -95,8 +95,6 @@ def contact_kernels() -> Iterator[tuple[str, Callable[[], object]]]:
     yield "a friction curve, the table at hand", lambda: curve(table)
     yield "20 000 load balances", lambda: contact.share_load(table, law, a, p)
     yield "25 600 steps of sliding", lambda: sliding.marched(25_600)
-    weaker = sliding.DryFriction(1.4, 0.1)
-    yield "the same, weakening with speed", lambda: sliding.marched(25_600, weaker)
 
 
 def render_kernels() -> Iterator[tuple[str, Callable[[], object]]]:

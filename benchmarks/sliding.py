@@ -24,7 +24,7 @@ from scipy.integrate import solve_ivp
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.contact.sliding import kernel as sliding_kernel
 from squeezefilm.physics.contact.sliding import march as sliding
-from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
+from squeezefilm.physics.contact.sliding.dry_friction import SpeedFriction
 
 PAD = FingerpadDynamics(damping=0.1)
 DURATION = 0.2
@@ -54,9 +54,9 @@ def limit(t: Any) -> Any:
     return 0.25 * (1 + 0.4 * np.sin(2 * np.pi * 90 * t))
 
 
-def marched(steps: int, law: DryFriction | None = None) -> sliding.Sliding:
+def marched(steps: int) -> sliding.Sliding:
     t = np.linspace(0.0, DURATION, steps + 1)
-    return sliding.slide(bone(t), DURATION / steps, limit(t), 1.0, PAD, law)
+    return sliding.slide(bone(t), DURATION / steps, limit(t), 1.0, PAD)
 
 
 def interpreted(steps: int) -> sliding.Sliding:
@@ -174,9 +174,6 @@ def main() -> None:
             f"  {steps:19,d}   {steps / seconds / 1e6:15.2f}   {1e3 * seconds:11.2f}"
             f"   {1e9 * rows[-1][2]:7.3f}"
         )
-    law = DryFriction(1.4, 0.1)
-    seconds = best_time(lambda: marched(25_600, law), 5)
-    print(f"  friction that falls with speed: {25_600 / seconds / 1e6:.2f} million steps/s")
 
     for knots in (8, 24, 48):
         plain, by_rows, samples = long_strokes(knots)
@@ -205,7 +202,7 @@ def main() -> None:
     share = share_of_kernel(25_600)
     print(
         f"\nWhat limits the march: {share:.0%} of the time is the compiled kernel, where a sliding "
-        "step applies the closed form five times (its end twice, three points for the energies); "
+        "step sums its series at its end and at four points for the energies; "
         "the rest is NumPy preparing and checking arrays. At fine errors the second order does: "
         "SciPy's order is five."
     )

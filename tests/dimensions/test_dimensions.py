@@ -67,7 +67,6 @@ MINIMUM = {
         "physics.film.validity.crest_squeeze_number",
         "physics.contact.asperities.exponential_pressure",
         "physics.contact.finger.fingerpad.skin_displacement_per_friction",
-        "physics.contact.sliding.skin_vibration.texture_frequency",
         "physics.plate.beam.modes.euler_bernoulli_frequency",
     )
 }

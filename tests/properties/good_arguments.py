@@ -160,12 +160,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "speed": np.array([0.0, 0.1]),
         "coefficient": np.array([0.2, 0.5]),
     },
-    "physics.contact.sliding.skin_vibration.skin_vibration": {"fundamental": 50.0, "start": 0.02},
-    "physics.contact.sliding.skin_vibration.line_amplitudes": {
-        "signals": np.cos(np.arange(640.0)),
-        "time_step": 1e-3,
-        "lines": np.array([100.0]),
-    },
     "physics.film.planar.film.solve_planar": {
         "shape": "rectangle",
         "gap": planar_gap,

@@ -31,8 +31,6 @@ from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.physics.contact.sharing.pad import FrictionRipple, PadPosture
 from squeezefilm.physics.contact.sliding.dry_friction import (
     DryFriction,
-    FrictionProfile,
-    Occlusion,
     SpeedFriction,
 )
 from squeezefilm.physics.contact.sliding.march import Sliding, slide
@@ -184,14 +182,12 @@ MADE: dict[Any, Callable[[], Any]] = {
     Tissue: Tissue,
     SkinStretchArray: lambda: SkinStretchArray(MADE[Bimorph](), MADE[FingerCradle]()),
     AsperityLaw: AsperityLaw,
-    DryFriction: lambda: DryFriction(1.2, 0.01),
-    FrictionProfile: lambda: FrictionProfile(0.0, 1e-3, np.ones(4)),
+    DryFriction: lambda: DryFriction(1.2),
     SpeedFriction: lambda: SpeedFriction(np.array([0.0, 0.1]), np.array([0.2, 0.5])),
     Finger: lambda: FINGER,
     FingerpadDynamics: FingerpadDynamics,
     LoadSharing: lambda: share_load(MADE[FilmTable](), AsperityLaw(), 1e-6, 5e3),
     FilmTable: lambda: film_table(30e3, 250e-6, AIR),
-    Occlusion: Occlusion,
     PadPosture: PadPosture,
     FrictionRipple: lambda: FrictionRipple(WAYS, np.linspace(0.5, 1, 9), 1e-2, 8e-3),
     Skin: Skin,

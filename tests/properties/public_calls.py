@@ -61,7 +61,6 @@ NOT_CALLED = {
     physics.film.periodic.solution.Asked physics.film.periodic.solution.Found
     physics.contact.sharing.pad.PadFriction
     physics.contact.sharing.balance.LoadSharing
-    physics.contact.sliding.skin_vibration.SkinVibration
     physics.contact.sliding.march.Sliding
     physics.film.periodic.batch.FilmBatch physics.film.periodic.solution.FilmSolution
     physics.film.planar.film.FilmPlanar

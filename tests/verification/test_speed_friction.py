@@ -13,12 +13,7 @@ from scipy.linalg import expm
 
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.physics.contact.sliding.dry_friction import (
-    DryFriction,
-    FrictionProfile,
-    Occlusion,
-    SpeedFriction,
-)
+from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
 from squeezefilm.physics.contact.sliding.march import Sliding, slide
 
 PAD = FingerpadDynamics()
@@ -57,13 +52,13 @@ def test_rows_that_are_constant_over_speed_are_friction_over_time(
     def rows(t: FloatArray) -> SpeedFriction:
         return SpeedFriction(GRID, np.repeat(over_time(t)[:, np.newaxis], GRID.size, axis=1))
 
-    options = {"law": law, "occlusion": Occlusion()}
+    options = {"law": law}
     plain = smooth_stroke(6400, over_time, damping, **options)
     by_rows = smooth_stroke(6400, rows, damping, **options)
     assert plain.slips == by_rows.slips >= 3
     assert by_rows.stuck_share == pytest.approx(plain.stuck_share, rel=1e-9)
     assert np.array_equal(plain.sticking, by_rows.sticking)
-    # Two marches that share no formula agree to rounding, of each quantity's largest value.
+    # Knots that are passed change nothing but rounding, of each quantity's largest value.
     for name in SERIES:
         one, other = getattr(plain, name), getattr(by_rows, name)
         atol = 1e-12 * np.abs(one).max()
@@ -153,11 +148,8 @@ def test_second_order_in_the_time_step(least: float, saturation: Any, damping: f
     assert reference.energy_residual < 1e-9 * reference.bone_work[-1]
 
 
-def test_place_and_static_friction_join_in_at_second_order() -> None:
-    profile = FrictionProfile(
-        -1e-3, 5e-7, 1 + 0.3 * np.cos(6283 * np.linspace(-1e-3, 9e-3, 20_001))
-    )
-    options = {"profile": profile, "law": DryFriction(1.3)}
+def test_static_friction_joins_in_at_second_order() -> None:
+    options = {"law": DryFriction(1.3)}
     finest = 102_400
     reference = smooth_stroke(finest, rising(0.4, lambda t: 0.1), 0.2, **options)
     assert reference.slips >= 2

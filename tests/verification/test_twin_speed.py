@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from scipy.interpolate import RegularGridInterpolator
 
-from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.twin import plant_kernel as k
 from squeezefilm.instruments.twin.hand import Hand, hand_from
 from squeezefilm.instruments.twin.plant import Plant
@@ -196,13 +195,19 @@ def test_friction_without_vibration_is_the_fingers_at_the_force_it_presses_with(
     assert told[1] < 0.999 * told[0]
 
 
-def test_static_friction_over_a_speed_is_refused_as_slide_refuses_it() -> None:
-    both = replace(CALM, dry=DryFriction(static_ratio=1.5, stribeck_speed=0.01))
-    with pytest.raises(InputError, match=r"dry\.stribeck_speed = 0\.01 m/s of the twin's settings"):
-        Plant(point(), both)
-    # Where the law knows no speed they stand.
-    alone = dataclasses.replace(
-        point(), speeds=np.zeros(1), relative_friction=point().relative_friction[:, -1:]
+def test_a_law_that_knows_no_speed_is_the_same_at_all() -> None:
+    settings = replace(CALM, dry=DryFriction(static_ratio=1.5))
+    known = point().relative_friction[:, -1:]
+    alone = dataclasses.replace(point(), speeds=np.zeros(1), relative_friction=known)
+    alike = dataclasses.replace(
+        point(), speeds=np.array([0.0, 0.3, 2.0]), relative_friction=np.repeat(known, 3, axis=1)
     )
-    Plant(alone, both, Hand(Stroke(0.05, 0.1))).advance(20_000, 0, 0)
+    forces = []
+    for law in (alone, alike):
+        hand = hand_from("20 mm in 0.25 s", normal_force=FORCE, begin=0.0)
+        plant = Plant(law, settings, hand)
+        plant.advance(100_000, LEVELS[0], carrier())
+        forces.append(plant.tangential_force)
+    assert forces[0] == pytest.approx(forces[1], rel=1e-9)
+    assert forces[0] > 0.05
     assert TABLE_SPEEDS.size == point().speeds.size

@@ -31,7 +31,7 @@ from squeezefilm.instruments.twin.held import Loops, advance_held, heard, hearin
 from squeezefilm.instruments.twin.settings import TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.physics.contact.sliding.march import row_substeps, substeps
+from squeezefilm.physics.contact.sliding.march import substeps
 from squeezefilm.physics.plate.heat.states import cooling_of, heat_capacity
 from squeezefilm.physics.plate.heat.thermal import driven_thickness, thermal_body
 
@@ -120,9 +120,7 @@ class Plant:
     Under `loops` (`control.gains.loop_gains`, for steps of the settings' tick) a level is the one
     that a free plate would need, and level and carrier on the plate are theirs.
 
-    Raises `InputError` for loops without a pickup, and for static friction that falls over a speed
-    (`settings.dry`) on a display whose law says itself what friction does with speed, as `slide`
-    does.
+    Raises `InputError` for loops without a pickup.
     """
 
     def __init__(
@@ -279,8 +277,12 @@ def _friction(point: WorkingPoint) -> FrictionTables:
         finger.friction_coefficient(surface.friction_coefficient, surface.roughness, float(force))
         for force in point.forces
     ]
+    speeds = np.array(point.speeds, dtype=float)
     relative = np.ascontiguousarray(np.swapaxes(point.relative_friction, 1, 2), dtype=float)
-    return FrictionTables(np.array(point.speeds, dtype=float), relative, np.array(rest))
+    if speeds.size == 1:
+        # A law without a speed, by two speeds that are alike.
+        speeds, relative = np.array([0.0, 1.0]), np.repeat(relative, 2, axis=2)
+    return FrictionTables(speeds, relative, np.array(rest))
 
 
 def _parts(
@@ -289,17 +291,8 @@ def _parts(
     """In how many parts the skin is marched over a step of the plant."""
     step, dry = 1e-6 * (settings.tick_us // settings.steps_per_tick), settings.dry
     strongest = float(dry.kinetic_force(friction.coefficient.max(), force))
-    if friction.speed.size == 1:
-        return substeps(step, pad, dry, strongest)
-    if dry.static_ratio > 1 and dry.stribeck_speed > 0:
-        raise InputError(
-            f"dry.stribeck_speed = {dry.stribeck_speed:g} m/s of the twin's settings cannot be "
-            "used: the display's law says all that friction does with speed; leave it at 0, where "
-            "static_ratio holds the skin that rests",
-            quantity="stribeck_speed",
-        )
     fall = -float(np.min(np.diff(friction.relative, axis=2) / np.diff(friction.speed)))
-    return row_substeps(step, pad, strongest * max(fall, 0.0))
+    return substeps(step, pad, strongest * max(fall, 0.0))
 
 
 def _constants(
@@ -348,7 +341,6 @@ def _constants(
     c[k.C_FORCE] = force
     c[k.C_SUBSTEPS] = _parts(friction, settings, pad, force)
     c[k.C_STATIC] = dry.static_ratio
-    c[k.C_STRIBECK] = dry.stribeck_speed
     c[k.C_EXPONENT] = dry.load_exponent
     c[k.C_REFERENCE] = dry.reference_force
     c[k.C_RATE] = sensor.rate

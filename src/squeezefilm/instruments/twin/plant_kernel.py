@@ -47,9 +47,8 @@ from squeezefilm.instruments.twin.envelope_step import (
     voltage_given,
 )
 from squeezefilm.instruments.twin.hand import wanted
-from squeezefilm.physics.contact.sliding.kernel import Drive, Ground, Law, Track, slide_march
+from squeezefilm.physics.contact.sliding.kernel import Drive, Rows, Track, slide_march
 from squeezefilm.physics.contact.sliding.skin_motion import Forces, Skin, slide_by, transition
-from squeezefilm.physics.contact.sliding.speed_kernel import Rows, rows_march
 from squeezefilm.physics.plate.heat.kernel import Drifts, changed, warmed
 from squeezefilm.physics.plate.heat.thermal import Cooling
 
@@ -71,9 +70,9 @@ C_QUALITY_DRIFT, C_CHARGE_DRIFT, C_SOFTENING, C_FIELD_DRIFT, C_CAPACITY = range(
 C_COOLING, C_FACE, C_FACE_LENGTH, C_EMISSIVITY, C_ROOM = range(17, 22)  # fields of `Cooling`
 C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS = range(22, 28)
 C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS = range(28, 34)
-C_SUBSTEPS, C_STATIC, C_STRIBECK, C_EXPONENT, C_REFERENCE, C_FORCE = range(34, 40)
-C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(40, 46)
-CONSTANTS = 46
+C_SUBSTEPS, C_STATIC, C_EXPONENT, C_REFERENCE, C_FORCE = range(34, 39)
+C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(39, 45)
+CONSTANTS = 45
 COLUMNS = (
     "time_s",
     "x_m",
@@ -138,7 +137,7 @@ class Contact(NamedTuple):
 
     `tables` are what its friction is read from. `limit` (2,) is the friction force (N) for each of
     a row's units, at the start and the end of the step, and `rows` (2, k) µ′/µ over the skin's
-    speeds; with one speed the limit holds both.
+    speeds.
     """
 
     tables: FrictionTables
@@ -242,13 +241,11 @@ def _grip(force: float, amplitude: float, plant: State, fingers: Fingers) -> Non
     limit[0] = limit[1]
     rows[0] = rows[1]
     rest = row_between(tables, i, p, j, q, rows[1])
-    if tables.speed.size == 1:
-        rest *= rows[1, 0]
     limit[1] = rest * ref * (force / ref) ** c[C_EXPONENT]
 
 
 @compiled()
-def _drag(h: float, x0: float, v0: float, plant: State, ground: Ground) -> None:
+def _drag(h: float, x0: float, v0: float, plant: State) -> None:
     """The skin under a bone that went from x0 with v0, under the friction of the contact."""
     s, n, c, (tables, bone, speed_in, speed_out, limit, rows, track) = plant
     speeds = tables.speed
@@ -257,11 +254,8 @@ def _drag(h: float, x0: float, v0: float, plant: State, ground: Ground) -> None:
     track.position[0], track.speed[0] = s[SKIN_X], s[SKIN_V]
     drive = Drive(bone, speed_in, speed_out, limit, h, int(c[C_SUBSTEPS]))
     skin = Skin(c[C_PAD_MASS], c[C_PAD_DAMPING], c[C_PAD_STIFFNESS])
-    if speeds.size == 1:
-        done = slide_march(drive, skin, Law(c[C_STATIC], c[C_STRIBECK]), ground, track)
-    else:
-        strongest = max(limit[0], limit[1])
-        done = rows_march(drive, skin, Rows(speeds, rows), c[C_STATIC], strongest, ground, track)
+    strongest = max(limit[0], limit[1])
+    done = slide_march(drive, skin, Rows(speeds, rows), c[C_STATIC], strongest, track)
     s[PULL_BEFORE], s[BEFORE] = s[PULL], h
     if done < 2:
         # Chattering without end: let the skin go with the bone, and say so in the counts.
@@ -292,7 +286,6 @@ def advance(
     s, n, c, rows = plant.state, plant.counts, plant.constants, plant.contact.rows
     places, plan = path
     step, row = np.int64(c[C_STEP]), np.int64(c[C_ROW])
-    smooth = Ground(0.0, 1.0, np.ones(1))
     drifts = Drifts(0.0, c[C_QUALITY_DRIFT], c[C_CHARGE_DRIFT], c[C_SOFTENING], c[C_FIELD_DRIFT])
     cooling = Cooling(c[C_COOLING], c[C_FACE], c[C_FACE_LENGTH], c[C_EMISSIVITY], c[C_ROOM])
     limits = Limits(c[C_RAIL], c[C_CURRENT], c[C_SLEW])
@@ -341,7 +334,7 @@ def advance(
             if began <= 0.0:
                 # A relaxed skin, that lands with the bone's place and speed.
                 s[SKIN_X], s[SKIN_V], rows[0] = x0, v0, rows[1]
-            _drag(h, x0, v0, plant, smooth)
+            _drag(h, x0, v0, plant)
         if force <= 0.0:
             s[SKIN_X], s[SKIN_V] = s[X], s[VX]
             s[PULL], s[PULL_BEFORE], s[BEFORE], s[FRICTION] = 0.0, 0.0, 0.0, 0.0

@@ -38,7 +38,6 @@ from squeezefilm.physics.chain.standing_wave import (
     resonance_with_finger,
 )
 from squeezefilm.physics.contact.sliding.march import Sliding, slide
-from squeezefilm.physics.contact.sliding.skin_vibration import SkinVibration, first_pass_vibration
 from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.physics.render.fidelity.report import (
@@ -147,20 +146,6 @@ class RenderAnalysis(Result):
         return columns
 
     _table = columns
-
-    def skin_vibration(self, harmonics: int = 5) -> SkinVibration:
-        """Spectra of the skin in the settled part of the first pass, with the texture's lines.
-
-        Raises `InputError` for another motion than a stroke, a texture without a single period
-        along it, or a pass with fewer than two periods after the start has settled.
-        """
-        period = self.played.spatial_period
-        if period is None or not isinstance(self.motion, Stroke):
-            raise InputError("a spectrum needs a grating of one period under a stroke along x")
-        stroke = self.motion
-        return first_pass_vibration(
-            self.force, stroke.speed, stroke.pass_duration, period, harmonics
-        )
 
     def summary(self) -> dict[str, Any]:
         """What ``--json`` prints and fidelity.json holds; keys carry units."""

@@ -26,7 +26,7 @@ from squeezefilm.physics.display import load_display
 from squeezefilm.physics.render.fidelity.report import strongest_lines
 from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
+from squeezefilm.physics.render.motion.stroke import Stroke
 from squeezefilm.physics.render.texture.coordinate import AlongDirection
 from squeezefilm.physics.render.texture.image import Image
 from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
@@ -241,13 +241,8 @@ def test_drive_and_sensor_are_those_asked_for() -> None:
     assert seen.summary()["sensor"] == "LVDT 10 kHz"
 
 
-def test_a_spectrum_has_the_gratings_lines() -> None:
-    lines = made().skin_vibration(2).harmonic_frequency
-    assert lines == pytest.approx([25.0, 50.0])
-    for motion in (MinimumJerkStroke(40e-3, 0.4), Stroke(0.1, 19e-3)):
-        with pytest.raises(InputError, match="a spectrum needs a grating of one period"):
-            made(motion=motion).skin_vibration()
-    # Five periods are enough.
+def test_a_pass_of_five_periods_is_judged_at_its_period() -> None:
+    assert made(motion=Stroke(0.1, 19e-3)).played.spatial_period is None
     assert made(motion=Stroke(0.1, 20.001e-3)).played.spatial_period == 4e-3
     slanted = FingerPath(np.array([0.0, 1.0]), np.array([0.0, 0.03]), np.array([0.0, 0.0]))
     assert made(motion=slanted).played.spatial_period == 4e-3

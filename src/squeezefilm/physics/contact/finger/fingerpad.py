@@ -61,18 +61,6 @@ class FingerpadDynamics:
         """Undamped resonance frequency of the sliding skin (Hz)."""
         return math.sqrt(self.stiffness / self.mass) / (2 * math.pi)
 
-    @property
-    def settling_time_constant(self) -> si.Second:
-        """Slower time constant of the sliding skin (s); infinite without damping."""
-        if self.damping == 0:
-            return math.inf
-        decay = self.damping / (2 * self.mass)
-        split = decay**2 - self.stiffness / self.mass
-        if split <= 0:
-            return 1 / decay
-        # 1/(decay − √split), without subtracting like numbers.
-        return (decay + math.sqrt(split)) * self.mass / self.stiffness
-
 
 @si.closed_form(positive="stiffness mass", nonnegative="damping frequency")
 def skin_displacement_per_friction(

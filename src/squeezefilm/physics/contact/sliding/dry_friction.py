@@ -1,4 +1,4 @@
-"""The law of dry friction: how the friction force follows load, speed, place and contact time."""
+"""The law of dry friction: the friction force by load and speed."""
 
 from __future__ import annotations
 
@@ -14,22 +14,17 @@ from squeezefilm.core.errors import InputError
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class DryFriction:
-    """Coulomb's law, set-valued at rest, with three options that each default to off.
+    """Coulomb's law, set-valued at rest, with two options that each default to off.
 
     At rest the friction force is whatever holds the skin, up to `static_ratio` times the kinetic
-    force; while the skin moves at a speed w it opposes it with
-
-        µ F_ref (F/F_ref)^load_exponent · (1 + (static_ratio − 1) exp(−w/stribeck_speed)).
-
-    With a `stribeck_speed` of 0 the drop from static to kinetic friction happens at once. How much
-    static friction of skin exceeds kinetic friction and over which speeds it drops was not read in
-    a source: both are yours to give. The coefficient of fingers was found independent of the load,
-    except that it falls with load after more than 10 s on smooth impermeable surfaces (Dzidek et
-    al. 2017, 10.1098/rsif.2016.0935, abstract), so an exponent below 1 belongs to those.
+    force; while the skin moves µ F_ref (F/F_ref)^load_exponent opposes it. How much static friction
+    of skin exceeds kinetic friction was not read in a source. The coefficient of fingers was found
+    independent of the load, except that it falls with load after more than 10 s on smooth
+    impermeable surfaces (Dzidek et al. 2017, 10.1098/rsif.2016.0935, abstract), so an exponent
+    below 1 belongs to those.
 
     Args:
         static_ratio: static over kinetic friction (1); at least 1.
-        stribeck_speed: over which static falls to kinetic friction (m/s); at least 0.
         load_exponent: of the friction force in the normal force (1); above 0, at most 1.
         reference_force: normal force at which the coefficient is given (N); above 0. Without
             meaning at an exponent of 1.
@@ -39,7 +34,6 @@ class DryFriction:
     """
 
     static_ratio: Annotated[si.Dimensionless, si.AtLeast(1.0)] = 1.0
-    stribeck_speed: Annotated[si.MetrePerSecond, si.AtLeast(0.0)] = 0.0
     load_exponent: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 1.0
     reference_force: Annotated[si.Newton, si.Above(0.0)] = 1.0
 
@@ -49,7 +43,7 @@ class DryFriction:
         friction_coefficient: Annotated[si.DimensionlessLike, si.AtLeast(0.0)],
         normal_force: Annotated[si.NewtonLike, si.AtLeast(0.0)],
     ) -> si.NewtonLike:
-        """Friction force of fast sliding (N) under a normal force (N); both broadcast.
+        """Friction force of sliding (N) under a normal force (N); both broadcast.
 
         Raises:
             InputError: a negative or infinite coefficient or force.
@@ -103,82 +97,3 @@ class SpeedFriction:
                 f"{speed.size} values per sample, or one row for all",
                 quantity="coefficient",
             )
-
-
-@si.checked_numbers
-@dataclass(frozen=True, slots=True, eq=False)
-class FrictionProfile:
-    """Friction that belongs to places of the surface: a factor by skin position, linear between.
-
-    For a surface that is itself rough in places; what a display renders follows the sensed finger
-    and belongs into the coefficient over time.
-
-    Args:
-        start: place of the first value (m).
-        spacing: between values (m); above 0.
-        relative_friction: factor of the friction coefficient (1), shape (n,), n ≥ 2, at least 0.
-
-    Raises:
-        InputError: a value outside its range or fewer than two values.
-    """
-
-    start: si.Metre
-    spacing: Annotated[si.Metre, si.Above(0.0)]
-    relative_friction: Annotated[si.DimensionlessArray, si.AtLeast(0.0)]
-
-    def __post_init__(self) -> None:
-        if np.ndim(self.relative_friction) != 1 or np.size(self.relative_friction) < 2:
-            raise InputError(
-                f"relative_friction of shape {np.shape(self.relative_friction)} cannot be used: "
-                "give one value per place, at least two",
-                quantity="relative_friction",
-            )
-
-    @property
-    def end(self) -> si.Metre:
-        """Place of the last value (m)."""
-        return self.start + self.spacing * (np.size(self.relative_friction) - 1)
-
-
-EVIDENCE = {
-    "time_constant": "first-order kinetics of the junction area on glass, saturated 'typically "
-    "within 20 s' (Dzidek et al. 2017, 10.1073/pnas.1706233114, abstract): 95 % at 20 s",
-    "rise": "unverified default: the drift of friction itself was not read in any source",
-}
-"""Where the defaults of `Occlusion` come from: sweat that cannot leave softens the skin, and the
-contact grows."""
-
-
-@si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class Occlusion:
-    """Friction that grows with the time a finger has been on a smooth, impermeable surface.
-
-    A saturating exponential, 1 + rise · (1 − exp(−t/time_constant)), that multiplies the friction
-    coefficient. The exponential and its time are those of the *junction area*; that friction
-    follows the area is an assumption, and moving contacts, which leave their moisture behind, may
-    drift less. **`rise` is an unverified default** (see `EVIDENCE`).
-
-    Args:
-        rise: relative growth after a long time (1); above −1.
-        time_constant: (s); above 0.
-        contact_time: how long the finger has already touched when the motion starts (s).
-
-    Raises:
-        InputError: a value outside its range.
-    """
-
-    rise: Annotated[si.Dimensionless, si.Above(-1.0)] = 0.5
-    time_constant: Annotated[si.Second, si.Above(0.0)] = 20.0 / 3.0
-    contact_time: Annotated[si.Second, si.AtLeast(0.0)] = 0.0
-
-    @si.checked_numbers
-    def factor(self, time: si.SecondLike) -> si.DimensionlessLike:
-        """What the friction coefficient is multiplied by, `time` (s) after the motion starts (1).
-
-        Raises `InputError` for a time before the finger touched.
-        """
-        touched = self.contact_time + time
-        si.require("contact_time", touched, si.Unit("s"), at_least=0.0)
-        factor: si.DimensionlessLike = 1 - self.rise * np.expm1(-touched / self.time_constant)
-        return factor

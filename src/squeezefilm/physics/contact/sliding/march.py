@@ -4,14 +4,13 @@ The bone moves as the hand wants; the skin of the contact (mass m) hangs on it b
 damper c, and touches a surface at rest:
 
     m ẍ = k (x_bone − x) + c (v_bone − ẋ) − F,    |F| ≤ F_static where ẋ = 0,
-                                                F = F_kinetic(t, x, |ẋ|) sign ẋ elsewhere.
+                                                F = F_kinetic(t, |ẋ|) sign ẋ elsewhere.
 
 The law is set-valued, as it is written: nothing is smoothed. Between samples the bone's motion is a
 parabola and the friction limit a line; the skin's motion then has a closed form, which is stepped,
 and slips begin and end at instants solved for inside the steps. Exact where that is the input;
-second order in `time_step` for smooth inputs and for friction that depends on speed or place.
-Friction by rows over speed (`SpeedFriction`) is marched by `speed_kernel`, exactly where the rows
-stay the same.
+second order in `time_step` for smooth inputs. Friction by rows over speed (`SpeedFriction`) is
+exact where the rows stay the same.
 """
 
 from __future__ import annotations
@@ -24,32 +23,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeError
+from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.physics.contact.sliding.dry_friction import (
-    DryFriction,
-    FrictionProfile,
-    Occlusion,
-    SpeedFriction,
-)
+from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
 from squeezefilm.physics.contact.sliding.kernel import (
     MOST_EVENTS,
     Drive,
-    Ground,
-    Law,
+    Rows,
     Track,
     slide_march,
+    strongest_and_fall,
 )
 from squeezefilm.physics.contact.sliding.skin_motion import Skin
-from squeezefilm.physics.contact.sliding.speed_kernel import Rows, rows_march, strongest_and_fall
 
 JouleArray = Annotated[si.FloatArray, si.Unit("J")]
-MetrePerSquareSecondArray = Annotated[si.FloatArray, si.Unit("m/s2")]
 
 # Of the shortest time of the skin; far below it, a substep holds at most one slip.
 _SUBSTEP = 0.25
-# Of the time in which friction that falls with speed lets a slip grow by a factor e.
-_STRIBECK_SUBSTEP = 0.1
 _MOST_SUBSTEPS = 1000
 
 
@@ -69,7 +59,7 @@ class Sliding:
         friction_force: tangential force of the interface (N).
         bone_force: tangential force at the bone (N), what a force sensor behind the pad shows; the
             mass of the skin stands between the two. Where the bone's speed jumps, the value before.
-        friction_limit: kinetic friction force at the skin's place and at high speed (N).
+        friction_limit: kinetic friction force at high speed (N).
         sticking: whether the skin sticks.
         bone_work: work done by the bone since the start (J).
         friction_loss: work lost to friction since the start (J); never falls.
@@ -77,9 +67,8 @@ class Sliding:
         stored_energy: kinetic and elastic energy (J).
         stuck_share: share of the time spent sticking (1).
         slips: how many times the skin began to slip.
-        friction_law_error: largest relative departure of the friction used from the law at the
-            middle of a step (1); 0 where friction depends on time alone. Of a `SpeedFriction` the
-            largest within a piece of a step, over the strongest friction of all.
+        friction_law_error: largest departure of the friction used from the law within a piece of a
+            step, over the strongest friction of all (1); 0 where friction depends on time alone.
     """
 
     fingerpad: FingerpadDynamics
@@ -108,11 +97,6 @@ class Sliding:
         return self.skin_position - self.bone_position
 
     @property
-    def skin_acceleration(self) -> MetrePerSquareSecondArray:
-        """Acceleration of the skin (m/s²), from the forces on it."""
-        return (self.bone_force - self.friction_force) / self.fingerpad.mass
-
-    @property
     def energy_residual(self) -> si.Joule:
         """Largest failure of the balance work = stored + friction + damping at any time (J).
 
@@ -134,8 +118,6 @@ def slide(
     fingerpad: FingerpadDynamics | None = None,
     law: DryFriction | None = None,
     *,
-    occlusion: Occlusion | None = None,
-    profile: FrictionProfile | None = None,
     initial_stretch: si.Metre = 0.0,
     initial_speed: si.MetrePerSecond = 0.0,
 ) -> Sliding:
@@ -148,22 +130,18 @@ def slide(
         friction_coefficient: kinetic, over time (1): a scalar or shape (n,), at least 0; linear
             between samples. With a display this is µ times the relative friction rendered. Or a
             `SpeedFriction` where it depends on the skin's speed as well: one row, or one per
-            sample. Its rows hold all that depends on speed: no `stribeck_speed` beside them.
+            sample.
         normal_force: over time (N): a scalar or shape (n,), at least 0; the friction limit it
             gives is linear between samples.
         fingerpad: stiffness, damping, mass; the published ones where not given.
-        law: static friction and its dependence on speed and load; plain Coulomb if not given.
-        occlusion: slow growth of friction with contact time, none if not given.
-        profile: friction that belongs to places of the surface, a factor of the coefficient.
+        law: static friction and dependence on the load; plain Coulomb if not given.
         initial_stretch: skin position relative to the bone at the start (m); 0 is a relaxed pad.
         initial_speed: of the skin over the surface at the start (m/s); 0 is a skin at rest, which
             sticks if friction holds it.
 
     Raises:
-        InputError: a value outside its range, arrays of other shapes, friction that falls so
-            steeply with speed that a step would need more than 1000 parts, or a `SpeedFriction`
-            beside a law with a `stribeck_speed`.
-        OutOfRangeError: the skin left the places that `profile` covers.
+        InputError: a value outside its range, arrays of other shapes, or friction that falls so
+            steeply with speed that a step would need more than 1000 parts.
         ConvergenceError: slips began and ended more than 200 times within one step; `partial`
             holds the skin positions up to there.
     """
@@ -171,20 +149,22 @@ def slide(
     bone = _checked_bone(bone_position)
     n = bone.size
     load = _over_time("normal_force", normal_force, n)
-    rows = _rows(friction_coefficient, n, law)
-    given = 1.0 if isinstance(friction_coefficient, SpeedFriction) else friction_coefficient
+    given: si.DimensionlessLike = 1.0
+    if isinstance(friction_coefficient, SpeedFriction):
+        rows = _rows(friction_coefficient, n)
+    else:
+        given, rows = friction_coefficient, _ALIKE
     force = np.asarray(law.kinetic_force(_over_time("friction_coefficient", given, n), load))
-    if occlusion is not None:
-        force = force * occlusion.factor(np.arange(n, dtype=float) * time_step)
     position, speed, friction, bone_force = (np.zeros(n) for _ in range(4))
     position[0], speed[0] = bone[0] + initial_stretch, initial_speed
     sticking, work, account = np.zeros(n, dtype=bool), np.zeros((3, n)), np.zeros(3)
     track = Track(position, speed, friction, bone_force, sticking, work, account)
-    _march(bone, float(time_step), force, rows, pad, law, profile, track)
-    limit = force if rows is None else force * rows.coefficient[:, -1]
-    if profile is not None:
-        limit = limit * _factor_at(position, profile)
-    return _sliding(pad, law, time_step, bone, limit, track)
+    _march(bone, float(time_step), force, rows, pad, law, track)
+    return _sliding(pad, law, time_step, bone, force * rows.coefficient[:, -1], track)
+
+
+# Friction that is the same at all speeds.
+_ALIKE = Rows(np.array([0.0, 1.0]), np.ones((1, 2)))
 
 
 def _checked_bone(bone_position: si.MetreArray) -> si.FloatArray:
@@ -198,17 +178,8 @@ def _checked_bone(bone_position: si.MetreArray) -> si.FloatArray:
     return bone
 
 
-def _rows(friction: si.DimensionlessLike | SpeedFriction, n: int, law: DryFriction) -> Rows | None:
-    """Friction by speed as the march takes it, but for its force; None where time is all."""
-    if not isinstance(friction, SpeedFriction):
-        return None
-    if law.static_ratio > 1 and law.stribeck_speed > 0:
-        raise InputError(
-            "a SpeedFriction says all that friction does with speed, and cannot be used beside a "
-            "stribeck_speed above 0: let its rows fall from static_ratio times what they are, or "
-            "leave stribeck_speed at 0",
-            quantity="stribeck_speed",
-        )
+def _rows(friction: SpeedFriction, n: int) -> Rows:
+    """Friction by speed as the march takes it, but for its force."""
     coefficient = np.atleast_2d(np.ascontiguousarray(friction.coefficient, dtype=float))
     if len(coefficient) != n and np.ndim(friction.coefficient) == 2:
         raise InputError(
@@ -223,33 +194,22 @@ def _march(
     bone: si.FloatArray,
     time_step: float,
     force: si.FloatArray,
-    rows: Rows | None,
+    rows: Rows,
     pad: FingerpadDynamics,
     law: DryFriction,
-    profile: FrictionProfile | None,
     track: Track,
 ) -> None:
     """March over all samples, from what stands first in the track; raises `ConvergenceError`.
 
-    `force` is the friction force over time (N), or for each of a row's units.
+    `force` is the friction force over time (N) for each of a row's units.
     """
-    values = np.ones(1) if profile is None else np.array(profile.relative_friction, dtype=float)
-    start, spacing = (0.0, 1.0) if profile is None else (profile.start, profile.spacing)
     speed_in, speed_out = interval_speeds(bone, time_step)
-    skin, ground = Skin(pad.mass, pad.damping, pad.stiffness), Ground(start, spacing, values)
     force = np.ascontiguousarray(force)
-    if rows is None:
-        parts = substeps(time_step, pad, law, float(force.max() * values.max()))
-        drive = Drive(bone, speed_in, speed_out, force, time_step, parts)
-        stick = Law(law.static_ratio, law.stribeck_speed)
-        done = slide_march(drive, skin, stick, ground, track)
-    else:
-        strongest, steepest = strongest_and_fall(rows, force)
-        parts = row_substeps(time_step, pad, steepest * float(values.max()))
-        drive = Drive(bone, speed_in, speed_out, force, time_step, parts)
-        done = rows_march(
-            drive, skin, rows, law.static_ratio, strongest * float(values.max()), ground, track
-        )
+    strongest, steepest = strongest_and_fall(rows, force)
+    parts = substeps(time_step, pad, steepest)
+    drive = Drive(bone, speed_in, speed_out, force, time_step, parts)
+    skin = Skin(pad.mass, pad.damping, pad.stiffness)
+    done = slide_march(drive, skin, rows, law.static_ratio, strongest, track)
     if done < bone.size:
         raise ConvergenceError(
             f"the skin started and stopped more than {MOST_EVENTS} times within the time step "
@@ -329,55 +289,18 @@ def _over_time(name: str, values: si.NewtonLike | si.DimensionlessLike, n: int) 
 
 
 @si.checked_numbers
-def substeps(
-    time_step: si.Second, pad: FingerpadDynamics, law: DryFriction, strongest: float
-) -> int:
-    """Parts of a step (s) short enough for the skin, and for friction that falls with speed.
-
-    `strongest` is the largest friction force (N). Raises `InputError` for more than 1000 parts.
-    """
-    fastest = max(math.sqrt(pad.stiffness / pad.mass), pad.damping / pad.mass)
-    count = math.ceil(time_step * fastest / _SUBSTEP)
-    if law.stribeck_speed > 0 and law.static_ratio > 1:
-        growth = (law.static_ratio - 1) * strongest / (pad.mass * law.stribeck_speed)
-        count = max(count, math.ceil(time_step * growth / _STRIBECK_SUBSTEP))
-    return _allowed_parts(count, time_step, "raise stribeck_speed or mass")
-
-
-@si.checked_numbers
-def row_substeps(
-    time_step: si.Second, pad: FingerpadDynamics, fall: si.NewtonSecondPerMetre
-) -> int:
-    """Parts of a step (s) for friction by rows over speed, however steeply it rises.
+def substeps(time_step: si.Second, pad: FingerpadDynamics, fall: si.NewtonSecondPerMetre) -> int:
+    """Parts of a step (s) for friction over speed, however steeply it rises.
 
     Short for the skin's swing, and where friction falls with speed, by at most `fall` (N·s/m), for
     the growth of a slip. Raises `InputError` for more than 1000 parts.
     """
     fastest = max(math.sqrt(pad.stiffness / pad.mass), fall / pad.mass)
     count = math.ceil(time_step * fastest / _SUBSTEP)
-    return _allowed_parts(count, time_step, "let friction fall less steeply with speed")
-
-
-def _allowed_parts(count: int, time_step: float, remedy: str) -> int:
     if count > _MOST_SUBSTEPS:
         raise InputError(
             f"time_step = {si.format_quantity(time_step, si.Unit('s'))} would need {count} parts "
-            f"of a step where {_MOST_SUBSTEPS} are allowed: shorten it, or {remedy}"
+            f"of a step where {_MOST_SUBSTEPS} are allowed: shorten it, or let friction fall less "
+            "steeply with speed"
         )
     return max(count, 1)
-
-
-def _factor_at(position: si.MetreArray, profile: FrictionProfile) -> si.FloatArray:
-    """The profile at the skin's places; raises `OutOfRangeError` where it does not reach."""
-    low, high = float(position.min()), float(position.max())
-    if low < profile.start or high > profile.end:
-        ends = [
-            si.format_quantity(x, si.Unit("m")) for x in (low, high, profile.start, profile.end)
-        ]
-        raise OutOfRangeError(
-            f"the skin moved from {ends[0]} to {ends[1]}, and the profile covers {ends[2]} to "
-            f"{ends[3]}; extend it (the skin leads and trails the bone by its stretch)"
-        )
-    values = np.array(profile.relative_friction, dtype=float)
-    places = profile.start + profile.spacing * np.arange(values.size)
-    return np.asarray(np.interp(position, places, values))

@@ -1,4 +1,4 @@
-"""The skin between two samples: its motion in closed form, and when a slip begins or ends."""
+"""The skin between two samples: its motion in closed form, and when a slip begins."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 
 from squeezefilm.core.compiled import compiled
 
-_ROOT_STEPS = 80
 # Slips shorter than this power of ½ of a substep are not looked for.
 HALVINGS = 20
 
@@ -93,72 +92,3 @@ def slide_by(passed: Any, s: float, x: float, v: float, forces: Forces, skin: Sk
         B + 2.0 * C * s + w,
         2.0 * C - (damping * w + stiffness * y) / mass,
     )
-
-
-@compiled()
-def slide_along(s: float, x: float, v: float, forces: Forces, skin: Skin) -> Any:
-    """`slide_by` for any time s."""
-    return slide_by(transition(s, skin), s, x, v, forces, skin)
-
-
-@compiled()
-def end_of_slip(
-    passed: Any, span: float, x: float, v: float, sign: float, forces: Forces, skin: Skin
-) -> float:
-    """When in (0, span] the skin comes to rest, or −1 while it slides on; 0 if it never started.
-
-    `passed` is the `transition` of span.
-    """
-    _, v_end, a_end = slide_by(passed, span, x, v, forces, skin)
-    high = span
-    low = 0.0
-    if sign * v_end > 0.0:
-        pulled = forces.pull[0] - skin.stiffness * x - skin.damping * v
-        a = (pulled - forces.friction) / skin.mass
-        # A slip that has just begun speeds up, whatever rounding says of its first acceleration.
-        if v == 0.0 or not (sign * a < 0.0 and sign * a_end > 0.0):
-            return -1.0
-        # The speed has a minimum inside: it may touch zero and rise again.
-        for _ in range(_ROOT_STEPS):
-            middle = 0.5 * (low + high)
-            if middle <= low or middle >= high:
-                break
-            _, v_m, a_m = slide_along(middle, x, v, forces, skin)
-            if sign * v_m <= 0.0:
-                high = middle
-                break
-            if sign * a_m < 0.0:
-                low = middle
-            else:
-                high = middle
-        _, v_m, _ = slide_along(high, x, v, forces, skin)
-        if sign * v_m > 0.0:
-            return -1.0
-        low = 0.0
-    elif v == 0.0:
-        # It began and ended within: look ever earlier for an instant at which it moved.
-        low = 0.5 * span
-        for _ in range(HALVINGS):
-            _, v_m, _ = slide_along(low, x, v, forces, skin)
-            if sign * v_m > 0.0:
-                break
-            high = low
-            low *= 0.5
-        if sign * v_m <= 0.0:
-            return 0.0
-    root = 0.5 * (low + high)
-    for _ in range(_ROOT_STEPS):
-        # Newton, and a halving wherever it would leave the bracket.
-        _, v_r, a_r = slide_along(root, x, v, forces, skin)
-        if sign * v_r > 0.0:
-            low = root
-        else:
-            high = root
-        new = root - v_r / a_r if a_r != 0.0 else -1.0
-        if not low < new < high:
-            new = 0.5 * (low + high)
-        moved = abs(new - root)
-        root = new
-        if moved <= 1e-15 * span:
-            break
-    return root

@@ -77,7 +77,7 @@ def path_over(
     jerk = (p1 - braking * a - stiffness * w) / mass
     z = abs(braking) * span / mass
     if z <= _FAST:
-        terms = 9 if z < 0.2 else 12 if z < 0.4 else TERMS
+        terms = 12 if z < 0.4 else TERMS
         d = z if braking >= 0.0 else -z
         e = stiffness * span * span / mass
         series[0] = w

@@ -9,17 +9,18 @@ import pytest
 
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
-from squeezefilm.physics.contact.sliding.kernel import Drive, Ground, Track
-from squeezefilm.physics.contact.sliding.march import slide
-from squeezefilm.physics.contact.sliding.skin_motion import Skin
-from squeezefilm.physics.contact.sliding.speed_kernel import (
+from squeezefilm.physics.contact.sliding.kernel import (
+    Drive,
     Rows,
+    Track,
     bounds_on,
     on_segment,
-    rows_march,
+    slide_march,
     strongest_and_fall,
     works_of_rest,
 )
+from squeezefilm.physics.contact.sliding.march import slide
+from squeezefilm.physics.contact.sliding.skin_motion import Skin
 
 SPEED = np.array([0.0, 0.1, 0.5])
 ROWS = np.array([[0.2, 0.4, 0.3], [0.0, 0.9, 0.1]])
@@ -68,9 +69,8 @@ def test_too_many_slips_in_one_sample_are_given_up() -> None:
         track[0, 0] = 1e-3
         drive = Drive(bone, np.zeros(2), np.zeros(2), np.full(3, 1e-5), swings * period, 2000)
         rows = Rows(np.array([0.0, 1e-6]), np.array([[0.9, 1.0]]))
-        ground = Ground(0.0, 1.0, np.ones(1))
         written = Track(*track, np.zeros(3, bool), np.zeros((3, 3)), np.zeros(3))
-        return int(rows_march(drive, skin, rows, 1.0, 1e-5, ground, written))
+        return int(slide_march(drive, skin, rows, 1.0, 1e-5, written))
 
     # It turns round twice a swing.
     assert march(90.0) == 3
