@@ -100,8 +100,7 @@ class LoopProcess:
             )
         self.plan = plan
         self._orders = Orders(plan, priority, os.getpid(), compiled_clock)
-        self._process: subprocess.Popen[bytes] | None = None
-        self._memory: shared.Shared | None = None
+        self._begun: tuple[subprocess.Popen[bytes], shared.Shared] | None = None
         self._said: IO[bytes] | None = None
         self._last_words = ""
         self._epoch = 0
@@ -124,13 +123,13 @@ class LoopProcess:
                 "the loop needs a process that shares memory by file descriptor, which this "
                 "system has not; use Linux (or macOS, with poorer timing)"
             )
-        if self._process is not None:
+        if self._begun is not None:
             raise LoopError("this loop was started before; make a new LoopProcess")
         descriptor = _anonymous_file(shared.shared_size())
         try:
-            self._memory = shared.shared_views(mmap.mmap(descriptor, shared.shared_size()))
+            memory = shared.shared_views(mmap.mmap(descriptor, shared.shared_size()))
             self._said = tempfile.TemporaryFile()  # noqa: SIM115 - `stop` closes it
-            self._process = subprocess.Popen(
+            process = subprocess.Popen(
                 [
                     sys.executable,
                     "-m",
@@ -146,16 +145,17 @@ class LoopProcess:
             )
         finally:
             os.close(descriptor)
+        self._begun = process, memory
         try:
             self._give_orders()
             self._wait_until_ready()
-            self._warn(self._memory.control)
+            self._warn(memory.control)
         except BaseException:
             self.stop()
             raise
         self._epoch = time.monotonic_ns() + _HEAD_START_NS
         self._beat()
-        store_release(self._memory.control, shared.EPOCH, self._epoch)
+        store_release(memory.control, shared.EPOCH, self._epoch)
 
     def _give_orders(self) -> None:
         process, _ = self._running()
@@ -299,11 +299,11 @@ class LoopProcess:
         )
 
     def _running(self) -> tuple[subprocess.Popen[bytes], shared.Shared]:
-        if self._process is None or self._memory is None:
+        if self._begun is None:
             raise LoopError(
                 "this loop was not started; call start() first, or use it in a with statement"
             )
-        return self._process, self._memory
+        return self._begun
 
     def _touch(self) -> shared.Shared:
         """The memory of a loop that lives; tells it that the host does too."""
