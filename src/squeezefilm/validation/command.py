@@ -123,9 +123,9 @@ def _found(claim: Claim) -> ClaimValue:
     return _VALUES.found(f"{claim.id} {claim.model}", of_model or CLAIM_VALUES[claim.id])
 
 
-def judge(claim: Claim, found: ClaimValue) -> ClaimResult:
+def judge(claim: Claim, value: ClaimValue) -> ClaimResult:
     """The verdict on a claim, from what was computed for it."""
-    return ClaimResult(claim=claim, verdict=_verdict(claim, found), **vars(found))
+    return ClaimResult(claim=claim, verdict=_verdict(claim, value), **vars(value))
 
 
 def _verdict(claim: Claim, found: ClaimValue) -> Verdict:

@@ -203,16 +203,18 @@ def _value(built: Any, path: str) -> tuple[Any, Any]:
     return value, hint
 
 
-def _if_unchanged(built: Any, original: Any, path: str, one: Provenance) -> Provenance:
+def _if_unchanged(built: Any, original: Any, path: str, provenance: Provenance) -> Provenance:
     theirs = original.provenance.get(path)
-    if theirs is None or not one.source or theirs.source != one.source:
-        return one
+    if theirs is None or not provenance.source or theirs.source != provenance.source:
+        return provenance
     (now, hint), (was, _) = _value(built, path), _value(original, path)
     if now == was:
-        return one
+        return provenance
     unit = si.unit_of(hint)
     shown = f"{was}" if unit is None else si.format_quantity(float(was), unit)
-    return dataclasses.replace(one, source=changed_from(shown, one.source), evidence=UNSTATED)
+    return dataclasses.replace(
+        provenance, source=changed_from(shown, provenance.source), evidence=UNSTATED
+    )
 
 
 def changed_from(was: str, source: str) -> str:

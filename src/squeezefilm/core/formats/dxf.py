@@ -60,30 +60,30 @@ def dxf_text(drawing: Drawing) -> str:
     return _MADE.sub(r"\1", stream.getvalue())
 
 
-def _draw(space: Any, one: Item) -> None:
-    if isinstance(one, Polyline):
-        points = [(1e3 * x, 1e3 * y) for x, y in one.points]
-        space.add_lwpolyline(points, close=one.closed, dxfattribs={"layer": one.layer})
-    elif isinstance(one, Arc):
-        _arc(space, one)
-    elif isinstance(one, Text):
-        _text(space, one)
-    elif isinstance(one, Dimension):
-        _dimension(space, one)
+def _draw(space: Any, item: Item) -> None:
+    if isinstance(item, Polyline):
+        points = [(1e3 * x, 1e3 * y) for x, y in item.points]
+        space.add_lwpolyline(points, close=item.closed, dxfattribs={"layer": item.layer})
+    elif isinstance(item, Arc):
+        _arc(space, item)
+    elif isinstance(item, Text):
+        _text(space, item)
+    elif isinstance(item, Dimension):
+        _dimension(space, item)
     else:
-        _ordinate(space, one)
+        _ordinate(space, item)
 
 
-def _arc(space: Any, one: Arc) -> None:
-    centre, radius, layer = (1e3 * one.x, 1e3 * one.y), 1e3 * one.radius, {"layer": one.layer}
-    if one.is_circle:
+def _arc(space: Any, arc: Arc) -> None:
+    centre, radius, layer = (1e3 * arc.x, 1e3 * arc.y), 1e3 * arc.radius, {"layer": arc.layer}
+    if arc.is_circle:
         space.add_circle(centre, radius, dxfattribs=layer)
     else:
-        ends = math.degrees(one.start), math.degrees(one.end)
+        ends = math.degrees(arc.start), math.degrees(arc.end)
         space.add_arc(centre, radius, *ends, dxfattribs=layer)
 
 
-def _text(space: Any, one: Text) -> None:
+def _text(space: Any, text: Text) -> None:
     from ezdxf.enums import TextEntityAlignment as Align
 
     # In its middle: so a text stands where it does in every program, whatever font that has.
@@ -91,13 +91,13 @@ def _text(space: Any, one: Text) -> None:
         "left": Align.MIDDLE_LEFT,
         "middle": Align.MIDDLE_CENTER,
         "right": Align.MIDDLE_RIGHT,
-    }[one.align]
+    }[text.align]
     space.add_text(
-        one.text,
-        height=1e3 * one.height,
-        rotation=math.degrees(one.angle),
-        dxfattribs={"layer": one.layer},
-    ).set_placement((1e3 * one.x, 1e3 * one.y), align=align)
+        text.text,
+        height=1e3 * text.height,
+        rotation=math.degrees(text.angle),
+        dxfattribs={"layer": text.layer},
+    ).set_placement((1e3 * text.x, 1e3 * text.y), align=align)
 
 
 def _look(height: float) -> dict[str, Any]:
@@ -124,32 +124,32 @@ def _keep(style: Any, one: Dimension | Ordinate) -> None:
         style.dimension.set_xdata(APPLICATION, [(1000, one.value_of)])
 
 
-def _dimension(space: Any, one: Dimension) -> None:
-    base = (1e3 * one.at, 0) if one.upright else (0, 1e3 * one.at)
+def _dimension(space: Any, dimension: Dimension) -> None:
+    base = (1e3 * dimension.at, 0) if dimension.upright else (0, 1e3 * dimension.at)
     style = space.add_linear_dim(
         base=base,
-        p1=(1e3 * one.x_from, 1e3 * one.y_from),
-        p2=(1e3 * one.x_to, 1e3 * one.y_to),
-        location=(1e3 * one.text_x, 1e3 * one.text_y),
-        text=f"{one.prefix}<>{one.suffix}".replace("⌀", "%%c"),
-        angle=90 if one.upright else 0,
+        p1=(1e3 * dimension.x_from, 1e3 * dimension.y_from),
+        p2=(1e3 * dimension.x_to, 1e3 * dimension.y_to),
+        location=(1e3 * dimension.text_x, 1e3 * dimension.text_y),
+        text=f"{dimension.prefix}<>{dimension.suffix}".replace("⌀", "%%c"),
+        angle=90 if dimension.upright else 0,
         text_rotation=0,
         dimstyle="EZDXF",
-        override=_look(1e3 * one.height) | {"dimlfac": 1 / one.stretch},
+        override=_look(1e3 * dimension.height) | {"dimlfac": 1 / dimension.stretch},
         dxfattribs={"layer": "DIMENSIONS"},
     )
-    _keep(style, one)
+    _keep(style, dimension)
 
 
-def _ordinate(space: Any, one: Ordinate) -> None:
-    add = space.add_ordinate_y_dim if one.upright else space.add_ordinate_x_dim
-    reach = 1e3 * (one.end - one.x if one.upright else one.end - one.y)
+def _ordinate(space: Any, ordinate: Ordinate) -> None:
+    add = space.add_ordinate_y_dim if ordinate.upright else space.add_ordinate_x_dim
+    reach = 1e3 * (ordinate.end - ordinate.x if ordinate.upright else ordinate.end - ordinate.y)
     style = add(
-        (1e3 * one.x, 1e3 * one.y),
-        (reach, 0) if one.upright else (0, reach),
-        origin=(1e3 * one.origin_x, 1e3 * one.origin_y),
+        (1e3 * ordinate.x, 1e3 * ordinate.y),
+        (reach, 0) if ordinate.upright else (0, reach),
+        origin=(1e3 * ordinate.origin_x, 1e3 * ordinate.origin_y),
         dimstyle="EZDXF",
-        override=_look(1e3 * one.height) | {"dimtad": 0},
+        override=_look(1e3 * ordinate.height) | {"dimtad": 0},
         dxfattribs={"layer": "DIMENSIONS"},
     )
-    _keep(style, one)
+    _keep(style, ordinate)

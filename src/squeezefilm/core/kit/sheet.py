@@ -104,25 +104,25 @@ def _look(layer: Layer, closed: bool) -> dict[str, Any]:
     }
 
 
-def _polyline(axes: Axes, one: Polyline, layer: Layer, order: int) -> None:
+def _polyline(axes: Axes, polyline: Polyline, layer: Layer, order: int) -> None:
     from matplotlib.patches import Polygon
 
-    look = _look(layer, one.closed)
-    points = np.array(one.points)
-    axes.add_patch(Polygon(points, closed=one.closed, zorder=2 + order * 1e-4, **look))
+    look = _look(layer, polyline.closed)
+    points = np.array(polyline.points)
+    axes.add_patch(Polygon(points, closed=polyline.closed, zorder=2 + order * 1e-4, **look))
 
 
-def _arc(axes: Axes, one: Arc, layer: Layer, order: int) -> None:
+def _arc(axes: Axes, arc: Arc, layer: Layer, order: int) -> None:
     from matplotlib.patches import Arc as Bow
     from matplotlib.patches import Circle
 
-    centre, above = (one.x, one.y), 2 + order * 1e-4
-    look = _look(layer, one.is_circle)
-    if one.is_circle:
-        axes.add_patch(Circle(centre, one.radius, zorder=above, **look))
+    centre, above = (arc.x, arc.y), 2 + order * 1e-4
+    look = _look(layer, arc.is_circle)
+    if arc.is_circle:
+        axes.add_patch(Circle(centre, arc.radius, zorder=above, **look))
         return
-    ends = math.degrees(one.start), math.degrees(one.end)
-    size = 2 * one.radius
+    ends = math.degrees(arc.start), math.degrees(arc.end)
+    size = 2 * arc.radius
     bow = Bow(centre, size, size, theta1=ends[0], theta2=ends[1], zorder=above)
     bow.set(edgecolor=look["edgecolor"], lw=look["lw"], ls=look["ls"])
     axes.add_patch(bow)
@@ -169,39 +169,39 @@ def _arrow(axes: Axes, tip: tuple[float, float], towards: tuple[float, float]) -
     axes.add_patch(Polygon(np.array(corners), facecolor=style.MUTED, edgecolor="none", zorder=5))
 
 
-def _dimension(axes: Axes, one: Dimension, scale: float) -> None:
-    size = one.height
-    if one.upright:
-        ends = (one.y_from, one.x_from), (one.y_to, one.x_to)
+def _dimension(axes: Axes, dimension: Dimension, scale: float) -> None:
+    size = dimension.height
+    if dimension.upright:
+        ends = (dimension.y_from, dimension.x_from), (dimension.y_to, dimension.x_to)
     else:
-        ends = (one.x_from, one.y_from), (one.x_to, one.y_to)
+        ends = (dimension.x_from, dimension.y_from), (dimension.x_to, dimension.y_to)
 
     def turned(along: float, across: float) -> tuple[float, float]:
-        return (across, along) if one.upright else (along, across)
+        return (across, along) if dimension.upright else (along, across)
 
     for along, across in ends:
-        way = math.copysign(0.5 * size, one.at - across)
-        if abs(one.at - across) > size:
-            _line(axes, turned(along, across + way), turned(along, one.at + way))
+        way = math.copysign(0.5 * size, dimension.at - across)
+        if abs(dimension.at - across) > size:
+            _line(axes, turned(along, across + way), turned(along, dimension.at + way))
     low, high = sorted((ends[0][0], ends[1][0]))
     inside = not arrows_outside(high - low, size)
     beyond = 0.0 if inside else 2.2 * size
-    _line(axes, turned(low - beyond, one.at), turned(high + beyond, one.at))
+    _line(axes, turned(low - beyond, dimension.at), turned(high + beyond, dimension.at))
     way = size if inside else -size
-    _arrow(axes, turned(low, one.at), turned(-way, 0.0))
-    _arrow(axes, turned(high, one.at), turned(way, 0.0))
-    _text(axes, one.said, (one.text_x, one.text_y), size * scale)
+    _arrow(axes, turned(low, dimension.at), turned(-way, 0.0))
+    _arrow(axes, turned(high, dimension.at), turned(way, 0.0))
+    _text(axes, dimension.said, (dimension.text_x, dimension.text_y), size * scale)
 
 
-def _ordinate(axes: Axes, one: Ordinate, scale: float) -> None:
-    size = one.height
-    start = one.x if one.upright else one.y
-    way = math.copysign(1.0, one.end - start)
-    if one.upright:
-        _line(axes, (one.x + 0.5 * size * way, one.y), (one.end, one.y))
-        at = (one.end + 0.4 * size * way, one.y)
-        _text(axes, one.said, at, size * scale, 0.0, "left" if way > 0 else "right")
+def _ordinate(axes: Axes, ordinate: Ordinate, scale: float) -> None:
+    size = ordinate.height
+    start = ordinate.x if ordinate.upright else ordinate.y
+    way = math.copysign(1.0, ordinate.end - start)
+    if ordinate.upright:
+        _line(axes, (ordinate.x + 0.5 * size * way, ordinate.y), (ordinate.end, ordinate.y))
+        at = (ordinate.end + 0.4 * size * way, ordinate.y)
+        _text(axes, ordinate.said, at, size * scale, 0.0, "left" if way > 0 else "right")
         return
-    _line(axes, (one.x, one.y + 0.5 * size * way), (one.x, one.end))
-    at = (one.x, one.end + 0.4 * size * way)
-    _text(axes, one.said, at, size * scale, math.pi / 2, "left" if way > 0 else "right")
+    _line(axes, (ordinate.x, ordinate.y + 0.5 * size * way), (ordinate.x, ordinate.end))
+    at = (ordinate.x, ordinate.end + 0.4 * size * way)
+    _text(axes, ordinate.said, at, size * scale, math.pi / 2, "left" if way > 0 else "right")

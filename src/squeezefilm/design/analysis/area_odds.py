@@ -135,13 +135,13 @@ def _elsewhere(display: Display, p: Prediction, area: ActiveArea) -> list[_Elsew
     return over
 
 
-def _met(law: FrictionLaw, found: Outcome, over: list[_Elsewhere | None]) -> list[float]:
+def _met(law: FrictionLaw, outcome: Outcome, over: list[_Elsewhere | None]) -> list[float]:
     """The friction of a draw at places; None stands for the prediction's own."""
-    tied = found.friction - float(law.friction_in("own", np.array([found.amplitude]))[0])
+    tied = outcome.friction - float(law.friction_in("own", np.array([outcome.amplitude]))[0])
     means = (
-        found.friction - tied
+        outcome.friction - tied
         if one is None
-        else float(law.ridge_friction(found.amplitude * one.swings) @ one.shares)
+        else float(law.ridge_friction(outcome.amplitude * one.swings) @ one.shares)
         for one in over
     )
     return [min(max(mean + tied, 0.0), 1.0) for mean in means]

@@ -222,10 +222,10 @@ def rough_frequency(requirements: Requirements, design: Design) -> si.Hertz:
 
 
 def _judged(
-    requirements: Requirements, display: Display, found: Prediction, design: Design
+    requirements: Requirements, display: Display, prediction: Prediction, design: Design
 ) -> dict[str, float]:
     cost = requirements.shapes[design.shape].cost_class(design.settings)
-    return numbers_of_prediction(requirements, display, found, cost)
+    return numbers_of_prediction(requirements, display, prediction, cost)
 
 
 def _since(began: float) -> si.Second:

@@ -167,11 +167,11 @@ def breaches(numbers: Mapping[str, float], limits: Limits) -> tuple[Breach, ...]
     return tuple(sorted(found, key=lambda one: -one.excess))
 
 
-def excess_of(one: Criterion, value: float, bound: float) -> float:
+def excess_of(criterion: Criterion, value: float, bound: float) -> float:
     """By how much a value exceeds a bound, as a share of it; negative where there is a margin."""
     if math.isinf(value):
-        return math.inf if (value > 0) != one.is_floor else -1.0
-    return (bound - value) / bound if one.is_floor else (value - bound) / bound
+        return math.inf if (value > 0) != criterion.is_floor else -1.0
+    return (bound - value) / bound if criterion.is_floor else (value - bound) / bound
 
 
 def numbers_of_prediction(

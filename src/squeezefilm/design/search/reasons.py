@@ -179,10 +179,10 @@ def gains_in_words(reason: LimitReason) -> str:
     return " and ".join(f"{one.said} of {one.shown(value)}" for one, value in gained)
 
 
-def corner_in_words(one: EmptyCorner) -> str:
+def corner_in_words(corner: EmptyCorner) -> str:
     """A part of the space without a feasible design, in a sentence."""
-    of = f"{one.shape}, {one.where}: none of {one.designs} screened designs is feasible"
-    if not one.key:
-        return f"{of}; {100 * one.share:.0f} % cannot be built, for example: {one.example}"
-    said = CRITERIA[one.key].said
-    return f"{of}; {100 * one.share:.0f} % of them break the limit of {said} ({one.example})"
+    of = f"{corner.shape}, {corner.where}: none of {corner.designs} screened designs is feasible"
+    if not corner.key:
+        return f"{of}; {100 * corner.share:.0f} % cannot be built, for example: {corner.example}"
+    said = CRITERIA[corner.key].said
+    return f"{of}; {100 * corner.share:.0f} % of them break the limit of {said} ({corner.example})"

@@ -62,11 +62,11 @@ class Effects:
     points: int
 
 
-def varied_values(found: Sweep) -> tuple[Varied, ...]:
+def varied_values(sweep: Sweep) -> tuple[Varied, ...]:
     """The values that were varied and take several values."""
     made = []
-    places = list(itertools.product(*(range(len(axis)) for axis in found.axes)))
-    for number, axis in enumerate(found.axes):
+    places = list(itertools.product(*(range(len(axis)) for axis in sweep.axes)))
+    for number, axis in enumerate(sweep.axes):
         rows = [point[number] for point in places]
         for k, (name, unit) in enumerate(zip(axis.columns, axis.units, strict=True)):
             said = [axis.steps[row][k] for row in rows]
@@ -82,18 +82,18 @@ def varied_values(found: Sweep) -> tuple[Varied, ...]:
     return tuple(made)
 
 
-def effects_of(found: Sweep) -> tuple[Effects, ...]:
+def effects_of(sweep: Sweep) -> tuple[Effects, ...]:
     """What decides each of a sweep's answers that varies; empty where nothing can be said."""
-    varied = varied_values(found)
+    varied = varied_values(sweep)
     out = []
-    for column in found.columns:
+    for column in sweep.columns:
         there = np.isfinite(column.values)
         values = column.values[there]
         if not varied or len(values) < _FEWEST or np.ptp(values) <= 1e-12 * np.abs(values).max():
             continue
-        whole = there.all() and len(varied) == sum(len(axis) > 1 for axis in found.axes)
+        whole = there.all() and len(varied) == sum(len(axis) > 1 for axis in sweep.axes)
         if whole:
-            shape = tuple(len(axis) for axis in found.axes if len(axis) > 1)
+            shape = tuple(len(axis) for axis in sweep.axes if len(axis) > 1)
             out.append(_of_grid(column, column.values.reshape(shape)))
         elif (fitted := _of_points(column, varied, there)) is not None:
             out.append(fitted)

@@ -338,11 +338,11 @@ def _responses(record: CalibrationRecord) -> list[dict[str, Any]]:
     return found
 
 
-def _quantity(one: ComparedAnswer, unit: str) -> list[float | None]:
-    return _between(si.parse_quantity(one.measured, si.Unit(unit)), one)
+def _quantity(answer: ComparedAnswer, unit: str) -> list[float | None]:
+    return _between(si.parse_quantity(answer.measured, si.Unit(unit)), answer)
 
 
-def _between(measured: float, one: ComparedAnswer) -> list[float | None]:
-    low, high = (one.after[0], one.after[2]) if one.after else (None, None)
+def _between(measured: float, answer: ComparedAnswer) -> list[float | None]:
+    low, high = (answer.after[0], answer.after[2]) if answer.after else (None, None)
     ends = [None if end is None else measured * end for end in (low, high)]
     return [measured, *ends]

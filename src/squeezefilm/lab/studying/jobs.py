@@ -44,7 +44,7 @@ def analysis_of(path: Path) -> dict[str, Any]:
     }
 
 
-def _tables(display: str, one: StudyAnalysis) -> dict[str, Any]:
+def _tables(display: str, analysis: StudyAnalysis) -> dict[str, Any]:
     """Answers by stimulus and by person, or confusions."""
     from squeezefilm.study.report.words import (
         PERSON_HEAD,
@@ -53,15 +53,19 @@ def _tables(display: str, one: StudyAnalysis) -> dict[str, Any]:
         person_rows,
     )
 
-    if isinstance(one, TaskAnalysis):
+    if isinstance(analysis, TaskAnalysis):
         tables = []
-        if one.conditions:
+        if analysis.conditions:
             tables.append(
-                {"title": "Stimuli", "head": condition_head(one), "rows": condition_rows(one)}
+                {
+                    "title": "Stimuli",
+                    "head": condition_head(analysis),
+                    "rows": condition_rows(analysis),
+                }
             )
-        tables.append({"title": "People", "head": PERSON_HEAD, "rows": person_rows(one)})
+        tables.append({"title": "People", "head": PERSON_HEAD, "rows": person_rows(analysis)})
         return {"tables": tables, "confusion": None}
-    matrix = one.matrix
+    matrix = analysis.matrix
     confusion = {
         "display": display,
         "rows": list(matrix.answers),

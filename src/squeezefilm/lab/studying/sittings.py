@@ -131,11 +131,11 @@ def described(design: StudyDesign) -> dict[str, Any]:
     }
 
 
-def shown_sitting(one: Sitting) -> dict[str, Any]:
+def shown_sitting(sitting: Sitting) -> dict[str, Any]:
     """A sitting, without what was consented to."""
     return {
-        "id": one.id,
-        "participant": one.participant,
-        "device": one.device,
-        "begun": one.session is not None,
+        "id": sitting.id,
+        "participant": sitting.participant,
+        "device": sitting.device,
+        "begun": sitting.session is not None,
     }

@@ -195,18 +195,22 @@ def _display_trials(
         offered = names
     answers: dict[Condition, str] = {}
 
-    def add(block: int, phase: Phase, one: Condition, pause: float = 0.0, answer: str = "") -> None:
+    def add(
+        block: int, phase: Phase, condition: Condition, pause: float = 0.0, answer: str = ""
+    ) -> None:
         if phase in ("practice", "main"):
-            if one not in answers:
-                answers[one] = design.answer_to(*(design.stimulus(name) for name in one))
-            answer = answers[one]
+            if condition not in answers:
+                answers[condition] = design.answer_to(
+                    *(design.stimulus(name) for name in condition)
+                )
+            answer = answers[condition]
         found.append(
             Trial(
                 number=len(found) + 1,
                 display=display,
                 block=block,
                 phase=phase,
-                stimuli=one,
+                stimuli=condition,
                 alternatives=() if phase == "familiarisation" else offered,
                 answer=answer,
                 adaptive="",

@@ -22,23 +22,23 @@ _PIXELS = 240
 
 
 @style.drawn
-def felt_path(found: FeltPath) -> Figure:
+def felt_path(path: FeltPath) -> Figure:
     """The path over the surface, its runs by direction, and the evidence for rhythms in each."""
     figure = style.new_figure(
-        f"{style.plain(found.stimulus.name, 24)} along this path: {_said(found)}",
-        f"SIMULATED by observer '{style.plain(found.observer.name)}'; {found.source}; force "
-        f"{found.finger.normal_force:.2g} N, {found.force_is}",
+        f"{style.plain(path.stimulus.name, 24)} along this path: {_said(path)}",
+        f"SIMULATED by observer '{style.plain(path.observer.name)}'; {path.source}; force "
+        f"{path.finger.normal_force:.2g} N, {path.force_is}",
         4.6,
     )
     left, right = figure.subplots(1, 2, width_ratios=[1.1, 1])
-    _over_surface(left, found)
-    highest = found.observer.detection_criterion
-    for name, direction in found.directions.items():
+    _over_surface(left, path)
+    highest = path.observer.detection_criterion
+    for name, direction in path.directions.items():
         evidence = direction.percept.evidence
         label = f"{name}: {direction.runs} runs, {shown(direction.way, M, 2)}"
         right.plot(1e3 * evidence.period, evidence.rhythm, color=_COLOURS[name], label=label)
         highest = max(highest, float(evidence.rhythm.max()))
-    right.axhline(found.observer.detection_criterion, **style.REFERENCE)
+    right.axhline(path.observer.detection_criterion, **style.REFERENCE)
     right.set(xscale="log", xlim=(0.25, 20), ylim=(0, 1.12 * highest))
     right.set(xlabel="spatial period along the path (mm)", ylabel="evidence for a rhythm, d′")
     right.set_xticks([0.4, 1, 2, 4, 10], ["0.4", "1", "2", "4", "10"])
@@ -76,11 +76,11 @@ def _over_surface(axes: Axes, found: FeltPath) -> None:
     axes.set_title("blue: runs along x; orange: along y; dark: sticky")
 
 
-def _said(found: FeltPath) -> str:
+def _said(path: FeltPath) -> str:
     """Words for what is felt in either direction."""
     parts = []
-    for name, direction in found.directions.items():
-        if direction.clearest_d_prime > found.observer.detection_criterion:
+    for name, direction in path.directions.items():
+        if direction.clearest_d_prime > path.observer.detection_criterion:
             period = shown(direction.clearest_period, M, 3)
             parts.append(f"{period} {name} (d′ = {direction.clearest_d_prime:.2g})")
         else:
@@ -88,31 +88,31 @@ def _said(found: FeltPath) -> str:
     return ", ".join(parts)
 
 
-def show_felt(found: FeltPath) -> None:
+def show_felt(path: FeltPath) -> None:
     """Print what a path would have felt like, what it tells apart, and what that rests on."""
-    went = found.explored
+    went = path.explored
     known = "" if math.isnan(went.coverage) else f", {100 * went.coverage:.0f} % of the face"
     rows = [
-        ("Surface", found.stimulus.name, found.stimulus.kind),
-        ("Display", found.display, ""),
-        ("Path", f"{shown(went.path_length, M, 3)} in {went.touched:.3g} s", found.source),
+        ("Surface", path.stimulus.name, path.stimulus.kind),
+        ("Display", path.display, ""),
+        ("Path", f"{shown(went.path_length, M, 3)} in {went.touched:.3g} s", path.source),
         (
             "Explored",
             f"{1e3 * went.mean_speed:.3g} mm/s in the mean",
             f"{1e3 * went.peak_speed:.3g} mm/s at most, {went.passes} passes{known}",
         ),
-        ("Force", f"{found.finger.normal_force:.3g} N", found.force_is),
+        ("Force", f"{path.finger.normal_force:.3g} N", path.force_is),
     ]
-    if found.answer or found.choice:
-        rows.append(("Answered", found.choice or "–", f"right: {found.answer or 'nothing'}"))
-    console = show_rows(f"SIMULATED: {_said(found)}", rows)
+    if path.answer or path.choice:
+        rows.append(("Answered", path.choice or "–", f"right: {path.answer or 'nothing'}"))
+    console = show_rows(f"SIMULATED: {_said(path)}", rows)
     heading(console, "Evidence by direction")
     head = ("", "Runs", "Clearest rhythm", "d′", "Next", "Swing asked", "Swing felt")
-    table(console, head, [_row(name, found) for name in found.directions], fixed=(0,))
-    heading(console, f"How far from each surface by {found.compared_by}")
-    away = [(one.name, _apart(one.apart)) for one in found.nearest]
+    table(console, head, [_row(name, path) for name in path.directions], fixed=(0,))
+    heading(console, f"How far from each surface by {path.compared_by}")
+    away = [(one.name, _apart(one.apart)) for one in path.nearest]
     table(console, ("Surface", "Standard deviations"), away, fixed=(0,))
-    for said in found.assumed:
+    for said in path.assumed:
         console.print(f"  {said}", style="dim", highlight=False)
 
 
@@ -120,8 +120,8 @@ def _apart(value: float) -> str:
     return f"{value:.2f}" if math.isfinite(value) else "nothing felt"
 
 
-def _row(name: str, found: FeltPath) -> tuple[str, ...]:
-    one = found.directions[name]
+def _row(name: str, path: FeltPath) -> tuple[str, ...]:
+    one = path.directions[name]
     rhythms = one.percept.candidates
     more = [
         f"{shown(float(period), M, 3)} ({d:.2f})"

@@ -61,13 +61,13 @@ def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
             console.print(f"  {note}", style="dim", highlight=False)
 
 
-def show_power(found: PlannedPower) -> None:
+def show_power(power: PlannedPower) -> None:
     """Print how many people tell two stimuli, or displays, apart, by simulation."""
-    console, curve = plain_console(), found.curve
-    where, sides, own = f" on {found.display}", "One-sided", "score"
-    if not found.display:
-        where, sides, own = f" by {found.design}", "Two-sided", f"difference of {found.measure}"
-    heading(console, f"{found.first} against {found.second}{where}, SIMULATED")
+    console, curve = plain_console(), power.curve
+    where, sides, own = f" on {power.display}", "One-sided", "score"
+    if not power.display:
+        where, sides, own = f" by {power.design}", "Two-sided", f"difference of {power.measure}"
+    heading(console, f"{power.first} against {power.second}{where}, SIMULATED")
     head = ("people", "studies that find it", "95 % bounds of the simulation")
     table(
         console, head, _by_size(curve.participants, curve.power, curve.low, curve.high), fixed=(0,)
@@ -78,40 +78,40 @@ def show_power(found: PlannedPower) -> None:
         console.print(f"{curve.needed} people reach {100 * curve.target:.0f} % power.")
     console.print(
         f"{sides} test over people at {curve.alpha:g}; the pool's own {own} is "
-        f"{found.difference:.3g} (0 for nothing); {_rests_on(found, curve.studies)}",
+        f"{power.difference:.3g} (0 for nothing); {_rests_on(power, curve.studies)}",
         highlight=False,
     )
 
 
-def show_precision(found: PlannedPrecision) -> None:
+def show_precision(precision: PlannedPrecision) -> None:
     """Print how many people make an answer precise, and what stopping early does."""
     console = plain_console()
-    wanted = f"± {100 * found.precision:g} %"
-    if found.measure != "Weber fraction":
-        wanted = f"± {found.precision:g}"
-    heading(console, f"{found.measure} of {found.design} on {found.display}, SIMULATED")
+    wanted = f"± {100 * precision.precision:g} %"
+    if precision.measure != "Weber fraction":
+        wanted = f"± {precision.precision:g}"
+    heading(console, f"{precision.measure} of {precision.design} on {precision.display}, SIMULATED")
     head = ("people", f"studies within {wanted}", "95 % bounds", "intervals that hold the value")
-    rows = _by_size(found.participants, found.reached, found.low, found.high)
-    held = [f"{100 * share:.0f} %" for share in found.held]
+    rows = _by_size(precision.participants, precision.reached, precision.low, precision.high)
+    held = [f"{100 * share:.0f} %" for share in precision.held]
     with_held = [(*row, share) for row, share in zip(rows, held, strict=True)]
     table(console, head, with_held, fixed=(0,))
-    target = f"{100 * found.target:.0f} % of the studies"
-    if found.needed is None:
-        console.print(f"{found.participants[-1]} people do not give it in {target}.")
+    target = f"{100 * precision.target:.0f} % of the studies"
+    if precision.needed is None:
+        console.print(f"{precision.participants[-1]} people do not give it in {target}.")
     else:
-        console.print(f"{found.needed} people give it in {target}.")
+        console.print(f"{precision.needed} people give it in {target}.")
     # Beyond what so many studies scatter.
-    scatter = 2 * (0.95 * 0.05 / found.studies) ** 0.5
-    short = found.participants[found.held < 0.95 - scatter]
+    scatter = 2 * (0.95 * 0.05 / precision.studies) ** 0.5
+    short = precision.participants[precision.held < 0.95 - scatter]
     if short.size:
-        normal = "normal in the logarithm" if found.measure == "Weber fraction" else "normal"
+        normal = "normal in the logarithm" if precision.measure == "Weber fraction" else "normal"
         console.print(
             f"With {', '.join(map(str, short))} people the interval holds the value less often "
             f"than the 95 % that it promises: it takes people's values to be {normal}, which those "
             "of these people are not.",
             highlight=False,
         )
-    stops = found.sequential
+    stops = precision.sequential
     console.print(
         f"A study that adds people until its interval is that narrow stops at {stops.mean:.3g} in "
         f"the mean ({stops.low:.0f} to {stops.high:.0f}); its interval then holds the value in "
@@ -121,7 +121,8 @@ def show_precision(found: PlannedPrecision) -> None:
         highlight=False,
     )
     console.print(
-        f"The people's own value is {found.truth:.3g}; {_rests_on(found, found.studies)}",
+        f"The people's own value is {precision.truth:.3g}; "
+        f"{_rests_on(precision, precision.studies)}",
         highlight=False,
     )
 
@@ -134,10 +135,10 @@ def _by_size(people: IntArray, *shares: DimensionlessArray) -> list[tuple[str, s
     ]
 
 
-def _rests_on(found: Planned, studies: int) -> str:
+def _rests_on(planned: Planned, studies: int) -> str:
     return (
-        f"{studies} studies a size, of simulated participants '{found.observer}': what they "
-        f"assume, this assumes. Finger: {printable(found.finger)}."
+        f"{studies} studies a size, of simulated participants '{planned.observer}': what they "
+        f"assume, this assumes. Finger: {printable(planned.finger)}."
     )
 
 

@@ -146,8 +146,8 @@ def result_rows(analysis: StudyAnalysis) -> Rows:
     ]
 
 
-def _value_and_interval(found: Estimate, scale: float, unit: str) -> tuple[str, str]:
-    return f"{scale * found.value:.3g}{unit}", between(found, scale, unit)
+def _value_and_interval(estimate: Estimate, scale: float, unit: str) -> tuple[str, str]:
+    return f"{scale * estimate.value:.3g}{unit}", between(estimate, scale, unit)
 
 
 def _course_first(course: Course) -> list[str]:
@@ -170,13 +170,13 @@ def _course_first(course: Course) -> list[str]:
     return said
 
 
-def estimate_words(found: Estimate, scale: float = 1.0, unit: str = "") -> str:
+def estimate_words(estimate: Estimate, scale: float = 1.0, unit: str = "") -> str:
     """Like "0.12 (0.1 to 0.15 at 95 %)"."""
-    value = f"{scale * found.value:.3g}{unit}"
-    if math.isnan(found.low):
+    value = f"{scale * estimate.value:.3g}{unit}"
+    if math.isnan(estimate.low):
         return f"{value} (no interval)"
-    low, high = scale * found.low, scale * found.high
-    return f"{value} ({low:.3g} to {high:.3g}{unit} at {100 * found.level:g} %)"
+    low, high = scale * estimate.low, scale * estimate.high
+    return f"{value} ({low:.3g} to {high:.3g}{unit} at {100 * estimate.level:g} %)"
 
 
 def key_rows(analysis: StudyAnalysis) -> Rows:

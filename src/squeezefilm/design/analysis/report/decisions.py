@@ -104,10 +104,10 @@ def _period(value: si.Metre | None) -> str:
     return shown(value, M, 2)
 
 
-def sensitivity_rows(found: DisplaySensitivities) -> list[list[str]]:
+def sensitivity_rows(sensitivities: DisplaySensitivities) -> list[list[str]]:
     """The values that change the friction or the frequency most: path, from where to where,
     shifts of frequency and amplitude, µ′/µ, and whose range it is."""
-    most = sorted(found.rows, key=_weight, reverse=True)[:SHOWN]
+    most = sorted(sensitivities.rows, key=_weight, reverse=True)[:SHOWN]
     return [
         [
             one.path,
@@ -121,13 +121,13 @@ def sensitivity_rows(found: DisplaySensitivities) -> list[list[str]]:
     ]
 
 
-def _weight(one: DisplaySensitivity) -> float:
+def _weight(sensitivity: DisplaySensitivity) -> float:
     """A change of friction by 0.1 stands beside one of the frequency by 2 %; what could not be
     told stands last."""
-    moved = [one.low.frequency_shift, one.high.frequency_shift]
+    moved = [sensitivity.low.frequency_shift, sensitivity.high.frequency_shift]
     if None in moved:
         return -1.0
-    return max(one.friction_change / 0.1, *(abs(shift or 0.0) / 0.02 for shift in moved))
+    return max(sensitivity.friction_change / 0.1, *(abs(shift or 0.0) / 0.02 for shift in moved))
 
 
 def _value(value: float, unit: str) -> str:

@@ -104,12 +104,12 @@ def spread_words(spread: tuple[str, ...], *, law: bool) -> str:
     return ", ".join(spread) if law else " to ".join(spread)
 
 
-def group_words(one: GroupInfluence) -> str:
+def group_words(influence: GroupInfluence) -> str:
     """What a group of inputs is, and what it carries of the width, as a heading."""
-    what = {"measurable": "Could be measured", "unknown": "Nobody knows"}[one.knowledge]
+    what = {"measurable": "Could be measured", "unknown": "Nobody knows"}[influence.knowledge]
     return (
-        f"{what}: {100 * one.total:.0f} ± {si.percent(one.error)} of the variance, "
-        f"{100 * max(one.alone, 0):.0f} ± {si.percent(one.alone_error)} by itself"
+        f"{what}: {100 * influence.total:.0f} ± {si.percent(influence.error)} of the variance, "
+        f"{100 * max(influence.alone, 0):.0f} ± {si.percent(influence.alone_error)} by itself"
     )
 
 

@@ -204,12 +204,12 @@ def _electronics(made: Fabrication) -> str:
     return text_table("Without a finger", head, electronics_rows(made.load))
 
 
-def _step(one: TestStep) -> str:
+def _step(step: TestStep) -> str:
     kept = ""
-    if one.file:
-        kept = f" Kept as <code>{one.file}</code>, kind <code>{one.kind}</code>."
-    return f"<p>{as_html(one.do)}{kept}</p>\n" + text_table(
-        "What to read", STEP, step_rows(one.checks)
+    if step.file:
+        kept = f" Kept as <code>{step.file}</code>, kind <code>{step.kind}</code>."
+    return f"<p>{as_html(step.do)}{kept}</p>\n" + text_table(
+        "What to read", STEP, step_rows(step.checks)
     )
 
 

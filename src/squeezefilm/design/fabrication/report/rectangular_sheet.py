@@ -110,11 +110,11 @@ def poling_mark(sheet: Sheet, x: si.Metre, y: si.Metre, towards_viewer: bool) ->
     sheet.add(Polyline("POLING", ((x - d, y + d), (x + d, y - d))))
 
 
-def _label(sheet: Sheet, one: Electrode, shape: Rectangle, sign: float) -> None:
+def _label(sheet: Sheet, electrode: Electrode, shape: Rectangle, sign: float) -> None:
     """Number and connection in the middle of a ceramic, and its poling, where there is room."""
     x, y = shape.x + shape.length / 2, sign * (shape.y + shape.width / 2)
     # One pole looks at the viewer, who sees the outer face.
-    said = f"{one.ceramic} {one.connection}"
+    said = f"{electrode.ceramic} {electrode.connection}"
     wide, high = shape.length / sheet.unit, shape.width / sheet.unit
     long = len(said) * LETTER * NUMBER + 1.0
     u = sheet.unit
@@ -128,7 +128,7 @@ def _label(sheet: Sheet, one: Electrode, shape: Rectangle, sign: float) -> None:
         return
     text, mark = places
     sheet.label(said, *text, angle)
-    poling_mark(sheet, *mark, one.poling > 0)
+    poling_mark(sheet, *mark, electrode.poling > 0)
 
 
 def _cut_marks(sheet: Sheet, plate: RectangularPlate, cut: Cut, sign: float) -> None:

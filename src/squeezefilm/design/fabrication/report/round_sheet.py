@@ -118,7 +118,7 @@ def _plan(sheet: Sheet, made: Fabrication, body: Sector) -> None:
         sheet.add(Polyline("CENTRE_LINES", ((0.0, -r), (0.0, r))))
 
 
-def _electrode(sheet: Sheet, one: Electrode, shape: Sector) -> None:
+def _electrode(sheet: Sheet, electrode: Electrode, shape: Sector) -> None:
     u = sheet.unit
     if shape.is_whole:
         sheet.add(Arc("ELECTRODES", 0.0, 0.0, shape.outer_radius))
@@ -138,14 +138,14 @@ def _electrode(sheet: Sheet, one: Electrode, shape: Sector) -> None:
         # Beside the nodal circle of a full disc, and on a ring's own middle.
         angle = -math.pi / 4
     x, y = _polar(middle, angle)
-    said = f"{one.name} {one.connection}"
+    said = f"{electrode.name} {electrode.connection}"
     wide = (shape.end - shape.start) * middle / u
     deep = (shape.outer_radius - shape.inner_radius) / u
     if min(wide, deep) < len(said) * LETTER * NUMBER + 1.0 or deep < 8.0:
-        poling_mark(sheet, x, y, one.poling > 0)
+        poling_mark(sheet, x, y, electrode.poling > 0)
         return
     sheet.label(said, x, y + 2.2 * u)
-    poling_mark(sheet, x, y - 2.2 * u, one.poling > 0)
+    poling_mark(sheet, x, y - 2.2 * u, electrode.poling > 0)
 
 
 def _diameters(actuator: DiscPlate | AnnularStator) -> list[tuple[float, str, str]]:

@@ -143,8 +143,8 @@ def section_view(
 _Said = tuple[Part, str, str]
 
 
-def _what(one: Part) -> str:
-    return " glue" if one.kind == "glue" else ""
+def _what(part: Part) -> str:
+    return " glue" if part.kind == "glue" else ""
 
 
 def _columns(said: Sequence[_Said]) -> list[tuple[Part, str, str, float, float]]:

@@ -57,7 +57,7 @@ _SURE: si.Dimensionless = 0.95
 PAGE, DATA, TABLE, PLATES = "index.html", "result.json", "front.csv", "plates"
 
 
-def write_design(found: DesignSearch, folder: Path, *, fabrication: str = "") -> Path:
+def write_design(search: DesignSearch, folder: Path, *, fabrication: str = "") -> Path:
     """Write index.html, result.json, front.csv and plates/NAME.toml into `folder`; the page's path.
 
     `fabrication` is the address of what the plate to build is made from, relative to the page: its
@@ -65,53 +65,53 @@ def write_design(found: DesignSearch, folder: Path, *, fabrication: str = "") ->
     """
     folder = require_folder(folder)
     files: dict[str, str | bytes] = {
-        f"{PLATES}/{member.name}.toml": plate_file(found.requirements, member.evaluated.design)
-        for member in found.front
+        f"{PLATES}/{member.name}.toml": plate_file(search.requirements, member.evaluated.design)
+        for member in search.front
     }
-    files |= {DATA: json_text(found.summary()), TABLE: front_csv(found)}
-    files[PAGE] = design_page(found, fabrication=fabrication)
+    files |= {DATA: json_text(search.summary()), TABLE: front_csv(search)}
+    files[PAGE] = design_page(search, fabrication=fabrication)
     write_folder(folder, files)
     return folder / PAGE
 
 
-def front_csv(found: DesignSearch) -> str:
+def front_csv(search: DesignSearch) -> str:
     """The front as CSV: a row for each plate at a voltage, SI numbers, units in columns' names."""
     rows = []
-    for row in found.summary()["front"]:
+    for row in search.summary()["front"]:
         made = row.pop("made") or {}
         rows.append({**row, **made})
     head = list(dict.fromkeys(key for row in rows for key in row)) or ["name"]
     return csv_text(head, ([row.get(key) for key in head] for row in rows))
 
 
-def design_page(found: DesignSearch, *, fabrication: str = "") -> str:
+def design_page(search: DesignSearch, *, fabrication: str = "") -> str:
     """The page of a search as text; it is complete but for the files that it links to."""
-    requirements = found.requirements
+    requirements = search.requirements
     drawn = {
-        item.key: figure_section(item, item.heading, _svg(found, item)) if item.has(found) else ""
+        item.key: figure_section(item, item.heading, _svg(search, item)) if item.has(search) else ""
         for item in FIGURES
     }
     parts = [
-        section("To read first", verdict_list(first_sentences(found))),
-        section("What was asked for", bullets(asked_sentences(requirements) + _note(found))),
+        section("To read first", verdict_list(first_sentences(search))),
+        section("What was asked for", bullets(asked_sentences(requirements) + _note(search))),
         drawn["front"],
-        section("The plates of the front", _front_table(found)),
-        *_chosen_sections(found, fabrication),
-        *_reference_section(found),
-        section("What each limit does and costs", bullets(limit_sentences(found))),
-        section("Where nothing keeps the limits", _corners(found)),
+        section("The plates of the front", _front_table(search)),
+        *_chosen_sections(search, fabrication),
+        *_reference_section(search),
+        section("What each limit does and costs", bullets(limit_sentences(search))),
+        section("Where nothing keeps the limits", _corners(search)),
         drawn["settings"],
         drawn["screening"],
-        section("How far the screening is off", _errors(found)),
+        section("How far the screening is off", _errors(search)),
         section("What all of this assumes", bullets(requirements.assumed)),
-        section("Files", _files(found)),
+        section("Files", _files(search)),
     ]
     name = as_html(requirements.name)
-    stamp = found.provenance
+    stamp = search.provenance
     foot = (
         f"{stamped(stamp, 'SHA-256 of the display that the search started from')} ·\n"
         f"requirements <code>{escape(str(stamp.get('requirements_sha256', '')))}</code> ·\n"
-        f"seed {found.seed}. {found.computed} answers computed, {found.kept} taken from before."
+        f"seed {search.seed}. {search.computed} answers computed, {search.kept} taken from before."
     )
     return page(
         f"{name}: a design search",
@@ -122,28 +122,28 @@ def design_page(found: DesignSearch, *, fabrication: str = "") -> str:
     )
 
 
-def first_sentences(found: DesignSearch) -> Iterator[tuple[str, str]]:
+def first_sentences(search: DesignSearch) -> Iterator[tuple[str, str]]:
     """What one must know of a search, each with its kind: good, limit or doubt."""
-    requirements, chosen = found.requirements, found.chosen
-    if found.stopped:
+    requirements, chosen = search.requirements, search.chosen
+    if search.stopped:
         yield "doubt", "The search was stopped: these are the plates found until then."
     if chosen is None:
-        yield "limit", f"No plate meets the requirements. {counts_sentence(found)}"
-        for sentence in empty_front_sentences(found):
+        yield "limit", f"No plate meets the requirements. {counts_sentence(search)}"
+        for sentence in empty_front_sentences(search):
             yield "limit", sentence
     else:
-        yield "good", counts_sentence(found)
+        yield "good", counts_sentence(search)
         # What a tolerance may push across a limit is not called good.
         kept = 0.0 if chosen.made is None else chosen.made.kept
         sure = "good" if kept >= _SURE else "limit"
         made = made_sentences(requirements, chosen)[0]
-        for sentence in chosen_sentences(found)[:1]:
+        for sentence in chosen_sentences(search)[:1]:
             yield sure, f"The plate to build: {sentence} {made}"
-    compared = reference_sentences(found)
-    if compared and found.front:
-        kind = "good" if found.beats_reference else "limit"
+    compared = reference_sentences(search)
+    if compared and search.front:
+        kind = "good" if search.beats_reference else "limit"
         yield kind, " ".join(dict.fromkeys((compared[0], compared[-1])))
-    if gain := limit_gain(found):
+    if gain := limit_gain(search):
         yield "limit", gain
     if chosen is not None and chosen.made is not None and chosen.made.kept < 0.9:
         yield (
@@ -158,27 +158,27 @@ def first_sentences(found: DesignSearch) -> Iterator[tuple[str, str]]:
     )
 
 
-def _note(found: DesignSearch) -> list[str]:
-    return [found.requirements.note] if found.requirements.note else []
+def _note(search: DesignSearch) -> list[str]:
+    return [search.requirements.note] if search.requirements.note else []
 
 
-def _svg(found: DesignSearch, item: FigureOf) -> str:
+def _svg(search: DesignSearch, item: FigureOf) -> str:
     """A figure as SVG; marks of plates have titles that a browser shows under the pointer."""
-    figure = item.draw(found)
+    figure = item.draw(search)
     svg = style.svg(figure, item.key, " ".join(figure.get_suptitle().split()))
     titles = {
         member.name: escape(
-            f"{member.name}: {chosen_words(found.requirements, member.evaluated.design)}; "
+            f"{member.name}: {chosen_words(search.requirements, member.evaluated.design)}; "
             + ", ".join(
                 f"{head} {text}"
                 for head, text in zip(
-                    front_head(found.requirements),
-                    front_row(found.requirements, member),
+                    front_head(search.requirements),
+                    front_row(search.requirements, member),
                     strict=True,
                 )
             )
         )
-        for member in found.front
+        for member in search.front
     }
     return re.sub(
         rf'<g id="{item.key}-{MARKED}([0-9a-f]+)-\d+">',
@@ -187,14 +187,14 @@ def _svg(found: DesignSearch, item: FigureOf) -> str:
     )
 
 
-def _front_table(found: DesignSearch) -> str:
-    if not found.front:
+def _front_table(search: DesignSearch) -> str:
+    if not search.front:
         return "<p>No plate meets the requirements.</p>"
-    requirements = found.requirements
+    requirements = search.requirements
     head = ["name", "what was chosen", *front_head(requirements)]
     rows, kinds = [], []
-    for member in found.front:
-        chosen = member is found.chosen
+    for member in search.front:
+        chosen = member is search.chosen
         # Where the marks of the figure lead to.
         anchor = (
             f'<a id="front-row-{member.name}" href="{PLATES}/{member.name}.toml">{member.name}</a>'
@@ -207,34 +207,34 @@ def _front_table(found: DesignSearch) -> str:
             ]
         )
         kinds.append("assumed" if chosen else "")
-    if found.reference is not None and not found.reference.reason:
-        own = map(as_html, row_of(requirements, found.reference))
+    if search.reference is not None and not search.reference.reason:
+        own = map(as_html, row_of(requirements, search.reference))
         rows.append([as_html(requirements.compare_with), "to compare with", *own, ""])
     caption = "A name leads to the plate's file; the yield is of plates made with the tolerances"
     return html_table(caption, map(as_html, head), rows, kinds=kinds)
 
 
-def _chosen_sections(found: DesignSearch, fabrication: str) -> Iterator[str]:
-    chosen = found.chosen
+def _chosen_sections(search: DesignSearch, fabrication: str) -> Iterator[str]:
+    chosen = search.chosen
     if chosen is None:
         return
     more = f'<p><a href="{escape(fabrication)}">What it is made from: drawings and parts</a></p>'
     yield section(
         f"The plate to build: {chosen.name}",
-        bullets(chosen_sentences(found))
+        bullets(chosen_sentences(search))
         + (more if fabrication else "")
         + text_table(
             "Its numbers, by the solved plate",
             ("criterion", "value", "limit", "margin", "90 % of those made"),
-            _criteria_rows(found, chosen),
+            _criteria_rows(search, chosen),
         ),
     )
-    if effects := effect_rows(found.requirements, chosen):
+    if effects := effect_rows(search.requirements, chosen):
         yield section(
             "What each tolerance does to it",
             text_table(
                 "One standard deviation more of each, the others as drawn",
-                ("tolerance", *effect_head(found.requirements)),
+                ("tolerance", *effect_head(search.requirements)),
                 effects,
             ),
         )
@@ -242,11 +242,11 @@ def _chosen_sections(found: DesignSearch, fabrication: str) -> Iterator[str]:
         yield section("What was warned of when it was solved", bullets(told))
 
 
-def _criteria_rows(found: DesignSearch, member: FrontMember) -> Iterator[tuple[str, ...]]:
+def _criteria_rows(search: DesignSearch, member: FrontMember) -> Iterator[tuple[str, ...]]:
     """Every criterion of a plate that is known or was asked for: value, limit, margin, interval of
     those made."""
-    bounds = {one.key: bound for one, bound in bounded(found.requirements.limits)}
-    left = margins(found.requirements, member.evaluated)
+    bounds = {one.key: bound for one, bound in bounded(search.requirements.limits)}
+    left = margins(search.requirements, member.evaluated)
     made = {} if member.made is None else member.made.intervals
     for key, criterion in CRITERIA.items():
         value = criterion.value(member.evaluated.numbers)
@@ -262,10 +262,10 @@ def _criteria_rows(found: DesignSearch, member: FrontMember) -> Iterator[tuple[s
         )
 
 
-def _reference_section(found: DesignSearch) -> Iterator[str]:
-    if not (said := reference_sentences(found)):
+def _reference_section(search: DesignSearch) -> Iterator[str]:
+    if not (said := reference_sentences(search)):
         return
-    reference, chosen = found.reference, found.chosen
+    reference, chosen = search.reference, search.chosen
     table = ""
     if reference is not None and not reference.reason and chosen is not None:
         rows = [
@@ -277,13 +277,13 @@ def _reference_section(found: DesignSearch) -> Iterator[str]:
             for key, criterion in CRITERIA.items()
             if key in reference.numbers
         ]
-        head = ("criterion", found.requirements.compare_with, f"{chosen.name}, to build")
+        head = ("criterion", search.requirements.compare_with, f"{chosen.name}, to build")
         table = text_table("Both, judged in the same way", head, rows)
-    yield section(f"Beside {as_html(found.requirements.compare_with)}", bullets(said) + table)
+    yield section(f"Beside {as_html(search.requirements.compare_with)}", bullets(said) + table)
 
 
-def _corners(found: DesignSearch) -> str:
-    if not found.corners:
+def _corners(search: DesignSearch) -> str:
+    if not search.corners:
         return (
             "<p>In every part of every range that was looked at often enough, something keeps the "
             "limits.</p>"
@@ -297,15 +297,15 @@ def _corners(found: DesignSearch) -> str:
             else f"{100 * corner.share:.0f} % cannot be built",
             corner.example,
         )
-        for corner in found.corners
+        for corner in search.corners
     ]
     head = ("part of the space", "designs", "most often broken", "for example")
     return text_table("Parts without a design that keeps all limits", head, rows)
 
 
-def _errors(found: DesignSearch) -> str:
+def _errors(search: DesignSearch) -> str:
     rows = []
-    for space, correction in zip(found.requirements.spaces, found.corrections, strict=True):
+    for space, correction in zip(search.requirements.spaces, search.corrections, strict=True):
         for key, raw in {} if correction is None else correction.raw.items():
             after = correction.errors[key] if correction is not None else raw
             what = f"{space.shape}: {CRITERIA[key].said}"
@@ -315,11 +315,11 @@ def _errors(found: DesignSearch) -> str:
         ("number", "as screened", "corrected, on plates left out"),
         rows,
     )
-    return bullets(rank_sentences(found)) + (table if rows else "")
+    return bullets(rank_sentences(search)) + (table if rows else "")
 
 
-def _files(found: DesignSearch) -> str:
-    plates = [f"{PLATES}/{member.name}.toml" for member in found.front]
+def _files(search: DesignSearch) -> str:
+    plates = [f"{PLATES}/{member.name}.toml" for member in search.front]
     return (
         f"<p>{links((DATA, TABLE, *plates))}</p>"
         "<p>A plate's file is a display like any other: <code>squeezefilm analyze "

@@ -32,72 +32,72 @@ from squeezefilm.design.sweep.swept import counted
 _CORNERS, _FRONT = 8, 30
 
 
-def show_design(found: DesignSearch) -> None:
+def show_design(search: DesignSearch) -> None:
     """Print a search: what was asked, the front, the plate to build, and why not others."""
     console = plain_console()
-    requirements = found.requirements
+    requirements = search.requirements
     heading(console, requirements.title)
     _say(console, asked_sentences(requirements))
     heading(console, "What was found")
-    console.print(counts_sentence(found))
-    if found.stopped:
+    console.print(counts_sentence(search))
+    if search.stopped:
         console.print("! The search was stopped: these are the plates found until then.")
-    if found.front:
-        _show_front(console, found)
+    if search.front:
+        _show_front(console, search)
     else:
         console.print(
             "No plate meets the requirements. What each limit costs is below: ease the one that "
             "most designs break, or give the shapes more room."
         )
-        _say(console, empty_front_sentences(found))
-        for reason, count in counted(o.reason for o in found.screened if o.reason)[:3]:
+        _say(console, empty_front_sentences(search))
+        for reason, count in counted(o.reason for o in search.screened if o.reason)[:3]:
             console.print(f"! {many(count, 'design')} cannot be built: {printable(reason)}")
-    if compared := reference_sentences(found):
+    if compared := reference_sentences(search):
         heading(console, f"Beside {requirements.compare_with}")
         _say(console, compared)
     heading(console, "What each limit does")
-    _say(console, limit_sentences(found))
-    if found.corners:
+    _say(console, limit_sentences(search))
+    if search.corners:
         heading(console, "Where nothing keeps the limits")
         _say(
             console,
-            [f"{corner_in_words(corner)}." for corner in found.corners[:_CORNERS]],
+            [f"{corner_in_words(corner)}." for corner in search.corners[:_CORNERS]],
         )
-        if len(found.corners) > _CORNERS:
-            console.print(f"{len(found.corners) - _CORNERS} more stand in the files of --out")
+        if len(search.corners) > _CORNERS:
+            console.print(f"{len(search.corners) - _CORNERS} more stand in the files of --out")
     heading(console, "How good the screening was")
-    _say(console, rank_sentences(found))
+    _say(console, rank_sentences(search))
     heading(console, "What all of this assumes")
     _say(console, [f"{one[0].upper()}{one[1:]}." for one in requirements.assumed])
-    console.print(f"{found.computed} answers computed, {found.kept} taken from before")
+    console.print(f"{search.computed} answers computed, {search.kept} taken from before")
 
 
 def _say(console: Console, sentences: list[str]) -> None:
     bullets(console, [("–", sentence, "") for sentence in sentences])
 
 
-def _show_front(console: Console, found: DesignSearch) -> None:
-    requirements = found.requirements
-    members = found.front[:_FRONT]
+def _show_front(console: Console, search: DesignSearch) -> None:
+    requirements = search.requirements
+    members = search.front[:_FRONT]
     if len(members) > 1:
         heading(console, "The front: what each plate does")
         head = [in_lines(one) for one in ("name", *front_head(requirements))]
         rows = [[member.name, *front_row(requirements, member)] for member in members]
-        if found.reference is not None and not found.reference.reason:
-            rows.append(["to compare", *row_of(requirements, found.reference), ""])
-        looks = {found.chosen_name: "bold"}
+        if search.reference is not None and not search.reference.reason:
+            rows.append(["to compare", *row_of(requirements, search.reference), ""])
+        looks = {search.chosen_name: "bold"}
         table(console, head, rows, fixed=(0,), styles=lambda row: looks.get(row[0], ""))
         heading(console, "The front: what was chosen")
         made_of = [
             [member.name, chosen_words(requirements, member.evaluated.design)] for member in members
         ]
         table(console, ("", ""), made_of, fixed=(0,))
-        if len(found.front) > len(members):
-            console.print(f"{len(found.front) - len(members)} more rows stand in front.csv")
+        if len(search.front) > len(members):
+            console.print(f"{len(search.front) - len(members)} more rows stand in front.csv")
     heading(console, "The plate to build")
-    _say(console, chosen_sentences(found))
-    assert found.chosen is not None, "there is a front"
-    if effects := effect_rows(requirements, found.chosen):
+    _say(console, chosen_sentences(search))
+    assert search.chosen is not None, "there is a front"
+    if effects := effect_rows(requirements, search.chosen):
         heading(console, "What one standard deviation more of each tolerance does to it")
         head = [in_lines(one) for one in ("", *effect_head(requirements))]
         table(console, head, effects)

@@ -109,52 +109,52 @@ def asked_sentences(requirements: Requirements) -> list[str]:
     ]
 
 
-def counts_sentence(found: DesignSearch) -> str:
+def counts_sentence(search: DesignSearch) -> str:
     """How many designs were looked at, and what is left of them."""
-    screened, several = len(found.screened), len(found.solved) > found.plates_solved
-    feasible = sum(candidate.is_feasible for candidate in found.screened)
-    failed = sum(bool(candidate.reason) for candidate in found.screened)
+    screened, several = len(search.screened), len(search.solved) > search.plates_solved
+    feasible = sum(candidate.is_feasible for candidate in search.screened)
+    failed = sum(bool(candidate.reason) for candidate in search.screened)
     return (
         f"{many(screened, 'design')} screened, of which {feasible} keep all limits"
         + (f" and {failed} cannot be built or computed" if failed else "")
-        + f"; {many(found.plates_solved, 'plate')} solved in three dimensions"
+        + f"; {many(search.plates_solved, 'plate')} solved in three dimensions"
         + (", each judged at several voltages" if several else "")
-        + f", of which {found.plates_feasible} keep them; "
+        + f", of which {search.plates_feasible} keep them; "
         + (
-            f"{front_words(found)} that none other beats: the front."
-            if found.front
+            f"{front_words(search)} that none other beats: the front."
+            if search.front
             else "the front is empty."
         )
     )
 
 
-def empty_front_sentences(found: DesignSearch) -> list[str]:
+def empty_front_sentences(search: DesignSearch) -> list[str]:
     """What stands in the way where no plate meets the requirements: the two limits that conflict,
     and the nearest plate; none where there is a front."""
-    if found.front:
+    if search.front:
         return []
     said = []
-    bounds = {one.key: one.limit_said(bound) for one, bound in bounded(found.requirements.limits)}
-    if (conflict := conflict_of(found.screened)) is not None:
+    bounds = {one.key: one.limit_said(bound) for one, bound in bounded(search.requirements.limits)}
+    if (conflict := conflict_of(search.screened)) is not None:
         first, second, miss = conflict
         said.append(
             f"Two limits conflict: {bounds[first]}, and {bounds[second]}. Screened designs keep "
             f"each, and none both; the best misses one by {si.percent(miss, 1)} of it."
         )
-    if (nearest := nearest_of(found.screened)) is not None and nearest.broken:
+    if (nearest := nearest_of(search.screened)) is not None and nearest.broken:
         breaks = "; ".join(breach.sentence for breach in nearest.broken)
         said.append(
-            f"The nearest that was screened: {chosen_words(found.requirements, nearest.design)}. "
+            f"The nearest that was screened: {chosen_words(search.requirements, nearest.design)}. "
             f"Of it {breaks}."
         )
     return said
 
 
-def front_words(found: DesignSearch) -> str:
+def front_words(search: DesignSearch) -> str:
     """How many plates the front has, and at how many voltages in all where these are more."""
-    plates = many(found.plates_on_front, "plate")
-    count = len(found.front)
-    return plates if count == found.plates_on_front else f"{plates}, at {count} voltages in all,"
+    plates = many(search.plates_on_front, "plate")
+    count = len(search.front)
+    return plates if count == search.plates_on_front else f"{plates}, at {count} voltages in all,"
 
 
 def many(count: int, word: str) -> str:
@@ -189,31 +189,31 @@ def row_of(requirements: Requirements, one: Evaluated) -> list[str]:
     return [CRITERIA[key].shown(one.numbers.get(key)) for key in _told(requirements)]
 
 
-def chosen_sentences(found: DesignSearch) -> list[str]:
+def chosen_sentences(search: DesignSearch) -> list[str]:
     """Which plate is chosen, why, what it is made of, which limits are nearest, how many of those
     made keep them."""
-    chosen = found.chosen
+    chosen = search.chosen
     if chosen is None:
         return []
-    goals = [criterion_of(objective) for objective in found.requirements.objectives]
+    goals = [criterion_of(objective) for objective in search.requirements.objectives]
     has = " and ".join(
         f"{goal.said} {goal.shown(chosen.evaluated.numbers.get(goal.key))}" for goal in goals
     )
     best = " and ".join(
-        goal.shown(float(found.objectives[:, k].min())) for k, goal in enumerate(goals)
+        goal.shown(float(search.objectives[:, k].min())) for k, goal in enumerate(goals)
     )
     said = [
         f"{chosen.name} has {has}. Of the front it is nearest to the best of every objective "
         f"({best}), each measured from the front's best to its worst."
-        if len(found.front) > 1
+        if len(search.front) > 1
         else f"{chosen.name} has {has}. It is the only plate of the front.",
-        f"It is made of {chosen_words(found.requirements, chosen.evaluated.design)}.",
+        f"It is made of {chosen_words(search.requirements, chosen.evaluated.design)}.",
     ]
-    near = list(margins(found.requirements, chosen.evaluated).items())[:2]
+    near = list(margins(search.requirements, chosen.evaluated).items())[:2]
     if near:
         told = " and ".join(f"{CRITERIA[key].said} ({margin_words(by)})" for key, by in near)
         said.append(f"Its nearest limits: {told}.")
-    return [*said, *made_sentences(found.requirements, chosen)]
+    return [*said, *made_sentences(search.requirements, chosen)]
 
 
 def margin_words(margin: float) -> str:
@@ -284,9 +284,9 @@ def _effect(objective: str, value: float | None) -> str:
     return signed(value, one.unit, 2)
 
 
-def reference_sentences(found: DesignSearch) -> list[str]:
+def reference_sentences(search: DesignSearch) -> list[str]:
     """What the display to compare with left on the table, or why nothing can be said of it."""
-    reference, requirements = found.reference, found.requirements
+    reference, requirements = search.reference, search.requirements
     if not requirements.compare_with:
         return []
     name = requirements.compare_with
@@ -303,12 +303,12 @@ def reference_sentences(found: DesignSearch) -> list[str]:
     said += [f"It breaks a limit: {one.sentence}." for one in reference.broken]
     if not reference.broken:
         said.append("It keeps every limit that could be asked of it.")
-    if not found.front:
+    if not search.front:
         return [*said, "No plate was found to set beside it."]
-    said += [_left(found, k, own) for k in range(len(goals))]
-    better = found.plates_better
+    said += [_left(search, k, own) for k in range(len(goals))]
+    better = search.plates_better
     said.append(
-        f"Of {many(found.plates_on_front, 'plate')} of the front {better} beat it: better in an "
+        f"Of {many(search.plates_on_front, 'plate')} of the front {better} beat it: better in an "
         "objective and worse in none."
         if better
         else "No plate of the front is better than it in an objective and worse in none."
@@ -316,11 +316,11 @@ def reference_sentences(found: DesignSearch) -> list[str]:
     return said
 
 
-def _left(found: DesignSearch, k: int, own: tuple[float, ...]) -> str:
+def _left(search: DesignSearch, k: int, own: tuple[float, ...]) -> str:
     """How much better one objective can be where no other is worse."""
-    goals = [criterion_of(objective) for objective in found.requirements.objectives]
+    goals = [criterion_of(objective) for objective in search.requirements.objectives]
     others = [j for j in range(len(goals)) if j != k]
-    rows = found.objectives
+    rows = search.objectives
     as_good = np.flatnonzero(np.all(rows[:, others] <= np.array(own)[others], axis=1))
     beside = " and ".join(goals[j].said for j in others)
     now = goals[k].shown(own[k])
@@ -330,27 +330,27 @@ def _left(found: DesignSearch, k: int, own: tuple[float, ...]) -> str:
             text = goals[k].shown(float(rows[best, k]))
             return (
                 f"With {beside} no worse, {goals[k].said} can be {text} in place of {now} "
-                f"({found.front[best].name})."
+                f"({search.front[best].name})."
             )
     return f"With {beside} no worse, no plate was found whose {goals[k].said} is below {now}."
 
 
-def rank_sentences(found: DesignSearch) -> list[str]:
+def rank_sentences(search: DesignSearch) -> list[str]:
     """How well the screening ranked what was then solved."""
     said = [
         f"Screening and solving rank the solved plates by {criterion_of(name).said} with "
         f"Spearman's ρ = {value:.2f}."
-        for name, value in found.ranks.items()
+        for name, value in search.ranks.items()
     ]
     return said or ["Too few plates were solved to say how good the screening was."]
 
 
-def limit_sentences(found: DesignSearch) -> list[str]:
+def limit_sentences(search: DesignSearch) -> list[str]:
     """What each limit does to the screened designs; those that none breaks in one sentence, those
     that none was asked in another."""
-    count = len(found.screened)
-    said = [limit_in_words(limit, count) for limit in found.limits if limit.broken]
-    idle = [limit for limit in found.limits if not limit.broken]
+    count = len(search.screened)
+    said = [limit_in_words(limit, count) for limit in search.limits if limit.broken]
+    idle = [limit for limit in search.limits if not limit.broken]
     for head, those in (
         ("No screened design breaks", [one for one in idle if one.key not in OF_SOLVED]),
         ("Asked of solved plates only", [one for one in idle if one.key in OF_SOLVED]),
@@ -360,9 +360,9 @@ def limit_sentences(found: DesignSearch) -> list[str]:
     return said or ["No limit was asked for."]
 
 
-def limit_gain(found: DesignSearch) -> str:
+def limit_gain(search: DesignSearch) -> str:
     """The limit without which the objectives could be better, in a sentence; "" for none."""
-    for limit in found.limits:
+    for limit in search.limits:
         if limit.best_without:
             return (
                 f"The limit on {CRITERIA[limit.key].said} costs: without it there would be "

@@ -77,41 +77,41 @@ def wishes(
 
 
 def sweep_page(
-    found: Sweep, files: Sequence[str], better: tuple[tuple[str, int], ...] = ()
+    sweep: Sweep, files: Sequence[str], better: tuple[tuple[str, int], ...] = ()
 ) -> dict[str, str | bytes]:
     """The page index.html and its pictures by name; `better` as of `wishes`."""
-    varied, effects = varied_values(found), effects_of(found)
+    varied, effects = varied_values(sweep), effects_of(sweep)
     figures: dict[str, tuple[str, Figure]] = {}
-    if not any(axis.sampled for axis in found.axes):
-        figures["sweep"] = ("The sweep", sweep_figure(found))
-    figures["effects"] = ("Main effects", effects_figure(found))
+    if not any(axis.sampled for axis in sweep.axes):
+        figures["sweep"] = ("The sweep", sweep_figure(sweep))
+    figures["effects"] = ("Main effects", effects_figure(sweep))
     if effects:
         figures["shares"] = ("What decides", shares_figure(effects, varied))
-    if len(found.columns) > 1:
-        figures["tradeoffs"] = ("Trade-offs", tradeoffs_figure((found, better)))
-    title = escape(printable(found.title))
+    if len(sweep.columns) > 1:
+        figures["tradeoffs"] = ("Trade-offs", tradeoffs_figure((sweep, better)))
+    title = escape(printable(sweep.title))
     return {
         **picture_files(figures),
         "index.html": page(
             f"{title}: a sweep",
-            f"{title}: a sweep of {len(found.reasons)} points",
-            f"asked of {escape(', '.join(found.verbs))}, by squeezefilm; "
-            f"finger: {escape(printable(found.provenance['finger']))}",
+            f"{title}: a sweep of {len(sweep.reasons)} points",
+            f"asked of {escape(', '.join(sweep.verbs))}, by squeezefilm; "
+            f"finger: {escape(printable(sweep.provenance['finger']))}",
             picture_sections(figures)
             + _decisive(effects, varied)
-            + _best(found, better)
-            + section("Points without an answer", bullets(_reasons(found)))
+            + _best(sweep, better)
+            + section("Points without an answer", bullets(_reasons(sweep)))
             + section(
-                "Warnings", bullets(f"{text} (at {count} points)" for text, count in found.warnings)
+                "Warnings", bullets(f"{text} (at {count} points)" for text, count in sweep.warnings)
             ),
-            f"{stamped(found.provenance, 'SHA-256 of the display')}. Beside this page: "
+            f"{stamped(sweep.provenance, 'SHA-256 of the display')}. Beside this page: "
             f"{links(files)}.",
         ),
     }
 
 
-def _reasons(found: Sweep) -> list[str]:
-    said = counted(reason for reason in found.reasons if reason)
+def _reasons(sweep: Sweep) -> list[str]:
+    said = counted(reason for reason in sweep.reasons if reason)
     return [f"{reason} ({count} points)" for reason, count in said]
 
 
@@ -145,7 +145,7 @@ def _share(share: float, error: float) -> str:
     return f"{share:.1%}" if error == 0 else f"{share:.1%} ± {error:.1%}"
 
 
-def _best(found: Sweep, better: tuple[tuple[str, int], ...]) -> str:
+def _best(sweep: Sweep, better: tuple[tuple[str, int], ...]) -> str:
     """The rows that no other beats in what is wished for."""
     if not better:
         return section(
@@ -155,7 +155,7 @@ def _best(found: Sweep, better: tuple[tuple[str, int], ...]) -> str:
             "and listed here.</p>",
         )
     wanted = dict(better)
-    columns = [c for c in found.columns if c.name in wanted]
+    columns = [c for c in sweep.columns if c.name in wanted]
     values = np.column_stack([wanted[c.name] * c.values for c in columns])
     rows = np.flatnonzero(non_dominated(values))
     rows = rows[np.argsort(values[rows, 0], kind="stable")]
@@ -165,7 +165,7 @@ def _best(found: Sweep, better: tuple[tuple[str, int], ...]) -> str:
             varied_value,
             scaled(varied_value.values, varied_value.unit) if not varied_value.words else (1.0, ""),
         )
-        for varied_value in varied_values(found)
+        for varied_value in varied_values(sweep)
     }
     head = [
         "Row",
@@ -183,16 +183,16 @@ def _best(found: Sweep, better: tuple[tuple[str, int], ...]) -> str:
         ]
         for row in rows[:_MOST_ROWS].tolist()
     ]
-    caption = f"{len(rows)} of {len(found.reasons)} points; rows are those of the table, from 1"
+    caption = f"{len(rows)} of {len(sweep.reasons)} points; rows are those of the table, from 1"
     return section("Points that no other beats", text_table(caption, head, lines))
 
 
 KINDS = ("csv", "parquet")
 
 
-def sweep_csv(found: Sweep) -> str:
+def sweep_csv(sweep: Sweep) -> str:
     """The table as CSV: a header with units, a row for each point, empty where there is nothing."""
-    columns = found.table()
+    columns = sweep.table()
     return csv_text(list(columns), zip(*columns.values(), strict=True))
 
 
@@ -203,7 +203,7 @@ def require_kind(table: str) -> None:
 
 
 def write_sweep(
-    found: Sweep,
+    sweep: Sweep,
     folder: Path,
     *,
     table: str = "csv",
@@ -217,17 +217,17 @@ def write_sweep(
     folder cannot be written to.
     """
     require_kind(table)
-    better = wishes([(column.name, column.unit) for column in found.columns], less, more)
+    better = wishes([(column.name, column.unit) for column in sweep.columns], less, more)
     folder = require_folder(folder)
     name = f"sweep.{table}"
-    summary = found.summary()
+    summary = sweep.summary()
     files: dict[str, str | bytes] = {
-        name: sweep_csv(found)
+        name: sweep_csv(sweep)
         if table == "csv"
-        else parquet_of_columns(found.table(), summary["provenance"]),
+        else parquet_of_columns(sweep.table(), summary["provenance"]),
         "sweep.json": json_text(summary),
     }
-    files |= sweep_page(found, list(files), better)
-    files.setdefault("sweep.png", style.png(sweep_figure(found)))
+    files |= sweep_page(sweep, list(files), better)
+    files.setdefault("sweep.png", style.png(sweep_figure(sweep)))
     write_folder(folder, files)
     return folder / "index.html"

@@ -25,16 +25,16 @@ _HEAD = 9
 _ALIKE = 0.6  # below it another mode may have taken its place
 
 
-def sweep_columns(found: Sweep) -> list[tuple[str, list[str]]]:
+def sweep_columns(sweep: Sweep) -> list[tuple[str, list[str]]]:
     """What was varied and what was asked for as columns: a heading with the unit, and a cell for
     each point."""
-    every = list(itertools.product(*(range(len(axis)) for axis in found.axes)))
+    every = list(itertools.product(*(range(len(axis)) for axis in sweep.axes)))
     columns = []
-    for number, axis in enumerate(found.axes):
+    for number, axis in enumerate(sweep.axes):
         for one in each_name(axis):
             steps = [step_words(one, k) for k in range(len(one))]
             columns.append((name_of(one), [steps[point[number]] for point in every]))
-    for column in found.columns:
+    for column in sweep.columns:
         symbol, words = cells(column.values, column.unit)
         columns.append((labelled(name_of(column), symbol), words))
     return columns
@@ -51,12 +51,12 @@ def in_lines(name: str) -> str:
     return "\n".join(line.rstrip() for line in lines)
 
 
-def show_sweep(found: Sweep) -> None:
+def show_sweep(sweep: Sweep) -> None:
     """Print a sweep."""
     console = plain_console()
-    points = len(found.reasons)
-    heading(console, f"{found.title}: {points} points")
-    columns = sweep_columns(found)
+    points = len(sweep.reasons)
+    heading(console, f"{sweep.title}: {points} points")
+    columns = sweep_columns(sweep)
     head = [name for name, _ in columns]
     rows = list(zip(*(words for _, words in columns), strict=True))
     if len(head) > MOST_COLUMNS and len(rows) <= MOST_COLUMNS:
@@ -73,20 +73,20 @@ def show_sweep(found: Sweep) -> None:
             rows = [*rows[: MOST_ROWS // 2], cut, *rows[-MOST_ROWS // 2 :]]
         shown = [row[:MOST_COLUMNS] for row in rows]
         several = [in_lines(name) for name in head[:MOST_COLUMNS]]
-        table(console, several, shown, fixed=range(len(found.axes)))
+        table(console, several, shown, fixed=range(len(sweep.axes)))
         if len(head) > MOST_COLUMNS:
             console.print(f"{len(head) - MOST_COLUMNS} more columns stand in the files of --out")
-    reasons = counted(reason for reason in found.reasons if reason)
+    reasons = counted(reason for reason in sweep.reasons if reason)
     for reason, count in reasons[:_TOLD]:
         said = "were not computed yet" if reason == NOT_YET else f"have no answer: {reason}"
         console.print(f"! {count} of {points} points {said}")
     if len(reasons) > _TOLD:
         console.print(f"! {len(reasons) - _TOLD} more reasons stand in the table's last column")
-    if found.follows:
-        lost = sum(follow.lost for follow in found.follows)
-        least = min(follow.least_likeness for follow in found.follows)
+    if sweep.follows:
+        lost = sum(follow.lost for follow in sweep.follows)
+        least = min(follow.least_likeness for follow in sweep.follows)
         console.print(
-            f"{len(found.follows)} modes followed by their shapes, {lost or 'none'} of them lost "
+            f"{len(sweep.follows)} modes followed by their shapes, {lost or 'none'} of them lost "
             f"on the way; least likeness from one point to the next {least:.2f}"
             + (
                 '; smaller steps, or a wider band (--vary "band=20 kHz:50 kHz"), follow further'
@@ -95,14 +95,14 @@ def show_sweep(found: Sweep) -> None:
             )
         )
     # First what is so at some of the points only: that is what the points differ by.
-    for text, count in sorted(found.warnings, key=lambda warning: warning[1] == points)[:_TOLD]:
+    for text, count in sorted(sweep.warnings, key=lambda warning: warning[1] == points)[:_TOLD]:
         console.print(
             f"! {printable(text)} (at {count} of {points} points, numbers as at one of them)"
         )
-    if len(found.warnings) > _TOLD:
-        console.print(f"! {len(found.warnings) - _TOLD} more warnings stand in sweep.json")
-    console.print(f"Finger: {printable(found.provenance['finger'])}")
-    console.print(f"{found.computed} answers computed, {found.kept} taken from before")
+    if len(sweep.warnings) > _TOLD:
+        console.print(f"! {len(sweep.warnings) - _TOLD} more warnings stand in sweep.json")
+    console.print(f"Finger: {printable(sweep.provenance['finger'])}")
+    console.print(f"{sweep.computed} answers computed, {sweep.kept} taken from before")
 
 
 def show_answers() -> None:
