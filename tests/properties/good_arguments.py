@@ -325,7 +325,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "model": "paper2008",
         "place": None,
     },
-    "physics.render.resonator.square_swing.least_cycle": {"swing": 1e-6},
     "physics.render.texture.composition.Sequence": {
         "textures": Later(lambda: (made(RelativeFriction),) * 2),
         "edges": (1e-3,),
@@ -337,11 +336,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "other": Later(lambda: made(RelativeFriction))
     },
     "physics.render.texture.coordinate.require_fade": {"value": 1e-4, "at_most": 1e-3},
-    "physics.render.fidelity.survival.fidelity_table": {
-        **_FALL,
-        "spatial_periods": (2e-3,),
-        "speeds": (1.0,),
-    },
     "core.calibration_record.CalibratedAnswer": {"said": "mass", "draws": (0.02, 0.021)},
     "core.calibration_record.ComparedAnswer": {
         "said": "mass",
@@ -390,7 +384,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "physics.render.program.renderer.Renderer.tick": {"t": 0.001},
     "physics.render.motion.sensor.SensorModel": {"rate": 1e3, "noise": 1e-6},
     "physics.render.motion.sensor.sensor_stream": {"position": np.cos, "duration": 0.02},
-    "physics.render.fidelity.trace.friction_trace": _FALL,
     "physics.render.program.wave.WaveCompensation": {"factors": (1.0, 1.0, 1.0, 1.0)},
     "physics.render.program.wave.WaveCompensation.from_ripple": {
         "position": _WAVE,

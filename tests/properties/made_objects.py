@@ -89,7 +89,7 @@ from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke, 
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.made_for import MadeForSpeed
-from squeezefilm.physics.render.program.renderer import Played, Renderer
+from squeezefilm.physics.render.program.renderer import Renderer
 from squeezefilm.physics.render.program.wave import WaveCompensation
 from squeezefilm.physics.render.resonator.compensation import (
     CompensatedDrive,
@@ -268,7 +268,6 @@ MADE: dict[Any, Callable[[], Any]] = {
         made(RingBody), made(AnnularMode), np.array([30e3]), (0,), 2
     ),
     OverPath: lambda: OverPath(made(FingerPath)),
-    Played: lambda: Played(made(Program)),
     AlongX: AlongX,
     AlongY: AlongY,
 }  # fmt: skip

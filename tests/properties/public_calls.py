@@ -184,7 +184,8 @@ NOT_CALLED = {
     physics.plate.solid.volume.mode_fields physics.plate.solid.volume.plate_volume
     physics.render.texture.coordinate.Coordinate.at physics.render.texture.coordinate.FromPoint.at
     physics.render.fidelity.report.fidelity_report physics.render.fidelity.report.strongest_lines
-    physics.render.fidelity.trace.friction_of physics.render.fidelity.trace.per_sample
+    physics.render.fidelity.rendered_stroke.friction_of
+    physics.render.fidelity.rendered_stroke.per_sample
     physics.render.motion.estimator.MotionCounts.of physics.render.program.renderer.counters_of
     """,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": """

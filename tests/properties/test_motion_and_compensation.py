@@ -11,8 +11,11 @@ from hypothesis import strategies as st
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.physics.render.motion import kernel
 from squeezefilm.physics.render.motion.estimator import MotionEstimator, MotionModel
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope, compensated_drive
-from squeezefilm.physics.render.resonator.square_swing import square_swing_compensated
+from squeezefilm.physics.render.resonator.compensation import (
+    DrivenEnvelope,
+    compensated_drive,
+    square_swing_compensated,
+)
 
 wishes = st.lists(st.floats(0.0, 2e-6), min_size=1, max_size=60).map(np.array)
 envelopes = st.builds(

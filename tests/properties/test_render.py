@@ -7,12 +7,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from squeezefilm.physics.render.motion.stroke import Stroke
+from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.physics.render.resonator.envelope import (
-    envelope_response,
     fastest_speed,
     finest_period,
     sine_swing_kept,
-    square_swing_kept,
 )
 from squeezefilm.physics.render.texture.levels import Amplitude
 from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
@@ -67,64 +66,33 @@ def test_a_grating_depends_on_x_alone(
     assert texture(x, y, v, t) == texture(x, 0.0, 0.0, 0.0)
 
 
-@given(periods, speeds, taus, st.floats(0.01, 0.99))
-def test_a_swing_kept_is_a_share(period: float, speed: float, tau: float, duty: float) -> None:
-    for kept in (
-        square_swing_kept(period, speed, tau, duty),
-        sine_swing_kept(period, speed, tau),
-    ):
-        assert 0 < kept <= 1
-
-
-@given(periods, speeds, taus, st.floats(0.01, 0.99), st.floats(1.001, 10))
-def test_a_faster_finger_keeps_less(
-    period: float, speed: float, tau: float, duty: float, faster: float
-) -> None:
-    slow, fast = (square_swing_kept(period, v, tau, duty) for v in (speed, speed * faster))
-    assert fast <= slow * (1 + 1e-15)
+@given(periods, speeds, taus, st.floats(1.001, 10))
+def test_a_faster_finger_keeps_less(period: float, speed: float, tau: float, faster: float) -> None:
     slow, fast = (sine_swing_kept(period, v, tau) for v in (speed, speed * faster))
+    assert 0 < fast <= slow <= 1
     assert fast < slow or slow > 1 - 1e-12
 
 
-@given(periods, speeds, taus, st.floats(0.01, 0.99))
-def test_grooves_and_ridges_exchanged_keep_the_same(
-    period: float, speed: float, tau: float, duty: float
-) -> None:
-    one, other = (square_swing_kept(period, speed, tau, d) for d in (duty, 1 - duty))
-    assert math.isclose(one, other, rel_tol=1e-9)
-    # Equal halves leave both ends the most time.
-    assert one <= square_swing_kept(period, speed, tau) * (1 + 1e-12)
-
-
-@given(speeds, taus, shares, shapes)
+@given(speeds, taus, shares)
 def test_finest_period_and_fastest_speed_are_inverses(
-    speed: float, tau: float, kept: float, shape: str
+    speed: float, tau: float, kept: float
 ) -> None:
-    period = finest_period(speed, tau, kept, shape)
-    assert math.isclose(fastest_speed(period, tau, kept, shape), speed, rel_tol=1e-12)
-    law = square_swing_kept if shape == "square" else sine_swing_kept
-    assert math.isclose(law(period, speed, tau), kept, rel_tol=1e-9)
+    period = finest_period(speed, tau, kept)
+    assert math.isclose(fastest_speed(period, tau, kept), speed, rel_tol=1e-12)
+    assert math.isclose(math.tanh(period / (4 * speed * tau)), kept, rel_tol=1e-9)
 
 
 commands = st.lists(st.floats(0, 1e-5), min_size=1, max_size=40)
 
 
-# The first call imports scipy.signal, which no clock should judge.
 @given(commands, st.floats(0, 1e-5), st.floats(1e-6, 1e-1), taus)
 def test_a_response_never_leaves_the_range_of_what_drives_it(
     command: list[float], initial: float, step: float, tau: float
 ) -> None:
-    response = envelope_response(np.array(command), step, tau, initial)
+    response = DrivenEnvelope(tau, tau, 1e-5).response(np.array(command), step, initial)
     assert response[0] == initial
     assert np.all(response >= min(*command, initial) - 1e-18)
     assert np.all(response <= max(*command, initial) + 1e-18)
-
-
-@given(commands, st.floats(-5, 5), st.floats(1e-6, 1e-1), taus)
-def test_a_response_is_linear(command: list[float], factor: float, step: float, tau: float) -> None:
-    once = envelope_response(np.array(command), step, tau)
-    scaled = envelope_response(factor * np.array(command), step, tau)
-    assert np.allclose(scaled, factor * once, rtol=1e-9, atol=1e-18)
 
 
 @given(speeds, st.floats(1e-3, 0.3), st.integers(1, 6), st.floats(-1, 1), st.floats(0, 1))

@@ -14,9 +14,11 @@ from squeezefilm.physics.render.fidelity.report import fidelity_report
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SENSORS, SensorModel
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.compensation import (
+    DrivenEnvelope,
+    square_swing_compensated,
+)
 from squeezefilm.physics.render.resonator.envelope import sine_swing_kept
-from squeezefilm.physics.render.resonator.square_swing import square_swing_compensated
 from squeezefilm.physics.render.texture.levels import Amplitude
 from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 

@@ -93,7 +93,7 @@ def check(plate: RectangularPlate) -> None:
     same(load.current, solve_plate(display).load.current)
     analysis = analyze(display, samples=0)
     # What stands beside these numbers, and takes seconds.
-    vars(analysis).update(ears=None, felt=None, sensitivities=None, survival=None)
+    vars(analysis).update(ears=None, felt=None, sensitivities=None)
     vars(analysis).update(other_models=(), friction_curves=())
     check_summaries(display, p, alone, analysis)
     check_rows(analysis)

@@ -49,7 +49,9 @@ from squeezefilm.design.analysis.verdict import (
 from squeezefilm.design.analysis.wanted import Wanted
 from squeezefilm.design.analysis.wanted import wanted_friction as friction_wanted
 from squeezefilm.design.textures.gratings_left import (
-    survival_by_drive,
+    EXPLORING_SPEEDS,
+    GratingsLeft,
+    speed_gains,
     what_survives,
 )
 from squeezefilm.physics.chain.friction_models import FrictionModel
@@ -59,7 +61,6 @@ from squeezefilm.physics.chain.wanted_voltage import WantedFriction
 from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.plate.electronics import ElectricalLoad, load_of_mode
 from squeezefilm.physics.plate.working_mode import PlateTheory
-from squeezefilm.physics.render.fidelity.survival import EXPLORING_SPEEDS, FidelityTable
 from squeezefilm.physics.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.physics.uncertainty.drawn import description_of
 from squeezefilm.physics.uncertainty.uncertainty import (
@@ -78,8 +79,6 @@ BAND_REACH = 1.5
 
 KEPT = ("sensitivities", "ears", "friction_curves", "other_models")
 """Properties that take tenths of a second to seconds, kept on disk (`Analysis.compute`)."""
-
-_GRATINGS: Kept[FidelityTable] = Kept("gratings", FidelityTable)
 
 # What the interval takes (s), measured on the presets; a budget without room for it leaves it out.
 _INTERVAL = 6.0
@@ -102,7 +101,7 @@ class Analysis(Result):
     envelope_bandwidth: si.Hertz
     own_curve: FrictionCurve
     uncertainty: UncertainFriction | None
-    fidelity: FidelityTable | None
+    fidelity: GratingsLeft | None
     verdict: tuple[Finding, ...]
     wanted: Wanted | None = None
     effort: Effort | None = None
@@ -239,7 +238,6 @@ class Analysis(Result):
     def summary(self) -> dict[str, Any]:
         """The numbers, with units in the keys: what ``--json`` prints."""
         p, unsure = self.prediction, self.uncertainty
-        survival = survival_by_drive(self.display, p)
         shifts = self.sensitivities if self.has_sensitivities else None
         return {
             **p.summary(),
@@ -259,14 +257,9 @@ class Analysis(Result):
             if self.fidelity is None
             else {
                 "swing": self.fidelity.kept,
-                "fundamental": self.fidelity.fundamental_at_limit,
+                "fundamental": self.fidelity.fundamental,
             },
-            "compensation_speed_gain": None
-            if survival is None
-            else {
-                law.name: gain
-                for law, gain in zip(survival.laws, survival.gain.tolist(), strict=True)
-            },
+            "compensation_speed_gain": speed_gains(p),
             "friction_criterion": [
                 {
                     "surface": curve.surface,
@@ -377,12 +370,7 @@ def _what_follows(
     tell("friction over the active area")
     area = judged_area(display, prediction, samples=0 if unsure is None else samples)
     tell("verdict")
-    asked = description_of(display, prediction)
-    table = _GRATINGS.get(asked)
-    if table is None:
-        table = what_survives(prediction, tau)
-        if table is not None:
-            _GRATINGS.put(asked, table)
+    table = what_survives(prediction, tau)
     return Analysis(
         display=display,
         prediction=prediction,

@@ -16,6 +16,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.design.textures.gratings_left import EXPLORING_SPEEDS
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.contact.finger.fingertip import rest_friction_factor
 from squeezefilm.physics.display import DECAY_LENGTH, Display
@@ -27,7 +28,6 @@ from squeezefilm.physics.perception.felt import (
     tried_periods,
 )
 from squeezefilm.physics.perception.observer import Observer, load_observer
-from squeezefilm.physics.render.fidelity.survival import EXPLORING_SPEEDS
 from squeezefilm.physics.render.resonator.envelope import envelope_time_constant, finest_period
 from squeezefilm.physics.uncertainty.drawn import KeptDraws
 from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, mixture_of

@@ -19,13 +19,13 @@ from squeezefilm.design.analysis.curves import (
 )
 from squeezefilm.design.analysis.ears import AUDIBLE, EarExposure
 from squeezefilm.design.plate.mode_doubts import mode_doubts, why_undriven
+from squeezefilm.design.textures.gratings_left import GratingsLeft
 from squeezefilm.physics.chain.active_area import CRITERIA
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.heat.warming import too_hot
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.render.fidelity.survival import FidelityTable
 from squeezefilm.physics.uncertainty.model_choices import MECHANISM
 from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
@@ -57,7 +57,7 @@ def verdict(
     p: Prediction,
     area: JudgedArea | None,
     own: FrictionCurve,
-    table: FidelityTable | None,
+    table: GratingsLeft | None,
     unsure: UncertainFriction | None = None,
     why_not: str = "",
 ) -> Iterator[Finding]:
@@ -292,7 +292,7 @@ def model_form(
     )
 
 
-def _of_gratings(table: FidelityTable, relative_friction: si.Dimensionless) -> Finding:
+def _of_gratings(table: GratingsLeft, relative_friction: si.Dimensionless) -> Finding:
     """Which square gratings survive, and how fast the finger may be on the worst; good only where
     the friction swings by as much as people notice."""
     noticed = 1 - relative_friction >= NOTICED_DIFFERENCE
@@ -306,16 +306,14 @@ def _of_gratings(table: FidelityTable, relative_friction: si.Dimensionless) -> F
     worst = int(np.argmin(fastest))
     kept = [
         f"{1e3 * period:g}"
-        for period, survives in zip(
-            table.spatial_periods, table.amplitude_survives[:, -1], strict=True
-        )
-        if survives
+        for period, speed in zip(table.spatial_periods, fastest, strict=True)
+        if speed >= table.speeds[-1]
     ]
     return Finding(
         "good" if kept and noticed else "limit",
         f"Square gratings of {', '.join(kept) or 'no listed'} mm keep 90 % of their swing, peak to "
         f"peak, up to {1e3 * table.speeds[-1]:g} mm/s; {1e3 * table.spatial_periods[worst]:g} mm "
         f"up to {1e3 * fastest[worst]:.0f} mm/s. Of the fundamental "
-        f"{100 * table.fundamental_at_limit:.0f} % are left there.{unfelt}",
+        f"{100 * table.fundamental:.0f} % are left there.{unfelt}",
         "gratings",
     )

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from squeezefilm.design.analysis.felt import FeltGratings, felt_gratings
+from squeezefilm.design.textures.gratings_left import EXPLORING_SPEEDS
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.render.fidelity.survival import EXPLORING_SPEEDS
 from squeezefilm.physics.render.resonator.envelope import finest_period
 
 

@@ -20,10 +20,10 @@ from squeezefilm.design.analysis.verdict import (
     rival_frictions,
     verdict,
 )
+from squeezefilm.design.textures.gratings_left import GratingsLeft
 from squeezefilm.physics.chain.active_area import ActiveArea
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.render.fidelity.survival import FidelityTable
 from squeezefilm.physics.uncertainty.draws import Refusals
 from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
@@ -176,20 +176,20 @@ def test_an_amplitude_beyond_belief_is_doubted(point: Prediction) -> None:
     assert not any("bonded plate" in one.text for one in said(point, vibration_amplitude=10e-6))
 
 
-def table(kept: list[list[float]]) -> FidelityTable:
-    return FidelityTable(
-        shape="square", low=0.0, high=1e-6, time_constant=1e-3, kept=0.9,
-        spatial_periods=np.array([2e-3, 0.4e-3, 8e-3]), speeds=np.array([0.05, 0.15]),
-        amplitude_kept=np.array(kept), friction_kept=np.array(kept),
-        amplitude_fundamental=np.array(kept), friction_fundamental=np.array(kept),
-        finest_period=np.array([1e-3, 1e-3]), fastest_speed=np.array([0.2, 0.0404, 0.8]),
-        lag=np.array([1e-4, 1e-4]),
-    )  # fmt: skip
+def table(fastest: list[float]) -> GratingsLeft:
+    return GratingsLeft(
+        kept=0.9,
+        fundamental=0.684,
+        spatial_periods=np.array([2e-3, 0.4e-3, 8e-3]),
+        speeds=np.array([0.05, 0.15]),
+        finest_period=np.array([1e-3, 1e-3]),
+        fastest_speed=np.array(fastest),
+    )
 
 
 def test_gratings_that_survive_the_fastest_finger_are_named(point: Prediction) -> None:
     own = curve(1e-6)
-    some = findings(STATOR, point, None, own, table([[1.0, 0.9], [1.0, 0.5], [1.0, 1.0]]))
+    some = findings(STATOR, point, None, own, table([0.15, 0.0404, 0.8]))
     assert (
         Finding(
             "good",
@@ -198,7 +198,7 @@ def test_gratings_that_survive_the_fastest_finger_are_named(point: Prediction) -
         )
         in some
     )
-    none = findings(STATOR, point, None, own, table([[1.0, 0.8], [1.0, 0.5], [1.0, 0.2]]))
+    none = findings(STATOR, point, None, own, table([0.149, 0.0404, 0.1]))
     assert Finding(
         "limit",
         "Square gratings of no listed mm keep 90 % of their swing, peak to peak, up to 150 mm/s; "
@@ -249,7 +249,7 @@ def test_the_last_word_is_that_nothing_is_validated(point: Prediction) -> None:
 def test_gratings_that_nobody_feels_are_not_good(point: Prediction) -> None:
     table = SimpleNamespace(
         fastest_speed=np.array([0.2]), spatial_periods=np.array([4e-3]), speeds=np.array([0.2]),
-        amplitude_survives=np.array([[True]]), fundamental_at_limit=0.7,
+        fundamental=0.7,
     )  # fmt: skip
     for friction, kind in ((0.98, "limit"), (0.81, "limit"), (0.5, "good")):
         p = dataclasses.replace(point, relative_friction=friction)

@@ -12,10 +12,8 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
 from squeezefilm.physics.contact.sliding.march import Sliding, interval_speeds, slide
-from squeezefilm.physics.render.fidelity.trace import friction_trace
 from squeezefilm.physics.render.motion.stroke import Stroke
-from squeezefilm.physics.render.texture.levels import Amplitude
-from squeezefilm.physics.render.texture.shapes import SquareWave
+from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
 
 DT = 1e-4
 BONE = 0.08 * DT * np.arange(2000)
@@ -96,11 +94,13 @@ STROKE = Stroke(0.08, 0.03, passes=2)
 @pytest.fixture(scope="module")
 def motion() -> Sliding:
     """A 1 mm square grating, 40 % of friction deep, under a finger at 80 mm/s, there and back."""
-    trace = friction_trace(
-        Amplitude(SquareWave(1e-3), 0.0, 2e-6), STROKE, 5e-4, lambda a, v: 1 - a / 5e-6
+    steps = 20_000
+    time = np.linspace(0.0, STROKE.duration, steps + 1)
+    place = STROKE.position(time)
+    vibrating = DrivenEnvelope(5e-4, 5e-4, 2e-6).response(
+        2e-6 * (place % 1e-3 < 0.5e-3), STROKE.duration / steps
     )
-    friction = 0.6 * trace.relative_friction_rendered
-    return slide(trace.position, 1 / trace.sample_rate, friction, 0.5)
+    return slide(place, STROKE.duration / steps, 0.6 * (1 - vibrating / 5e-6), 0.5)
 
 
 def test_a_settled_finger_drags_at_the_limit_of_its_friction(motion: Sliding) -> None:

@@ -29,7 +29,7 @@ def models(analysis: Analysis) -> list[tuple[str, str]]:
         ("Pressure and friction", p.model),
     ]
     if analysis.fidelity is not None:
-        rows.append(("Envelope and textures", analysis.fidelity.model))
+        rows.append(("Envelope and textures", "first-order envelope at resonance, open loop"))
     return rows
 
 

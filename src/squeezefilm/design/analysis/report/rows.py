@@ -145,7 +145,7 @@ def _grating(analysis: Analysis, at: int) -> Row:
     """The finest grating at one of the table's speeds."""
     table = analysis.fidelity
     assert table is not None, "nothing is rendered"
-    left = f"{si.percent(table.fundamental_at_limit)} of its wave"
+    left = f"{si.percent(table.fundamental)} of its wave"
     return (
         f"Finest grating at {shown(float(table.speeds[at]), SPEED)}",
         shown(float(table.finest_period[at]), M, 3),

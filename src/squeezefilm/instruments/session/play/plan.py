@@ -18,7 +18,7 @@ from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
 from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
-from squeezefilm.physics.render.fidelity.trace import RelativeFriction
+from squeezefilm.physics.render.fidelity.rendered_stroke import RelativeFriction
 from squeezefilm.physics.render.program.layout import FASTEST
 from squeezefilm.physics.render.program.lowering import Program
 from squeezefilm.physics.render.program.made_for import MadeForSpeed

@@ -8,6 +8,7 @@ and commands an amplitude until the next step. `fidelity_report` judges the resu
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -16,7 +17,6 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import RENDER_STEPS, require_motion
-from squeezefilm.physics.render.fidelity.trace import RelativeFriction, friction_of, per_sample
 from squeezefilm.physics.render.motion.estimator import (
     MotionEstimate,
     MotionEstimator,
@@ -33,6 +33,10 @@ from squeezefilm.physics.render.resonator.compensation import (
     preview_work,
 )
 from squeezefilm.physics.render.texture.composition import Texture
+
+RelativeFriction = Callable[[si.MetreArray, si.MetrePerSecondArray], si.DimensionlessArray]
+"""Vibration amplitude (m, zero-to-peak) and the finger's signed speed (m/s), each of shape (n,) →
+friction divided by that of the unexcited surface (1), of the same shape."""
 
 _WINDOW_ROWS = 4096
 
@@ -209,3 +213,22 @@ def _previewed(
 
 def _asked(texture: Texture, x: si.FloatArray, v: si.FloatArray, t: si.FloatArray) -> si.FloatArray:
     return per_sample("texture", texture(x, 0.0, np.abs(v), t), x, si.Unit("m"))
+
+
+def friction_of(
+    law: RelativeFriction, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
+) -> si.DimensionlessArray:
+    """What a law says at amplitudes (m) and speeds (m/s), as `per_sample` lets it pass (1)."""
+    return per_sample("relative_friction", law(amplitude, speed), amplitude, si.Unit("1"))
+
+
+def per_sample(
+    name: str, values: si.FloatArray, given: si.FloatArray, unit: si.Unit
+) -> si.FloatArray:
+    """What a callable `name` returned where samples were `given`.
+
+    Raises `InputError` unless that is one finite value, at least 0, per sample.
+    """
+    array = si.returned(name, values, given, "one value per sample")
+    si.require(f"a value returned by {name}", array, unit, at_least=0.0)
+    return array

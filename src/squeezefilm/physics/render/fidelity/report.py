@@ -1,6 +1,7 @@
 """Rendered against wanted friction, in numbers: error, contrast by spatial frequency, lag.
 
-`fidelity` asks what a steady grating keeps in closed form; this measures whatever was rendered.
+`design.textures.gratings_left` asks what a steady grating keeps in closed form; this measures
+whatever was rendered.
 """
 
 from __future__ import annotations
@@ -18,7 +19,6 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import LAG_PRODUCTS, require_within
 from squeezefilm.core.kit.numbers import S, shown
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke
-from squeezefilm.physics.render.fidelity.trace import period_of
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import SensorModel
 from squeezefilm.physics.render.resonator.compensation import Compensation, DrivenEnvelope
@@ -118,7 +118,7 @@ def fidelity_report(
     frequencies = _frequencies(stroke, passes, spatial_frequencies)
     contrast, swing = _contrast(passes, frequencies)
     mean_speed = float(np.mean(np.abs(stroke.speed[judged])))
-    lag = _lag(passes, period_of(stroke.texture), float(frequencies.max()))
+    lag = _lag(passes, getattr(stroke.texture, "spatial_period", None), float(frequencies.max()))
     position_error, speed_error, refused = _errors_of_estimate(stroke, judged)
     return FidelityReport(
         texture=repr(stroke.texture),
@@ -214,7 +214,7 @@ def _frequencies(
     asked: Sequence[float] | si.FloatArray | None,
 ) -> si.FloatArray:
     longest = max((float(np.ptp(way)) for way, _, _ in passes), default=0.0)
-    period = period_of(stroke.texture)
+    period = getattr(stroke.texture, "spatial_period", None)
     if asked is not None:
         frequencies = np.array(asked, dtype=float)
     elif period is not None:

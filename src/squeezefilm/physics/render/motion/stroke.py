@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Annotated, Protocol
 
@@ -10,10 +9,8 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
-from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import (
     FINGER_SPEED,
-    MOTION_SAMPLES,
     PASS_DURATION,
     STROKE_LENGTH,
     STROKE_START,
@@ -117,30 +114,6 @@ class Stroke(_Passes):
         """The way gone (m) and the whole passes done by the time `t`."""
         path = np.minimum(self._within(t), self.duration) * self.speed
         return np.asarray(path), np.minimum(np.floor(path / self.length), self.passes - 1)
-
-    @si.checked_numbers
-    def sampled(
-        self, rate: Annotated[si.Hertz, si.Above(0.0)]
-    ) -> tuple[si.SecondArray, si.MetreArray]:
-        """Times 0, 1/rate, 2/rate … within the stroke (s), and the positions at them (m).
-
-        The last sample lies less than 1/rate before the stroke's end.
-
-        Raises:
-            InputError: a rate that is not above 0, too low for two samples, or so high that the
-                stroke would take more than 20 million samples.
-        """
-        steps = self.duration * rate * (1 + _ROUNDING)
-        if not 1 <= steps < MOTION_SAMPLES.most:
-            lowest = si.format_quantity(1 / self.duration, si.Unit("Hz"))
-            highest = si.format_quantity(MOTION_SAMPLES.most / self.duration, si.Unit("Hz"))
-            raise InputError(
-                f"rate = {si.format_quantity(rate, si.Unit('Hz'))} cannot be used for a stroke of "
-                f"{si.format_quantity(self.duration, si.Unit('s'))}: it must be at least {lowest} "
-                f"and below {highest}"
-            )
-        times = np.arange(math.floor(steps) + 1) / rate
-        return times, self.position(times)
 
 
 @si.checked_numbers

@@ -342,17 +342,6 @@ def value_march(
 
 
 @compiled(error_model="numpy")
-def amplitude_march(
-    program: si.Array, state: si.Array, samples: tuple[si.Array, ...], out: si.Array
-) -> None:
-    """The amplitude of every value by itself; what cannot be reached is counted in `state`."""
-    x, y, v, t = samples
-    for i in range(x.size):
-        wanted = interpret(program, state, at.STATE, x[i], y[i], v[i], t[i])
-        out[i] = _amplitude(program, state, wanted, x[i], y[i], v[i])[0]
-
-
-@compiled(error_model="numpy")
 def tick_march(
     program: si.Array,
     state: si.Array,

@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError, UnreachableError
+from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.program import layout as at
 from squeezefilm.physics.render.program.interpreter import (
-    amplitude_march,
     tick,
     tick_march,
     value_march,
@@ -141,39 +140,6 @@ def evaluate(
     out = np.empty(finger.x.size)
     value_march(program.array, np.empty(program.stack), _rows(finger), out)
     return out.reshape(finger.x.shape)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Played:
-    """A program as the seam `Texture`: place, velocity and time to amplitude, with no memory.
-
-    For a texture of friction that goes where an amplitude is wanted, such as `friction_trace`.
-    """
-
-    program: Program
-
-    def __call__(
-        self, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
-    ) -> si.MetreArray:
-        """The vibration amplitude wanted (m, zero-to-peak), in the broadcast shape.
-
-        Raises:
-            InputError: an argument that is not finite, or shapes that do not broadcast.
-            UnreachableError: a friction or an amplitude that the display cannot reach. (A renderer
-                that ticks counts it instead.)
-        """
-        finger = finger_arguments(x, y, v, t)
-        out, state = np.empty(finger.x.size), new_state(self.program)
-        amplitude_march(self.program.array, state, _rows(finger), out)
-        met = counters_of(state)
-        if met.unreachable:
-            raise UnreachableError(
-                f"at {met.unreachable} of {out.size} samples the texture wants what the display "
-                f"cannot reach: {met.too_sticky} times more friction than at rest, "
-                f"{met.too_slippery} times less than the least, {met.negative} amplitudes below 0, "
-                f"{met.saturated} above the largest; change its ends or its sums"
-            )
-        return out.reshape(finger.x.shape)
 
 
 def _rows(arrays: Iterable[si.FloatArray]) -> tuple[si.FloatArray, ...]:

@@ -28,11 +28,13 @@ from typing import Annotated, Literal
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.physics.render.resonator import kernel
 from squeezefilm.physics.render.resonator.envelope import envelope_time_constant, one_row
 
 Compensation = Literal["none", "inverse", "preview"]
 COMPENSATIONS: tuple[Compensation, ...] = ("none", "inverse", "preview")
+Compensating = Literal["none", "inverse"]
 
 # Past three time constants ahead a plan's first command no longer changes by a percent.
 _PREVIEW_TIME_CONSTANTS = 3.0
@@ -231,3 +233,82 @@ def preview_samples(
 def preview_work(samples: Annotated[int, si.AtLeast(0)]) -> si.FloatArray:
     """Working memory of `previewed_step` for so many samples ahead, shape (5, 2·samples + 2)."""
     return np.zeros((5, 2 * samples + 2))
+
+
+@si.checked_numbers
+def square_swing_compensated(
+    spatial_period: Annotated[si.MetreLike, si.Above(0.0)],
+    speed: Annotated[si.MetrePerSecondLike, si.Above(0.0)],
+    envelope: DrivenEnvelope,
+    low: si.Metre,
+    high: si.Metre,
+    compensation: Compensating = "inverse",
+) -> si.DimensionlessLike:
+    """Swing of amplitude left of a square grating of duty ½ in the steady state (1).
+
+    For half a period h = spatial_period/(2 speed) the amplitude closes in on the limit above (with
+    "none": on `high`) and stops at `high`; for the other half on the limit below (`low`) and stops
+    at `low`:
+
+        a_high = min(high, top − (top − a_low) exp(−h/τ_rise))
+        a_low = max(low, bottom + (a_high − bottom) exp(−h/τ_fall)),
+
+    solved for the cycle that repeats. Without compensation and with one time constant this is
+    tanh(h/2τ). `spatial_period` (m) and `speed` (m/s) broadcast.
+
+    Raises:
+        InputError: a period or speed not above 0, or not 0 ≤ low < high ≤ limit.
+    """
+    half = np.asarray(spatial_period, dtype=float) / (2 * np.asarray(speed, dtype=float))
+    si.require("low", low, si.Unit("m"), at_least=0.0, below=high)
+    si.require("high", high, si.Unit("m"), at_most=envelope.amplitude_limit)
+    rise = np.exp(-half / envelope.rise_time_constant)
+    fall = np.exp(-half / envelope.fall_time_constant)
+    bare = compensation == "none"
+    top = high if bare else envelope.amplitude_limit
+    bottom = low if bare else envelope.lowest_command
+    # The cycle that meets neither stop; then those that meet one, which are then the cycle.
+    free_high = (top * (1 - rise) + rise * bottom * (1 - fall)) / (1 - rise * fall)
+    a_high = np.minimum(free_high, high)
+    a_low = np.maximum(low, bottom + (a_high - bottom) * fall)
+    a_high = np.minimum(high, top - (top - a_low) * rise)
+    a_low = np.maximum(low, bottom + (a_high - bottom) * fall)
+    kept = np.asarray((a_high - a_low) / (high - low))
+    return float(kept) if kept.ndim == 0 else kept
+
+
+@si.checked_numbers
+def fastest_compensated_speed(
+    spatial_period: si.Metre,
+    envelope: DrivenEnvelope,
+    low: si.Metre,
+    high: si.Metre,
+    compensation: Compensating = "inverse",
+    kept: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.9,
+) -> si.MetrePerSecond:
+    """Fastest finger (m/s) under which a square grating keeps a share `kept` of its swing.
+
+    The inverse of `square_swing_compensated` in speed, found to 1e-12; proportional to the period.
+
+    Raises:
+        InputError: see `square_swing_compensated`, or a share not between 0 and 1.
+    """
+    from scipy.optimize import brentq
+
+    unit = spatial_period / max(envelope.rise_time_constant, envelope.fall_time_constant)
+
+    def lacking(log_speed: float) -> float:
+        speed = unit * math.exp(log_speed)
+        return (
+            float(
+                square_swing_compensated(spatial_period, speed, envelope, low, high, compensation)
+            )
+            - kept
+        )
+
+    if lacking(30.0) > 0.0:
+        raise OutOfRangeError(
+            f"kept = {kept:.4g} of the swing is left at any speed; ask for a larger share",
+            quantity="kept",
+        )
+    return float(unit * math.exp(brentq(lacking, -30.0, 30.0, xtol=1e-13, rtol=1e-13)))

@@ -23,15 +23,12 @@ around it.
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.core.errors import InputError
-
-Shape = Literal["square", "sine"]
 
 
 @si.closed_form(positive="quality_factor frequency")
@@ -59,32 +56,6 @@ def envelope_bandwidth(
 
 
 @si.closed_form(positive="spatial_period speed time_constant")
-def square_swing_kept(
-    spatial_period: si.MetreLike,
-    speed: si.MetrePerSecondLike,
-    time_constant: si.SecondLike,
-    duty: Annotated[si.DimensionlessLike, si.Above(0.0), si.Below(1.0)] = 0.5,
-) -> si.DimensionlessLike:
-    """Swing of amplitude left of a square grating, divided by the swing commanded (1).
-
-    In the steady state the amplitude rises towards `high` for dT and decays towards `low` for
-    (1-d)T, where T = spatial_period/speed and d is `duty`; requiring that it returns to where it
-    began gives
-
-        (1 - exp(-dT/τ)) (1 - exp(-(1-d)T/τ)) / (1 - exp(-T/τ)),
-
-    which is tanh(T/(4τ)) at d = ½. All arguments (m, m/s, s, 1) broadcast. Raises `InputError`
-    for a period, speed or time constant not above 0, or a duty not between 0 and 1.
-    """
-    periods = spatial_period / (speed * time_constant)
-    # expm1 keeps its digits where T ≪ τ, and unlike sinh cannot overflow where T ≫ τ.
-    kept: si.DimensionlessLike = (
-        -np.expm1(-duty * periods) * np.expm1(-(1 - duty) * periods) / np.expm1(-periods)
-    )
-    return kept
-
-
-@si.closed_form(positive="spatial_period speed time_constant")
 def sine_swing_kept(
     spatial_period: si.MetreLike, speed: si.MetrePerSecondLike, time_constant: si.SecondLike
 ) -> si.DimensionlessLike:
@@ -104,16 +75,15 @@ def finest_period(
     speed: si.MetrePerSecondLike,
     time_constant: si.SecondLike,
     kept: si.DimensionlessLike = 0.9,
-    shape: Shape = "square",
 ) -> si.MetreLike:
-    """Finest spatial period (m) that keeps a share `kept` of its swing at a finger's speed.
+    """Finest spatial period (m) of a square grating, its grooves and ridges equal, that keeps a
+    share `kept` of its swing at a finger's speed.
 
-    Square with equal grooves and ridges: 4τv artanh(kept); sine: 2πτv kept/√(1 - kept²), the
-    inverses of `square_swing_kept` and `sine_swing_kept`. Proportional to speed. `speed` (m/s),
-    `time_constant` (s) and `kept` (1) broadcast. Raises `InputError` for a speed or time constant
-    not above 0, a share not between 0 and 1, or an unknown shape.
+    In the steady state the share is tanh(T/4τ) with T = period/speed, and so the period 4τv
+    artanh(kept). `speed` (m/s), `time_constant` (s) and `kept` (1) broadcast. Raises `InputError`
+    for a speed or time constant not above 0, or a share not between 0 and 1.
     """
-    return speed * time_constant * _time_constants_per_period(kept, shape)
+    return speed * time_constant * _time_constants_per_period(kept)
 
 
 @si.closed_form(positive="spatial_period time_constant")
@@ -121,25 +91,21 @@ def fastest_speed(
     spatial_period: si.MetreLike,
     time_constant: si.SecondLike,
     kept: si.DimensionlessLike = 0.9,
-    shape: Shape = "square",
 ) -> si.MetrePerSecondLike:
-    """Fastest finger (m/s) under which a grating keeps a share `kept` of its swing.
+    """Fastest finger (m/s) under which a square grating keeps a share `kept` of its swing.
 
     The inverse of `finest_period` in speed. `spatial_period` (m), `time_constant` (s) and `kept`
-    (1) broadcast. Raises `InputError` for a period or time constant not above 0, a share not
-    between 0 and 1, or an unknown shape.
+    (1) broadcast. Raises `InputError` for a period or time constant not above 0, or a share not
+    between 0 and 1.
     """
-    return spatial_period / (time_constant * _time_constants_per_period(kept, shape))
+    return spatial_period / (time_constant * _time_constants_per_period(kept))
 
 
-def _time_constants_per_period(kept: si.DimensionlessLike, shape: Shape) -> si.DimensionlessLike:
+def _time_constants_per_period(kept: si.DimensionlessLike) -> si.DimensionlessLike:
     si.require("kept", kept, above=0.0, below=1.0)
-    if shape == "square":
-        # 4 artanh(kept), by logarithms since an inverse hyperbolic counts as an angle to pint.
-        square: si.DimensionlessLike = 2 * (np.log1p(kept) - np.log1p(-kept))
-        return square
-    sine: si.DimensionlessLike = 2 * math.pi * kept / np.sqrt((1 - kept) * (1 + kept))
-    return sine
+    # 4 artanh(kept), by logarithms since an inverse hyperbolic counts as an angle to pint.
+    square: si.DimensionlessLike = 2 * (np.log1p(kept) - np.log1p(-kept))
+    return square
 
 
 @si.checked_numbers
@@ -151,49 +117,6 @@ def one_row(name: str, values: si.MetreArray) -> si.MetreArray:
             f"{name} of shape {array.shape} cannot be used: give one row of at least one sample"
         )
     return array
-
-
-@si.checked_numbers
-def envelope_response(
-    command: si.MetreArray,
-    time_step: Annotated[si.Second, si.Above(0.0)],
-    time_constant: Annotated[si.Second, si.Above(0.0)],
-    initial: si.MetreLike = 0.0,
-) -> si.MetreArray:
-    """Vibration amplitude of the resonator under a stepwise command (m, zero-to-peak).
-
-    `command[..., k]` (m) is the amplitude commanded from sample k to sample k+1, `time_step` (s)
-    later; the result, in the shape of `command`, holds the amplitude *at* each sample, so it
-    begins with `initial` (m; a scalar, or one value per leading row). Exact for such a command at
-    any time step, since between two samples da/dt = (c - a)/τ is solved in closed form:
-    a[k+1] = c[k] + (a[k] - c[k]) exp(-Δt/τ).
-
-    Raises:
-        InputError: a command that is empty or not finite, a step or time constant not above 0, or
-            an `initial` that does not broadcast to the leading axes.
-    """
-    steps = np.asarray(command, dtype=float)
-    if steps.ndim == 0 or steps.size == 0:
-        raise InputError(
-            f"command of shape {steps.shape} cannot be used: give at least one sample on the "
-            "last axis"
-        )
-    try:
-        state = np.broadcast_to(np.asarray(initial, dtype=float), steps.shape[:-1])[..., None]
-    except ValueError as error:
-        raise InputError(
-            f"initial of shape {np.shape(initial)} does not fit a command of shape {steps.shape}; "
-            "give a scalar or one value per leading row"
-        ) from error
-    from squeezefilm.physics.render.resonator import kernel
-
-    keep = math.exp(-time_step / time_constant)
-    rows = np.ascontiguousarray(steps.reshape(-1, steps.shape[-1]))
-    response = np.empty(rows.shape)
-    # SciPy's filters do the same, but loading them takes longer than all of this room.
-    for row, first, found in zip(rows, np.ravel(state).tolist(), response, strict=True):
-        kernel.envelope_march(row, first, keep, keep, found)
-    return response.reshape(steps.shape)
 
 
 DAC_RATE: si.Hertz = 192e3

@@ -43,7 +43,7 @@ def point(**changes: Any) -> Any:
 def analysis(**changes: Any) -> Any:
     table = SimpleNamespace(
         speeds=np.array([0.05, 0.1, 0.2]), finest_period=np.array([1e-4, 2e-4, 4e-4]), kept=0.9,
-        fundamental_at_limit=0.68,
+        fundamental=0.68,
     )  # fmt: skip
     parts: dict[str, Any] = {
         "prediction": point(), "fidelity": table, "envelope_time_constant": 1e-3,

@@ -1,4 +1,4 @@
-"""Strokes: where the finger is, how it is sampled, and every refusal."""
+"""Strokes: where the finger is, and every refusal."""
 
 import math
 
@@ -22,15 +22,6 @@ def test_there_and_back() -> None:
     assert stroke.pass_duration == pytest.approx(0.4)
     times = np.array([0.0, 0.4, 0.5, 0.8, 1.0, 1.2])
     assert stroke.position(times) == pytest.approx([0.01, 0.05, 0.04, 0.01, 0.03, 0.05])
-
-
-def test_samples_lie_within_the_stroke() -> None:
-    times, positions = Stroke(0.1, 0.04, passes=2).sampled(1000.0)
-    assert times.shape == positions.shape == (801,)
-    assert times[-1] == pytest.approx(0.8)
-    assert positions[[0, 400, 800]] == pytest.approx([0.0, 0.04, 0.0], abs=1e-15)
-    times, _ = Stroke(0.1, 0.04).sampled(7.0)
-    assert times == pytest.approx([0.0, 1 / 7, 2 / 7])
 
 
 @pytest.mark.parametrize(
@@ -57,11 +48,3 @@ def test_a_stroke_out_of_range_is_refused(arguments: dict, said: str) -> None:
 def test_a_time_outside_the_stroke_is_refused(t: float) -> None:
     with pytest.raises(InputError, match="t = "):
         Stroke(0.1).position(t)
-
-
-@pytest.mark.parametrize(
-    ("rate", "said"), [(0.0, "above 0 Hz"), (2.0, "at least 2.5 Hz"), (1e9, "below 50 MHz")]
-)
-def test_a_rate_that_does_not_suit_is_refused(rate: float, said: str) -> None:
-    with pytest.raises(InputError, match=said):
-        Stroke(0.1).sampled(rate)

@@ -10,19 +10,17 @@ import pytest
 from numba.core.runtime import _nrt_python, rtsys
 from scipy.interpolate import RegularGridInterpolator
 
-from squeezefilm.core.errors import InputError, UnreachableError
+from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render import opcodes
-from squeezefilm.physics.render.fidelity.trace import friction_trace
-from squeezefilm.physics.render.motion.stroke import Stroke
 from squeezefilm.physics.render.program import interpreter, layout
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, checked, lower
-from squeezefilm.physics.render.program.renderer import Played, Renderer, evaluate, render
+from squeezefilm.physics.render.program.renderer import Renderer, evaluate, render
 from squeezefilm.physics.render.texture.coordinate import FromPoint
 from squeezefilm.physics.render.texture.image import Image
 from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
 from squeezefilm.physics.render.texture.noise import Noise
-from squeezefilm.physics.render.texture.shapes import Bump, Constant, Ramp, SquareWave
+from squeezefilm.physics.render.texture.shapes import Constant, Ramp, SquareWave
 
 INVERSE = FrictionInverse.from_function(lambda a: 1 - 0.5 * a / 4e-6, 4e-6)
 GRATING = Amplitude(SquareWave(2e-3), 1e-6, 2e-6)
@@ -149,24 +147,6 @@ def test_nothing_is_given_out_before_the_first_good_sample() -> None:
     renderer = Renderer(PROGRAM)
     assert [renderer.tick(math.nan, 0.0, 0.0, 0.0) for _ in range(5)] == [0.0] * 5
     assert renderer.tick(0.5e-3, 0.0, 0.1, -5.0) == 2e-6
-
-
-@pytest.mark.slow
-def test_a_texture_of_friction_is_traced_as_it_is_played() -> None:
-    wanted = RelativeFriction(Bump(0.02, 3e-3), 0.6, 1.0)
-    played = Played(lower(wanted, inverse=INVERSE))
-    stroke = Stroke(0.1, 0.04, passes=2)
-    trace = friction_trace(played, stroke, 1e-5, lambda a, v: 1 - 0.5 * a / 4e-6)
-    back = trace.time > stroke.pass_duration
-    there, again = trace.relative_friction_wanted[~back], trace.relative_friction_wanted[back]
-    # The way up comes first both there and back.
-    assert there[: there.size // 2].min() >= 0.8 - 1e-9
-    assert again[: again.size // 2].min() >= 0.8 - 1e-9
-    assert there[there.size // 2 + 5 :].max() <= 0.8 + 1e-9
-    with pytest.raises(InputError, match="commands no amplitude"):
-        friction_trace(wanted, stroke, 1e-5, lambda a, v: np.ones_like(a))
-    with pytest.raises(UnreachableError, match="at 2 of 2 samples"):
-        Played(lower(RelativeFriction.constant(0.1), inverse=INVERSE))(np.zeros(2), 0, 0, 0)
 
 
 def test_a_value_without_a_number_is_a_fault() -> None:

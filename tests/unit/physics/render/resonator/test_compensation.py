@@ -14,15 +14,12 @@ from squeezefilm.physics.render.resonator import kernel
 from squeezefilm.physics.render.resonator.compensation import (
     DrivenEnvelope,
     compensated_drive,
+    fastest_compensated_speed,
     preview_samples,
     preview_work,
-)
-from squeezefilm.physics.render.resonator.envelope import carrier_block, samples_per_command
-from squeezefilm.physics.render.resonator.square_swing import (
-    fastest_compensated_speed,
-    least_cycle,
     square_swing_compensated,
 )
+from squeezefilm.physics.render.resonator.envelope import carrier_block, samples_per_command
 
 ENVELOPE = DrivenEnvelope(1e-3, 1e-3, 1e-6)
 
@@ -120,8 +117,6 @@ def test_rates_that_divide_give_a_number_of_samples() -> None:
     (lambda: square_swing_compensated(1e-3, 0.1, ENVELOPE, 5e-7, 5e-7), "low"),
     (lambda: square_swing_compensated(1e-3, 0.1, ENVELOPE, 0.0, 5e-7, "preview"), "none, inverse"),  # type: ignore[arg-type]
     (lambda: fastest_compensated_speed(1e-3, ENVELOPE, 0.0, 5e-7, kept=1.0), "kept"),
-    (lambda: least_cycle(ENVELOPE, 1e-6), "swing"),
-    (lambda: least_cycle(ENVELOPE, 5e-7, highest=2e-6), "highest"),
 ])  # fmt: skip
 def test_senseless_requests_are_refused(ask: object, word: str) -> None:
     with pytest.raises(InputError, match=word):
