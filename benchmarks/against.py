@@ -71,19 +71,13 @@ def contact_kernels() -> Iterator[tuple[str, Callable[[], object]]]:
     display = contact.load_display("biet2008-stator")
     finger = display.finger
     law = finger.asperity_law(display.surface().roughness)
-    # A name that older trees had for it.
-    points = (
-        contact.ridge_points(finger)
-        if hasattr(contact, "ridge_points")
-        else contact.pad_points(finger).along
-    )
+    points = contact.pad_points(finger)
+    met = np.abs(np.cos(np.pi * points.along / contact.HALF_WAVELENGTH))
     pressure = finger.plateau_pressure()
     amplitudes = np.linspace(0.05e-6, 5e-6, 100)
 
     def curve(table: Any) -> object:
-        return contact.pad_friction(
-            table, law, amplitudes, contact.HALF_WAVELENGTH, points, pressure
-        )
+        return contact.pad_friction(table, law, amplitudes, met, points.shares, pressure)
 
     def fresh() -> Any:
         return contact.FilmTable(contact.FREQUENCY, finger.plateau_width, display.gas)

@@ -23,7 +23,6 @@ from collections.abc import Callable
 import numpy as np
 from scipy.optimize import brentq
 
-from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.physics.contact.sharing.balance import share_load
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable
 from squeezefilm.physics.contact.sharing.pad import pad_friction, pad_points
@@ -71,12 +70,13 @@ def main() -> None:
     display = load_display("biet2008-stator")
     finger, gas = display.finger, display.gas
     law = finger.asperity_law(display.surface().roughness)
-    points = pad_points(finger).along
+    points = pad_points(finger)
+    met = np.abs(np.cos(np.pi * points.along / HALF_WAVELENGTH))
     amplitudes = np.linspace(0.05e-6, 5e-6, 100)
     pressure = finger.plateau_pressure()
 
     def curve(table, **options):
-        return pad_friction(table, law, amplitudes, HALF_WAVELENGTH, points, pressure, **options)
+        return pad_friction(table, law, amplitudes, met, points.shares, pressure, **options)
 
     def fresh():
         return FilmTable(FREQUENCY, finger.plateau_width, gas)
@@ -90,12 +90,10 @@ def main() -> None:
     films = cold_table.solved
     warm = best_time(lambda: curve(table))
     tied = best_time(lambda: curve(table, limit="one-gap"))
-    skin = best_time(lambda: curve(table, skin=Skin()), 2)
-    print(f"Friction curve of 100 amplitudes, {points.size} ridges on the standing wave, one core")
+    print(f"Friction curve of 100 amplitudes, {met.size} ridges on the standing wave, one core")
     print(f"  each ridge at its own balance, film table solved too : {cold * 1e3:8.1f} ms")
     print(f"  the same with the table at hand                      : {warm * 1e3:8.1f} ms")
     print(f"  all ridges at one mean gap                           : {tied * 1e3:8.1f} ms")
-    print(f"  own balance, yielding skin                           : {skin * 1e3:8.1f} ms")
     print(f"  films in that table {films}, its error bound {cold_table.relative_error:.1e}")
 
     forces = np.linspace(0.05, 2.0, 50)
@@ -105,7 +103,7 @@ def main() -> None:
         return np.array(
             [
                 pad_friction(
-                    table, law, wide, HALF_WAVELENGTH, points, finger.plateau_pressure(float(f))
+                    table, law, wide, met, points.shares, finger.plateau_pressure(float(f))
                 ).relative_friction
                 for f in forces
             ]

@@ -28,7 +28,7 @@ from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.contact.finger.fingertip import Finger, Skin
 from squeezefilm.physics.contact.sharing.balance import LoadSharing, share_load
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.physics.contact.sharing.pad import FrictionRipple, PadPosture
+from squeezefilm.physics.contact.sharing.pad import FrictionRipple
 from squeezefilm.physics.contact.sliding.dry_friction import (
     DryFriction,
     SpeedFriction,
@@ -188,7 +188,6 @@ MADE: dict[Any, Callable[[], Any]] = {
     FingerpadDynamics: FingerpadDynamics,
     LoadSharing: lambda: share_load(MADE[FilmTable](), AsperityLaw(), 1e-6, 5e3),
     FilmTable: lambda: film_table(30e3, 250e-6, AIR),
-    PadPosture: PadPosture,
     FrictionRipple: lambda: FrictionRipple(WAYS, np.linspace(0.5, 1, 9), 1e-2, 8e-3),
     Skin: Skin,
     Sliding: lambda: slide(np.linspace(0, 1e-2, 200), 1e-3, 0.6, 0.5),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,8 +24,7 @@ from squeezefilm.physics.contact.sharing.balance import share_load, share_load_t
 from squeezefilm.physics.contact.sharing.film_panels import DEEPEST_EXCURSION
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.physics.contact.sharing.pad import (
-    PadPosture,
-    friction_ripple,
+    PadFriction,
     pad_friction,
     pad_points,
 )
@@ -60,8 +60,7 @@ def test_a_rigid_finger_at_an_antinode(table: FilmTable) -> None:
 def test_the_two_limits_over_the_standing_wave(table: FilmTable) -> None:
     points = RIDGES
     own, tied = (
-        pad_friction(table, LAW, 2e-6, 9.35e-3, points, 5e3, limit=limit).relative_friction[0]
-        for limit in ("own", "one-gap")
+        over(table, points, 9.35e-3, limit).relative_friction[0] for limit in ("own", "one-gap")
     )
     assert own == pytest.approx(0.514, abs=5e-4)
     assert tied == pytest.approx(0.365, abs=5e-4)
@@ -338,11 +337,17 @@ def test_the_skin_moves_little_at_ultrasonic_frequency(table: FilmTable) -> None
 # --- the pad --------------------------------------------------------------------------------
 
 
+def over(table: FilmTable, points: np.ndarray, half: float, limit: Any = "own") -> PadFriction:
+    """The pad of ridges at points (m) over an antinode of a wave of a half wavelength (m)."""
+    swings, shares = np.abs(np.cos(np.pi * points / half)), np.ones(points.size)
+    return pad_friction(table, LAW, 2e-6, swings, shares, 5e3, limit)
+
+
 def test_a_long_wave_makes_the_limits_one(table: FilmTable) -> None:
     points = RIDGES
     alone = float(share_load(table, LAW, 2e-6, 5e3).relative_friction)
     for limit in ("own", "one-gap"):
-        pad = pad_friction(table, LAW, 2e-6, 10.0, points, 5e3, limit=limit)
+        pad = over(table, points, 10.0, limit)
         assert pad.relative_friction[0] == pytest.approx(alone, abs=1e-6)
         assert pad.film_share[0] == pytest.approx(1 - alone, abs=1e-6)
 
@@ -350,7 +355,7 @@ def test_a_long_wave_makes_the_limits_one(table: FilmTable) -> None:
 def test_the_pad_is_the_mean_of_its_ridges(table: FilmTable) -> None:
     points = RIDGES
     each = share_load(table, LAW, 2e-6 * np.abs(np.cos(np.pi * points / 9.35e-3)), 5e3)
-    pad = pad_friction(table, LAW, 2e-6, 9.35e-3, points, 5e3)
+    pad = over(table, points, 9.35e-3)
     assert pad.relative_friction[0] == pytest.approx(float(np.mean(each.relative_friction)))
     tied = share_load_tied(table, LAW, each.amplitude, 5e3)
     total = table.over_pressure(tied.mean_gap, each.amplitude) + LAW.mean_pressure(
@@ -359,13 +364,16 @@ def test_the_pad_is_the_mean_of_its_ridges(table: FilmTable) -> None:
     assert float(np.mean(total)) == pytest.approx(5e3, rel=1e-8)
 
 
-def test_crossing_the_nodes_is_felt_as_a_ripple(table: FilmTable) -> None:
+def test_crossing_the_nodes_is_felt_as_a_ripple() -> None:
+    stator = load_display("biet2008-stator")
     ripples = []
     for side in (6e-3, 8e-3, 10e-3):
         finger = dataclasses.replace(FINGER, contact_length=side, normal_force=5e3 * side**2 / 1.4)
-        ripple = friction_ripple(table, LAW, 2e-6, 10e-3, finger, positions=12)
+        display = dataclasses.replace(stator, finger=finger)
+        law = friction_law(display, 10e-3, 40.5e3, model="partial-levitation")
+        ripple = law.ripple(2e-6)
         ripples.append(ripple.ripple)
-        assert ripple.contact_length == side
+        assert ripple.contact_length == pytest.approx(side)
         # The pad is symmetric about the antinode.
         np.testing.assert_allclose(
             ripple.relative_friction[1:], ripple.relative_friction[:0:-1], rtol=1e-6
@@ -376,33 +384,14 @@ def test_crossing_the_nodes_is_felt_as_a_ripple(table: FilmTable) -> None:
     assert 0.09 < ripples[0] < 0.57
 
 
-def test_tilt_and_orientation(table: FilmTable) -> None:
-    points = RIDGES
-
-    def friction(**posture: float) -> float:
-        limit = "one-gap" if "gap_tilt" in posture else "own"
-        pad = pad_friction(
-            table,
-            LAW,
-            2e-6,
-            9.35e-3,
-            points,
-            5e3,
-            limit=limit,
-            posture=PadPosture(**posture),  # type: ignore[arg-type]
-        )
-        return float(pad.relative_friction[0])
-
-    assert friction(pressure_tilt=0.6) == pytest.approx(friction(pressure_tilt=-0.6), rel=1e-9)
-    assert friction(gap_tilt=1e-4) == pytest.approx(friction(gap_tilt=-1e-4), rel=1e-9)
-    assert friction(gap_tilt=1e-4) != pytest.approx(friction(gap_tilt=0.0), rel=1e-3)
-    # Ridges along the wave sample it finely; across it in 28 places: the same wave.
-    # (28 ridges are 9.8 mm of them.)
+def test_ridges_along_the_wave_sample_it_finely(table: FilmTable) -> None:
+    # Across it in 28 places, which are 9.8 mm of them: the same wave.
     whole = dataclasses.replace(FINGER, contact_length=9.8e-3, ridge_angle=math.pi / 2)
-    turned = pad_friction(table, LAW, 2e-6, 9.35e-3, pad_points(whole).along, 5e3)
-    assert turned.relative_friction[0] == pytest.approx(friction(), abs=5e-3)
+    turned = over(table, pad_points(whole).along, 9.35e-3).relative_friction[0]
+    level = over(table, RIDGES, 9.35e-3).relative_friction[0]
+    assert turned == pytest.approx(level, abs=5e-3)
     with pytest.raises(InputError, match="limit = 'both'"):
-        pad_friction(table, LAW, 2e-6, 9.35e-3, points, 5e3, limit="both")  # type: ignore[arg-type]
+        over(table, RIDGES, 9.35e-3, "both")
 
 
 # --- sliding --------------------------------------------------------------------------------------
@@ -449,15 +438,3 @@ def test_a_display_has_the_law() -> None:
     assert np.all(spread[1:] > 0)
     assert spread[0] < 1e-9
     np.testing.assert_allclose(limits.own, curve, rtol=1e-9)
-
-
-def test_posture_and_skin_reach_the_law_of_a_display() -> None:
-    law = friction_law(load_display("biet2008-stator"), 9.35e-3, 40.5e3, model="partial-levitation")
-    short = dataclasses.replace(law.finger, contact_length=6e-3, skin=Skin(3.3))
-    law = dataclasses.replace(law, finger=short)
-    straight = law.at(2e-6)
-    # Of a pad shorter than half a wave, less moves over a node.
-    over_node = law.sharing(2e-6, posture=PadPosture(position=9.35e-3 / 2)).relative_friction[0]
-    assert over_node > straight
-    yielding = law.sharing(2e-6, yielding=True).relative_friction[0]
-    assert 0 < straight - yielding < 0.02

@@ -29,7 +29,7 @@ from squeezefilm.physics.contact.sharing.levitation import (
     ridge_films,
     ridge_friction,
 )
-from squeezefilm.physics.contact.sharing.pad import PadPosture, pad_friction, pad_points
+from squeezefilm.physics.contact.sharing.pad import pad_friction, pad_points
 
 Kind = Literal["balance", "closed form", "ridges"]
 
@@ -117,18 +117,11 @@ class FrozenContact:
         """µ′/µ by a model of a whole pad over an antinode, its ridges turned by an angle (rad) out
         of the nodal lines, each place at its own balance. Raises as `relative_friction`."""
         points = pad_points(replace(self.finger, ridge_angle=ridge_angle))
+        wave = np.abs(np.cos(np.pi * points.along / self.half_wavelength))
         if _kind(model) != "balance":
-            wave = np.abs(np.cos(np.pi * points.along / self.half_wavelength))
             return float(self._lifted(model, self.amplitude * wave, None) @ points.shares)
-        found = pad_friction(
-            self._films(None),
-            self.law,
-            self.amplitude,
-            self.half_wavelength,
-            points.along,
-            self.plateau_pressure,
-            posture=PadPosture(shares=points.shares),
-        )
+        films, pressure = self._films(None), self.plateau_pressure
+        found = pad_friction(films, self.law, self.amplitude, wave, points.shares, pressure)
         return float(found.relative_friction[0])
 
     def _lifted(

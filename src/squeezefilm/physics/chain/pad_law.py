@@ -24,7 +24,7 @@ from squeezefilm.physics.chain.friction_models import (
     ModelKind,
 )
 from squeezefilm.physics.chain.pad_place import PadPlace
-from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED, Finger, Skin
+from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED, Finger
 from squeezefilm.physics.contact.finger.load import compiled_finger
 from squeezefilm.physics.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.physics.contact.sharing.balance import require_balanced
@@ -41,8 +41,6 @@ from squeezefilm.physics.contact.sharing.pad import (
     FrictionRipple,
     Limit,
     PadFriction,
-    PadPosture,
-    friction_ripple,
     pad_friction,
     pad_points,
 )
@@ -98,19 +96,12 @@ class PadLaw:
         return MODEL_KINDS[self.model]
 
     @si.checked_numbers
-    def sharing(
-        self,
-        amplitude: si.MetreLike,
-        limit: Limit = "own",
-        *,
-        posture: PadPosture | None = None,
-        yielding: bool = False,
-    ) -> PadFriction:
+    def sharing(self, amplitude: si.MetreLike, limit: Limit = "own") -> PadFriction:
         """How film and asperities share the load at amplitudes (m), whatever the model, in a limit
-        of the skin; how the pad lies (None: at `position`, level); and whether the finger's skin
-        yields at the ultrasonic frequency."""
-        skin = self.finger.skin if yielding else None
-        return self._pad(amplitude, limit=limit, posture=posture, skin=skin)
+        of the skin."""
+        met, shares = self.ridge_swings
+        _require_tabulated(amplitude, met)
+        return self._pad(amplitude, met, shares, limit)
 
     @si.checked_numbers
     def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
@@ -158,24 +149,13 @@ class PadLaw:
         return levitation_friction(amplitude / scale, published_rest_gap(pressure))
 
     def ripple(self, amplitude: si.Metre) -> FrictionRipple:
-        """Relative friction µ′/µ along an even wave at an amplitude (m), each ridge by itself: by
-        the law's levitation, else by partial levitation whatever the model. See
-        `friction_ripple`."""
-        if self.kind.friction == "lift":
-            position = np.arange(_RIPPLE_POSITIONS) / _RIPPLE_POSITIONS * self.half_wavelength
-            along = [replace(self, place=None, position=float(x)) for x in position]
-            lifted = [law.friction_in("own", np.array([amplitude]))[0] for law in along]
-            return FrictionRipple(
-                position, np.array(lifted), self.contact_side, self.half_wavelength
-            )
-        return friction_ripple(
-            self._films,
-            self.asperities,
-            amplitude,
-            self.half_wavelength,
-            self.finger,
-            normal_force=self.normal_force,
-        )
+        """Relative friction µ′/µ along an even wave at an amplitude (m), each ridge by itself, as
+        the pad crosses the wave's nodes over half a wavelength. Raises `InputError` for a model
+        that knows the finger over an antinode only."""
+        position = np.arange(_RIPPLE_POSITIONS) / _RIPPLE_POSITIONS * self.half_wavelength
+        along = [replace(self, place=None, position=float(x)) for x in position]
+        friction = [law.friction_in("own", np.array([amplitude]))[0] for law in along]
+        return FrictionRipple(position, np.array(friction), self.contact_side, self.half_wavelength)
 
     @property
     def _films(self) -> FilmTable:
@@ -232,7 +212,7 @@ class PadLaw:
         finger, law = self.finger, self.asperities
         share, (met, shares) = finger.plateau_width / finger.ridge_period, self._even_swings
         return kernel.CompiledPad(
-            kernel.CompiledRidges(met, np.zeros(met.size), shares),
+            kernel.CompiledRidges(met, shares),
             finger.plateau_pressure(self.normal_force),
             compiled_finger(finger.plateau_width, self.frequency, self.gas, finger.skin, share),
             law.least_gap if isinstance(law, RoughContact) else -math.inf,
@@ -270,7 +250,7 @@ class PadLaw:
     def _even_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
         """The same of an even wave, wherever the pad is."""
         points = pad_points(self.finger, self.contact_side)
-        wave = PadPosture(self.position).over_the_antinode(points.along, self.half_wavelength)
+        wave = np.abs(np.cos(np.pi * (points.along + self.position) / self.half_wavelength))
         kinds, alike = np.unique(np.round(wave, 9), return_inverse=True)
         return kinds, np.bincount(alike, weights=points.shares).astype(float)
 
@@ -280,9 +260,7 @@ class PadLaw:
         pad's in the limit "own" is the mean over its ridges."""
         if self.kind.friction == "lift":
             return self._lifted_ridge(amplitude, self.speed)
-        posture, at = PadPosture(swings=np.ones(1)), np.zeros(1)
-        found = self._pad(amplitude, limit="own", points=at, posture=posture)
-        return found.relative_friction
+        return self._pad(amplitude, np.ones(1), np.ones(1), "own").relative_friction
 
     @cached_property
     def friction_coefficient(self) -> si.Dimensionless:
@@ -294,33 +272,19 @@ class PadLaw:
     def _pad(
         self,
         amplitude: si.MetreLike,
-        *,
+        met: si.DimensionlessArray,
+        shares: si.DimensionlessArray,
         limit: Limit,
-        points: si.MetreArray | None = None,
-        posture: PadPosture | None = None,
-        skin: Skin | None = None,
     ) -> PadFriction:
-        if posture is None:
-            # A pad that lies level: where along it a ridge is makes no difference.
-            met, shares = self.ridge_swings
-            points, posture = np.zeros(met.size), PadPosture(swings=met, shares=shares)
-            _require_tabulated(amplitude, met)
-        elif points is None:
-            of_ridges = pad_points(self.finger, self.contact_side)
-            points = of_ridges.along
-            if posture.shares is None:
-                posture = replace(posture, shares=of_ridges.shares)
         with self._named_force():
             return pad_friction(
                 self._films,
                 self.asperities,
                 amplitude,
-                self.half_wavelength,
-                points,
+                met,
+                shares,
                 self.finger.plateau_pressure(self.normal_force),
-                limit=limit,
-                posture=posture,
-                skin=skin,
+                limit,
             )
 
     @contextlib.contextmanager

@@ -15,7 +15,7 @@ from squeezefilm.physics.chain.pad_law import PadLaw
 from squeezefilm.physics.chain.pad_place import gauss_nodes
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.wanted_voltage import voltage_for_friction
-from squeezefilm.physics.contact.sharing.pad import PadPosture, pad_friction
+from squeezefilm.physics.contact.sharing.pad import pad_friction
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.surface_shape import surface_shape
 from squeezefilm.physics.uncertainty.uncertainty import uncertain_friction
@@ -200,16 +200,11 @@ def test_few_kinds_are_all_kept() -> None:
 def test_a_share_is_as_good_as_so_many_points(limit: Any) -> None:
     law = predicted("biet2008-stator").law
     swings = np.array([1.0, 0.8, 0.8, 0.3])
-    given = law.half_wavelength, law.finger.plateau_pressure(law.normal_force)
+    pressure = law.finger.plateau_pressure(law.normal_force)
 
-    def friction(posture: PadPosture) -> float:
-        assert posture.swings is not None
-        points = np.zeros(posture.swings.size)
-        found = pad_friction(
-            law._films, law.asperities, 1e-6, given[0], points, given[1],
-            limit=limit, posture=posture,
-        )  # fmt: skip
+    def friction(swings: np.ndarray, shares: np.ndarray) -> float:
+        found = pad_friction(law._films, law.asperities, 1e-6, swings, shares, pressure, limit)
         return float(found.relative_friction[0])
 
-    few = PadPosture(swings=np.array([1.0, 0.8, 0.3]), shares=np.array([1.0, 2.0, 1.0]))
-    assert friction(few) == pytest.approx(friction(PadPosture(swings=swings)), abs=1e-12)
+    few = friction(np.array([1.0, 0.8, 0.3]), np.array([1.0, 2.0, 1.0]))
+    assert few == pytest.approx(friction(swings, np.ones(4)), abs=1e-12)

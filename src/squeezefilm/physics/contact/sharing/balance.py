@@ -99,45 +99,34 @@ def share_load_tied(
     asperities: ContactLaw,
     amplitude: Annotated[si.MetreArray, si.AtLeast(0.0), si.AtMost(1e-4)],
     plateau_pressure: Annotated[si.Pascal, si.Above(0.0)],
-    *,
-    offset: si.MetreArray | None = None,
     shares: Annotated[si.DimensionlessArray, si.AtLeast(0.0)] | None = None,
-    skin: Skin | None = None,
 ) -> LoadSharing:
-    """Plateaus tied to one mean gap u (ridge i at u + offset[i]) that carry a mean pressure (Pa).
+    """Plateaus tied to one mean gap that carry a mean pressure (Pa), the skin rigid.
 
     `amplitude` (m) is one-dimensional, one value for each ridge, and so are `shares`, of all the
     ridges that each stands for (None: alike); all else that is given back is of shape ():
-    pressures are means over all plateaus and the period, `gap_amplitude` and `skin_amplitude`
-    those of the last ridge. Raises as `share_load` does.
+    pressures are means over all plateaus and the period. Raises as `share_load` does.
     """
     from squeezefilm.physics.contact.sharing import kernel
 
     announce(kernel.balance, "load balance", 20)
     a = np.ascontiguousarray(np.ravel(amplitude), dtype=float)
-    shift = np.zeros_like(a) if offset is None else np.ascontiguousarray(offset, dtype=float)
-    si.require("offset", shift, si.Unit("m"), at_least=-1e-4, at_most=1e-4)
     part = np.full(a.size, 1 / a.size) if shares is None else np.ascontiguousarray(shares)
-    for name, one in (("offset", shift), ("shares", part)):
-        if one.shape != a.shape:
-            raise InputError(f"{a.size} ridges need {a.size} of {name}", quantity=name)
-    ridges = kernel.CompiledRidges(a, shift, part)
+    if part.shape != a.shape:
+        raise InputError(f"{a.size} ridges need {a.size} of shares", quantity="shares")
+    ridges = kernel.CompiledRidges(a, part)
     row = np.zeros(kernel.COLUMNS)
     solve: Any = kernel.balance
-    law, impedance = asperities.compiled(), _impedance(skin, table)
+    law, impedance = asperities.compiled(), _impedance(None, table)
     while True:
         solve(ridges, plateau_pressure, impedance, law, table.compiled, row)
         if int(row[kernel.STATUS]) != kernel.NEEDS_PANEL:
             break
         table.build(int(row[kernel.PANEL]))
     _refuse(row[None, :], a.max(keepdims=True), np.array([plateau_pressure]))
-    # Whichever ridge comes nearest; where the skin yields only the last one's swing is known.
-    nearest = row[kernel.GAP] + (
-        np.min(shift - a) if skin is None else shift[-1] - row[kernel.SWING]
-    )
     pressure = np.array(plateau_pressure)
-    _require_law(asperities, np.array(nearest), pressure)
-    model = _model(table, asperities, skin, "all plateaus at one mean gap")
+    _require_law(asperities, np.array(row[kernel.GAP] - np.max(a)), pressure)
+    model = _model(table, asperities, None, "all plateaus at one mean gap")
     return _shared(a, pressure, row, table, asperities, model)
 
 

@@ -39,11 +39,10 @@ class CompiledFilms(NamedTuple):
 
 
 class CompiledRidges(NamedTuple):
-    """Ridges tied together: what they meet (m), how far they stand off the mean gap (m), and which
-    share of them all each stands for; the shares sum to 1."""
+    """Ridges tied to one gap: what they meet (m), and which share of them all each stands for; the
+    shares sum to 1."""
 
     amplitudes: si.FloatArray
-    offsets: si.FloatArray
     shares: si.FloatArray
 
 
@@ -167,21 +166,21 @@ def _carried(
     asperities: CompiledAsperities,
     films: CompiledFilms,
 ) -> tuple[float, float, float, float, int]:
-    """Mean gas and asperity pressure (Pa) of ridges at gaps u + offsets; swing and skin amplitude
-    of the last; the panel lacking."""
-    amplitudes, offsets, shares = ridges
+    """Mean gas and asperity pressure (Pa) of ridges at a gap u; swing and skin amplitude of the
+    last; the panel lacking."""
+    amplitudes, shares = ridges
     gas, solid, b, moved = 0.0, 0.0, 0.0, 0.0
     for i in range(len(amplitudes)):
-        gap, b = u + offsets[i], amplitudes[i]
+        b = amplitudes[i]
         if impedance[2] > 0.0:
-            b, moved, lack = _swing(b, gap, impedance, asperities, films)
+            b, moved, lack = _swing(b, u, impedance, asperities, films)
             if lack != -1:
                 return 0.0, 0.0, b, moved, lack
-        over, lack = film_value(0, gap, b, films)
+        over, lack = film_value(0, u, b, films)
         if lack != -1:
             return 0.0, 0.0, b, moved, lack
         gas += shares[i] * over
-        solid += shares[i] * asperity_mean(asperities, gap, b)[0]
+        solid += shares[i] * asperity_mean(asperities, u, b)[0]
     return gas, solid, b, moved, -1
 
 
@@ -196,11 +195,10 @@ def balance(
 ) -> None:
     """The mean gap u at which ridges tied together carry a mean pressure (Pa), into `out`.
 
-    Ridge i has the gap u + offsets[i] and the amplitude amplitudes[i]. What is carried falls
-    steadily with u; ln of it is nearly linear, hence a false position in logarithms, with the
-    factor of Anderson and Björck where an end stays.
+    What is carried falls steadily with u; ln of it is nearly linear, hence a false position in
+    logarithms, with the factor of Anderson and Björck where an end stays.
     """
-    amplitudes, offsets, _ = ridges
+    amplitudes, _ = ridges
     out[:] = 0.0
     out[PANEL] = -1.0
     law = asperities.constants
@@ -210,9 +208,9 @@ def balance(
     nearest = films.scale[0] * math.exp(films.scale[2]) * (1.0 + 1e-9)
     for i in range(len(amplitudes)):
         if amplitudes[i] > 0.0:
-            low = max(low, nearest - offsets[i])
+            low = max(low, nearest)
         # A yielding skin can swing further than the plate.
-        low = max(low, amplitudes[i] / deepest * (1.0 + 1e-9) - offsets[i])
+        low = max(low, amplitudes[i] / deepest * (1.0 + 1e-9))
     # Where exponential asperities alone would carry the load; with the gas it is further out.
     step = law[2]
     swing = amplitudes.max()
@@ -277,7 +275,7 @@ def balance(
     out[RESIDUAL] = (gas + solid) / pressure - 1.0
     # Where panels of the table meet, it may step by rounding: that much is allowed.
     settled = lack == -1 and abs(out[RESIDUAL]) < 1e-8
-    if impedance[2] > 0.0 and b >= (u + offsets[-1]) * deepest * (1.0 - 1e-6):
+    if impedance[2] > 0.0 and b >= u * deepest * (1.0 - 1e-6):
         settled = False
     out[STATUS] = BALANCED if settled else UNSETTLED
 
@@ -296,11 +294,11 @@ def balance_rows(
     Rows that are balanced already (their status says so and they have taken steps) are kept.
     """
     lacking = -1
-    none, whole = np.zeros(1), np.ones(1)
+    whole = np.ones(1)
     for i in range(len(amplitude)):
         if out[i, STEPS] > 0.0 and out[i, STATUS] != NEEDS_PANEL:
             continue
-        one = CompiledRidges(amplitude[i : i + 1], none, whole)
+        one = CompiledRidges(amplitude[i : i + 1], whole)
         balance(one, pressure[i], impedance, asperities, films, out[i])
         if out[i, STATUS] == NEEDS_PANEL and lacking < 0:
             lacking = int(out[i, PANEL])
@@ -348,7 +346,7 @@ def felt_stiffness(
     The third is the first panel lacking, −1 where none does, and −2 where a plateau finds no
     balance or comes nearer than the contact's law goes.
     """
-    met, _, shares = pad.ridges
+    met, shares = pad.ridges
     pressure, rigid = np.full(met.size, pad.pressure), np.zeros(3)
     lacking = balance_rows(antinode * met, pressure, rigid, pad.asperities, films, out)
     if lacking >= 0:
