@@ -12,7 +12,7 @@ MINUTES ?= 480
 # Without bytecode each process compiles a thousand modules anew, and pytest its tests.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo lab test slow gate costs check lint types layers gallery pictures docs bench coverage nightly campaign release clean
+.PHONY: help demo lab test slow gate costs figures check lint types layers gallery pictures docs bench coverage nightly campaign release clean
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -93,6 +93,13 @@ campaign: $(VENV)/test.stamp  ## what takes hours and goes on where it stopped: 
 	@nice $(PYTEST) -n $(WORKERS) -p tests.campaign --answers campaigns/statistics.jsonl -m campaign
 	@nice $(BIN)/python tools/mutants.py --nightly --seed $(MUTANTS_SEED) --count $(COUNT) \
 	  --minutes $(MINUTES) --file campaigns/mutants-$(MUTANTS_SEED).jsonl
+
+# The figures that quick tests draw, in words and numbers beside the tests; read the diff before it is committed.
+figures: export SQUEEZEFILM_DESCRIBE = anew
+figures: $(VENV)/test.stamp  ## describe the figures of the tests anew
+	@tests=$$(grep -rl --include='test_*.py' 'figures_as_described' tests/unit); \
+	rm -f $$(echo $$tests | sed 's/\.py/.txt/g'); \
+	$(PYTEST) -n 0 -m "not campaign and not realtime $(QUICK)" $$tests
 
 check: lint types layers docs  ## everything that is read and not run
 

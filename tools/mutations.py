@@ -58,7 +58,7 @@ def mutants_of(source: bytes, path: str, quantities: Iterable[str] = ()) -> list
     lines = source.decode().split("\n")
     seen: Counter[str] = Counter()
     found = []
-    for site in sites(source, quantities, path.split("/")[1] == "report"):
+    for site in sites(source, quantities, not {"report", "kit"}.isdisjoint(path.split("/"))):
         before = source[site.start : site.end].decode()
         line = source.count(b"\n", 0, site.start) + 1
         # Nothing that an edit elsewhere in the file would change.

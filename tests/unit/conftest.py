@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import os
 from collections.abc import Callable, Iterator
+from itertools import starmap
 from pathlib import Path
 from unittest import mock
 
 import pytest
+from tests.unit.described import Descriptions, described, drawn_figures
 
 from squeezefilm.core.kit import style
 from squeezefilm.design.analysis.analyze import Analysis
@@ -109,6 +112,23 @@ def plate_analysis() -> Analysis:
 def hostile_analysis() -> Analysis:
     """A display whose names try to be markup, escape codes, mathematics and Chinese."""
     return analysis_named("hostile-names")
+
+
+@pytest.fixture
+def figures_as_described(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Every figure that a quick test draws must be as described in the text beside the file of
+    tests; `make figures` writes that anew."""
+    if any(request.node.get_closest_marker(name) for name in ("slow", "nightly")):
+        yield
+        return
+    with drawn_figures() as figures:
+        yield
+    descriptions = Descriptions(request.path.with_suffix(".txt"))
+    for now in starmap(described, figures):
+        if os.environ.get("SQUEEZEFILM_DESCRIBE") == "anew":
+            descriptions.add(now)
+        changed = descriptions.difference(now)
+        assert not changed, f"{changed}\nIf this is meant, run `make figures` and read its diff."
 
 
 @pytest.fixture

@@ -10,6 +10,8 @@ import squeezefilm as sf
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit.style import png
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 
 @pytest.fixture(scope="module")
 def sweep() -> list[Any]:

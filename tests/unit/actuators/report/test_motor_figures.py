@@ -1,6 +1,10 @@
 """Figures of a motor: the curves have their ends, the step says where it ends."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
+import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 from tests.unit import drawn
@@ -16,7 +20,10 @@ from squeezefilm.actuators.report.motor import (
     map_figure,
     plane_figure,
     speed_force_figure,
+    tuning_figure,
 )
+
+pytestmark = pytest.mark.usefixtures("figures_as_described")
 
 
 def words(figure: Figure) -> str:
@@ -47,3 +54,22 @@ def test_the_way_in_the_plane_is_drawn() -> None:
     said = words(plane_figure(moved))
     assert "sideways (µm)" in said
     assert f"ends at {1e3 * moved.final_velocity[0]:.3g} mm/s along" in said
+
+
+def test_the_force_over_frequency_has_gaps_where_feet_stand_on_nodes() -> None:
+    forces, frequencies = (0.5, 2.0, 1.0), (29e3, None, 31e3)
+    tuned = [
+        SimpleNamespace(force=force, working=SimpleNamespace(frequency=frequency))
+        for force, frequency in zip(forces, frequencies, strict=True)
+    ]
+    found: Any = SimpleNamespace(
+        motor=SimpleNamespace(resonance_frequency=30e3), tuned=tuned,
+        shifts=np.array([-1e-3, 0.0, 1e-3]), shifted=[tuned[0], None, tuned[2]],
+    )  # fmt: skip
+    left, right = tuning_figure(found).axes
+    x, y = left.lines[0].get_data()
+    # Without a frequency of its own, a motor runs at its resonance.
+    assert (list(x), list(y)) == ([29, 30, 31], list(forces))
+    x, y = right.lines[0].get_data()
+    assert list(x) == [-1, 0, 1]
+    assert np.isnan(y).tolist() == [False, True, False]

@@ -19,6 +19,8 @@ from squeezefilm.core.formats.drawing import (
 )
 from squeezefilm.core.kit.sheet import pdf, sheet_figure, views_figure
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 LAYERS = {"BODY": Layer(45, fill="own"), "HOLES": Layer(7, fill="paper"), "LINES": Layer(1)}
 ITEMS = (
     rectangle("BODY", 0.0, 0.0, 83e-3, 49e-3),

@@ -17,6 +17,8 @@ from matplotlib.figure import Figure
 
 from squeezefilm.core.kit import style
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 
 def test_the_style_holds_within_another_and_is_undone() -> None:
     before = dict(matplotlib.rcParams.copy())

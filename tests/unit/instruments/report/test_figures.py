@@ -17,6 +17,8 @@ from squeezefilm.instruments.report.figures import amplitude, friction, lateness
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness, lateness_class
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 TIME = np.linspace(0, 0.9, 901)
 # To and fro over 30 mm: there, back, and there again, 0.3 s each.
 ZIGZAG = 0.1 * np.interp(TIME, [0, 0.3, 0.6, 0.9], [0, 0.3, 0, 0.3])

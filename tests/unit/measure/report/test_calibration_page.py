@@ -34,6 +34,8 @@ from squeezefilm.measure.report.calibration_figures import FIGURES, deviation
 from squeezefilm.measure.report.calibration_page import value_rows, write_calibration
 from squeezefilm.physics.display import load_display
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 FORCE, LENGTH = "finger.normal_force", "finger.contact_length"
 NOTHING = np.zeros((4, 0))
 AT_1 = "relative friction at 1 µm"

@@ -15,6 +15,8 @@ from squeezefilm.measure.report.beside import (
     detection_words,
 )
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 MEASURED = DetectionThresholds(
     np.array([4e-3, 1e-3, 0.5e-3]), np.array([0.04, 0.005, 0.002]), 0.7, 0.05, 12,
     Told(name="thresholds"),

@@ -37,6 +37,8 @@ from squeezefilm.measure.report.page import (
 )
 from squeezefilm.physics.uncertainty.uncertainty import FrictionBand
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 F = np.linspace(29e3, 31e3, 21)
 T = np.linspace(0, 1e-2, 7001)
 ONES = np.ones(21)

@@ -14,7 +14,7 @@ from squeezefilm.core.formats.dxf import MILLIMETRES
 from squeezefilm.physics.perception.stimuli import Grating
 from squeezefilm.study.design.boards import board_of, boards
 from squeezefilm.study.design.study_design import load_design
-from squeezefilm.study.report.boards import write_boards
+from squeezefilm.study.report.boards import draw_boards, write_boards
 
 DESIGN = load_design("biet2008-gratings-as-widths")
 
@@ -66,6 +66,17 @@ def test_numbers_and_page_say_what_the_study_calls_period(folder: Path) -> None:
 def test_the_same_boards_are_the_same_file(folder: Path, tmp_path: Path) -> None:
     again = write_boards(DESIGN, tmp_path / "again").parent
     assert (again / "boards.dxf").read_bytes() == (folder / "boards.dxf").read_bytes()
+
+
+@pytest.mark.usefixtures("figures_as_described")
+def test_boards_are_drawn_to_scale() -> None:
+    figure = draw_boards(boards(DESIGN))
+    (axes,) = figure.axes
+    longest = max(one.length for one in DESIGN.alternatives)
+    assert axes.get_xlim() == pytest.approx((-1, 1e3 * longest + 1))
+    assert [one.get_width() for one in axes.patches] == pytest.approx(
+        [1e3 * one.length for one in DESIGN.alternatives]
+    )
 
 
 def test_the_last_ridge_ends_with_the_board() -> None:

@@ -17,6 +17,8 @@ from squeezefilm.study.report.figures import (
     similarities,
 )
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 NAMES = ("fine", "middle", "coarse")
 COUNTS = np.array([[6, 1, 0], [2, 5, 3], [0, 4, 7]])  # rows answers, columns stimuli
 

@@ -19,6 +19,8 @@ from squeezefilm.study.report.observer_figures import channels, percepts
 from squeezefilm.study.simulated.causes import Causes
 from squeezefilm.study.simulated.chain_tables import ChainTables
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 PAPER = load_design("biet2008-gratings")
 DESIGN = dataclasses.replace(
     PAPER, displays=("first plate", "other plate"), stimuli=PAPER.stimuli[1:3],

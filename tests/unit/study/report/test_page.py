@@ -6,10 +6,13 @@ import json
 from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from tests.known_observers import DirichletParticipants, distinction, ordered_observer
+from tests.unit.drawn import words
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.analysis import IdentificationAnalysis, analyze_identification
@@ -20,6 +23,8 @@ from squeezefilm.study.report import figures as study_figures
 from squeezefilm.study.report import time_figures as study_time_figures
 from squeezefilm.study.report.page import study_figures as figures_of
 from squeezefilm.study.report.page import study_page, write_study
+
+pytestmark = pytest.mark.usefixtures("figures_as_described")
 
 HOSTILE = '<script>alert("x")</script> $\\frac{1}{0}$ 漢字 \x1b[31m\u202e & more'
 
@@ -112,6 +117,39 @@ def test_power_is_drawn_with_what_is_needed() -> None:
     assert "12 people reach 80" in " ".join(figure.get_suptitle().split())
     axes = figure.axes[0]
     assert axes.get_xlim()[0] == axes.get_ylim()[0] == 0
+
+
+def test_more_or_fewer_people_than_were_simulated_are_needed() -> None:
+    shares = np.array([0.4, 0.75])
+    for needed, surely, said in (
+        (None, None, "8 people do not reach 80 % power"),
+        (4, 8, "4 people reach 80 % power; 8 do beyond the simulation's error"),
+        (4, 4, "4 people reach 80 % power"),
+    ):
+        made: Any = SimpleNamespace(
+            needed=needed, needed_surely=surely, target=0.8, studies=20, alpha=0.05,
+            participants=np.array([4, 8]), power=shares, low=shares - 0.1, high=shares + 0.1,
+        )  # fmt: skip
+        assert words(study_time_figures.power(made).get_suptitle()) == said
+
+
+@pytest.mark.parametrize("needed", [12, None])
+@pytest.mark.parametrize("measure", ["Weber fraction", "exponent"])
+def test_precision_says_how_many_people_give_it(measure: str, needed: int | None) -> None:
+    reached = np.array([0.2, 0.9])
+    found: Any = SimpleNamespace(
+        precision=0.1, measure=measure, needed=needed, target=0.8, studies=40,
+        participants=np.array([4, 12]), reached=reached, low=reached - 0.1, high=reached + 0.05,
+        held=np.array([0.94, 0.96]),
+    )  # fmt: skip
+    figure = study_time_figures.precision(found)
+    said = words(figure.get_suptitle())
+    within = "± 10 %" if measure == "Weber fraction" else "± 0.1"
+    assert within in said
+    assert said.startswith("12 people " + ("give" if needed else "do not give"))
+    assert said.endswith("in 80 % of studies")
+    (axes,) = figure.axes
+    assert list(axes.lines[0].get_ydata()) == list(100 * reached)
 
 
 def test_too_few_data_make_a_message() -> None:

@@ -12,6 +12,8 @@ from squeezefilm.core.kit.page_style import STYLE, FigureOf, picture_sections
 from squeezefilm.study.report.pictures import pictures, png_files
 from squeezefilm.study.report.simulated_page import load_drawing
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 

@@ -14,6 +14,8 @@ from squeezefilm.core.kit.style import BLUE, ORANGE
 from squeezefilm.study.psychometric.function import PsychometricFunction
 from squeezefilm.study.report.time_figures import psychometric_function
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 PLACES = np.array([1.0, 2.0, 4.0, 11.0])
 
 

@@ -37,6 +37,8 @@ from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.participants import Matches
 from squeezefilm.study.tasks import analyze
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 PAPER = load_design("biet2008-gratings")
 # Answers in another order than what is presented; the second display's name tries to be markup.
 DESIGN = dataclasses.replace(

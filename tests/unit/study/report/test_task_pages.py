@@ -20,6 +20,8 @@ from squeezefilm.study.report.terminal_analysis import show_analyses
 from squeezefilm.study.report.words import condition_rows, key_rows, person_rows, read_first
 from squeezefilm.study.tasks.findings import TaskAnalysis
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 
 @pytest.fixture(scope="module", params=list(DESIGNS))
 def found(request: pytest.FixtureRequest) -> TaskAnalysis:

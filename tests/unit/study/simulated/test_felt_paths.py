@@ -21,6 +21,8 @@ from squeezefilm.study.simulated.felt_paths import felt_on_path
 from squeezefilm.study.simulated.felt_trials import felt_in_trial
 from squeezefilm.subjects import plot
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 SLANTED = "80 mm/s over 4 cm, 3 passes, at 30 deg"
 
 
@@ -52,6 +54,7 @@ def test_a_surface_is_nearest_to_itself_and_a_known_force_is_used(tmp_path: Path
     (tmp_path / "mine.csv").write_text(csv_text(table))
     found = felt_on_path(shapes(), "bars", str(tmp_path / "mine.csv"))
     assert found.nearest[0].name == "bars"
+    assert "bars along this path: " in felt_path(found).get_suptitle()
     assert found.nearest[0].apart == 0.0
     assert all(a.apart <= b.apart for a, b in zip(found.nearest, found.nearest[1:], strict=False))
     assert found.finger.normal_force == pytest.approx(0.8)

@@ -21,6 +21,8 @@ from squeezefilm.validation.report.figures import (
     reproduction_figures,
 )
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 
 @pytest.fixture(scope="module")
 def section() -> Laminate:

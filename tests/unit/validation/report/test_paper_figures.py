@@ -17,6 +17,8 @@ from squeezefilm.design.analysis.curves import PressureProfile, WavelengthCurve
 from squeezefilm.validation.report import figures
 from squeezefilm.validation.report.figures import friction, pressure, wavelength
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 # 0.5 N on 1 cm² of contact is a twentieth of an atmosphere of 1 bar.
 DISPLAY = SimpleNamespace(
     finger=SimpleNamespace(contact_length=10e-3, ridge_amplitude=50e-6, ridge_period=0.5e-3),

@@ -29,6 +29,8 @@ from squeezefilm.validation.report.prototype import (
     separation_table,
 )
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 D31 = WorkingPoint((8, 0), 33.55e3, 10.0, 160e-9, 60.0, 34.8920e3)
 E31 = WorkingPoint((8, 0), 35.6e3, 10.0, 80e-9, 60.0, 37.38e3)
 

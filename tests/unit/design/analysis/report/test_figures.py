@@ -15,6 +15,8 @@ from squeezefilm.core.kit import style
 from squeezefilm.design.analysis.analyze import Analysis
 from squeezefilm.design.analysis.report.figures import FIGURES, half_power
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 PRESETS = ("biet2008-plate", "biet2008-stator", "winfield2007-tpad")
 KEYS = ("area", "response", "band")
 # The odd displays, each with the figures that its oddness can spoil.

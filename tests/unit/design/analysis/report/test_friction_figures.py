@@ -14,6 +14,8 @@ from squeezefilm.core.kit.model_looks import look_of
 from squeezefilm.core.kit.style import BAND
 from squeezefilm.design.analysis.report.figures import own_friction
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 
 def test_the_own_model_is_drawn_within_its_band() -> None:
     band = SimpleNamespace(

@@ -16,6 +16,8 @@ from squeezefilm.design.analysis.report.figures import (
     half_power,
 )
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 
 def data(line: Any) -> tuple[np.ndarray, np.ndarray]:
     return np.asarray(line.get_xdata(), float), np.asarray(line.get_ydata(), float)

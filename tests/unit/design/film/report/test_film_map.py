@@ -18,6 +18,8 @@ from squeezefilm.design.film.command import FilmMap, FilmRequest
 from squeezefilm.design.film.report.film_map import film_map, film_pressure, write_film_map
 from squeezefilm.physics.film.planar.film import FilmPlanar
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 SIGMA, EXCURSION = np.geomspace(0.01, 1e4, 121), np.linspace(0.02, 0.95, 40)
 # Rises with σ to its asymptote, and with ε alone beside it.
 RISE, HEIGHT = SIGMA / (SIGMA + 20), EXCURSION**2

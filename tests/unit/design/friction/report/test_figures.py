@@ -36,6 +36,8 @@ from squeezefilm.physics.uncertainty.influences import Influence
 from squeezefilm.physics.uncertainty.parameters import Knowledge, Parameter
 from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 AMPLITUDE = "vibration amplitude, zero-to-peak (µm)"
 FRICTION = "relative friction µ′/µ"
 FINE, COARSE = np.linspace(0, 4e-6, 9), np.array([0.0, 4e-6])

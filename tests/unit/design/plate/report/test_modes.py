@@ -14,11 +14,15 @@ from squeezefilm.design.plate.report.modes import (
     mode_list_rows,
     mode_list_sentences,
     pair_rows,
+    shapes,
     show_mode_list,
+    spectrum,
     write_modes,
 )
 from squeezefilm.design.plate.ring_pair import PairAtSplit, RingPair
 from squeezefilm.physics.display import load_display
+
+pytestmark = pytest.mark.usefixtures("figures_as_described")
 
 
 @pytest.fixture(scope="module")
@@ -79,6 +83,26 @@ def test_numbers_are_written_without_figures_too(paper: ModeList, tmp_path: Path
     (file,) = tmp_path.iterdir()
     assert file.name == "modes.json"
     assert json.loads(file.read_text(encoding="utf-8"))["modes"] == []
+
+
+def test_each_mode_stands_at_its_frequency_and_the_displays_own_is_marked(
+    paper: ModeList,
+) -> None:
+    (axes,) = spectrum(paper).axes
+    x, y = axes.lines[0].get_data()
+    assert list(x) == [mode.frequency / 1e3 for mode in paper.modes]
+    assert list(y) == [mode.alone_per_volt * 1e9 for mode in paper.modes]
+    assert axes.lines[1].get_xdata()[0] == paper.working_mode.frequency / 1e3
+    assert axes.get_xlim() == (15, 45)
+    other = dataclasses.replace(paper.suggestion, mode=paper.modes[0])
+    figure = spectrum(dataclasses.replace(paper, suggestion=other))
+    assert "is suggested" in figure.get_suptitle()
+    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == [
+        "audible", "the display's mode", "suggested",
+    ]  # fmt: skip
+    titles = [axes.get_title(loc="left") for axes in shapes(paper).axes]
+    shown = [float(title.split("  ")[1].split(" kHz")[0]) for title in titles if title]
+    assert shown == sorted(shown)
 
 
 @pytest.mark.slow

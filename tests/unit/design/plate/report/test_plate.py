@@ -27,6 +27,8 @@ from squeezefilm.design.plate.report.plate import (
     plan_view,
 )
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 LENGTH, WIDTH = 80e-3, 50e-3
 PHASE = np.exp(2.5j)
 NODES = np.array([10e-3, 30e-3, 50e-3, 70e-3])  # of cos(4πx/L)

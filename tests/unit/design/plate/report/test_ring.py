@@ -25,6 +25,8 @@ from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.ring.response import RingResponse
 from squeezefilm.physics.plate.ring.section import SectorDrive
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 RADIUS = np.linspace(10e-3, 30e-3, 41)
 # The rim stands at an angle of phase of its own; a nodal circle lies at 15 mm.
 PHASE = np.exp(0.7j)

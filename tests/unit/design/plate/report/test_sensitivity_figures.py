@@ -12,6 +12,8 @@ from squeezefilm.core.kit.style import BLUE, ORANGE
 from squeezefilm.design.plate.report.sensitivity_figures import tornado
 from squeezefilm.design.plate.sensitivity import Sensitivity, SensitivityTable, WorkingPoint
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 POINT = WorkingPoint((8, 0), 33e3, 10.0, 1e-7, 60.0, 34e3)
 
 

@@ -9,6 +9,8 @@ from squeezefilm.core.kit.style import png
 from squeezefilm.design.search.found import DesignSearch
 from squeezefilm.design.search.report import figures
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 KINDS = {
     "three objectives": {"shapes": 2, "objectives": 3, "screened": 300, "solved": 50},
     "empty front": {"limits": {"most_temperature_rise": 20.5}},

@@ -13,6 +13,8 @@ from squeezefilm.design.sweep.report.figures import drawn_columns, means
 from squeezefilm.design.sweep.report.page import sweep_page, wishes
 from squeezefilm.design.sweep.swept import Column, Sweep
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 ASKED = [("relative_friction", si.Unit("1")), ("amplitude_m", si.Unit("m"))]
 
 

@@ -25,6 +25,8 @@ from squeezefilm.design.sweep.report.terminal import (
 from squeezefilm.design.sweep.report.words import name_of, scaled
 from squeezefilm.design.sweep.swept import NOT_YET, Column, Sweep
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 ONE, M, V, HZ = (si.Unit(symbol) for symbol in ("1", "m", "V", "Hz"))
 
 

@@ -13,6 +13,8 @@ from tests.unit.drawn import labelled, words
 from squeezefilm.design.textures.report.figures import contrast, drive, friction, ripple, way
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 
+pytestmark = pytest.mark.usefixtures("figures_as_described")
+
 STEPS = 6001
 TIME = np.linspace(0, 0.6, STEPS)
 # There and back over 30 mm in 0.6 s, and a little sideways.
