@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import math
 from pathlib import Path
@@ -54,7 +55,8 @@ def test_a_surface_is_nearest_to_itself_and_a_known_force_is_used(tmp_path: Path
     (tmp_path / "mine.csv").write_text(csv_text(table))
     found = felt_on_path(shapes(), "bars", str(tmp_path / "mine.csv"))
     assert found.nearest[0].name == "bars"
-    assert "bars along this path: " in felt_path(found).get_suptitle()
+    drawn = felt_path(dataclasses.replace(found, source="mine.csv"))
+    assert "bars along this path: " in drawn.get_suptitle()
     assert found.nearest[0].apart == 0.0
     assert all(a.apart <= b.apart for a, b in zip(found.nearest, found.nearest[1:], strict=False))
     assert found.finger.normal_force == pytest.approx(0.8)
