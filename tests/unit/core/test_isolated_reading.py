@@ -4,12 +4,15 @@ lost, and the process that asked goes on."""
 from __future__ import annotations
 
 import io
+import json
 import os
 import pickle
 import random
+import re
 import signal
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,8 +20,9 @@ import pytest
 from scipy.io import savemat
 from tests.pictures import picture_bytes
 
+from squeezefilm.core import isolated_reading
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.core.isolated_reading import IsolatedReader, Read
+from squeezefilm.core.isolated_reading import IsolatedReader, Read, _received, _serve
 from squeezefilm.measure.recordings.files.matlab import read_matlab
 from squeezefilm.measure.recordings.read import check_folder
 from squeezefilm.physics.texture_files.image_file import picture_from
@@ -90,6 +94,88 @@ def test_one_child_reads_many_files() -> None:
     assert reader.read(doubled, 1.0, file="b")[0]["pid"] == facts["pid"]
     assert reader.read(talking, file="c") == (None, [])
     reader.end()
+
+
+def overfull(_: bytes) -> Read:
+    """In the child: more than there is memory for."""
+    raise MemoryError
+
+
+def unfit(_: bytes) -> Read:
+    """In the child: what a table refuses."""
+    raise InputError("two columns are alike")
+
+
+@pytest.mark.parametrize(
+    ("function", "refused"),
+    [
+        (refusing, {"message": "holds no numbers", "line": 3, "column": 2}),
+        (unfit, {"message": "two columns are alike"}),
+    ],
+)
+def test_a_child_answers_one_request_after_another(
+    monkeypatch: pytest.MonkeyPatch, function: Any, refused: dict[str, Any]
+) -> None:
+    limits: list[float] = []
+    monkeypatch.setattr(isolated_reading, "_limit_processor_time", limits.append)
+    asked = ((doubled, (b"abc", 2.0), 7.0), (function, (b"",), 5.0), (doubled, (b"", 3.0), 6.0))
+    answers = io.BytesIO()
+    _serve(io.BytesIO(b"".join(pickle.dumps(request) for request in asked)), answers)
+    assert limits == [7.0, 5.0, 6.0]
+    answers.seek(0)
+    facts, (line, square), no = _received(answers)
+    assert (facts["size"], no) == (3, None)
+    np.testing.assert_array_equal(line, [0.0, 2.0, 4.0])
+    np.testing.assert_array_equal(square, np.ones((2, 2)))
+    assert _received(answers) == (None, [], refused)
+    assert _received(answers)[1][0][-1] == 6.0
+    assert not answers.read()
+
+
+def test_more_than_memory_holds_is_refused_in_words() -> None:
+    facts, arrays, refused = isolated_reading._answer(overfull, (b"",))
+    assert (facts, arrays) == (None, [])
+    assert refused is not None
+    assert refused["message"].startswith("cannot be read: reading it takes more than ")
+
+
+@pytest.mark.parametrize("shape", [[-1], [2**40]])
+def test_what_a_child_sends_must_be_an_answer(shape: list[int]) -> None:
+    head = {"facts": None, "shapes": [shape], "refused": None}
+    with pytest.raises(ValueError, match="an array of"):
+        _received(io.BytesIO(json.dumps(head).encode() + b"\n"))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+@pytest.mark.parametrize(
+    ("code", "late", "reason"),
+    [
+        (-signal.SIGKILL, True, r"takes more than 2 s"),
+        (-signal.SIGXCPU, False, r"takes more than 2 s"),
+        (-signal.SIGSEGV, False, r"crashed \(SIGSEGV\)"),
+        (3, False, r"crashed \(code 3\)"),
+    ],
+)
+def test_why_a_child_ended(code: int, late: bool, reason: str) -> None:
+    child: Any = SimpleNamespace(returncode=code)
+    assert re.search(reason, IsolatedReader(processor_time=2.0)._why(child, late))
+
+
+@pytest.mark.skipif(os.name == "nt", reason="limits of POSIX")
+def test_a_limit_of_time_is_that_much_more_than_was_used(monkeypatch: pytest.MonkeyPatch) -> None:
+    import resource
+
+    limits: list[Any] = []
+    monkeypatch.setattr(resource, "setrlimit", lambda *limit: limits.append(limit))
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (1, 999))
+    monkeypatch.setattr(isolated_reading.time, "process_time", lambda: 40.5)
+    isolated_reading._limit_processor_time(20.0)
+    isolated_reading._limit_memory(10**9)
+    assert limits == [
+        (resource.RLIMIT_CPU, (61, 999)),
+        (resource.RLIMIT_CORE, (0, 0)),
+        (resource.RLIMIT_AS, (10**9, 999)),
+    ]
 
 
 @pytest.mark.slow

@@ -332,12 +332,16 @@ def test_what_no_report_can_be_made_of_is_told(setup: Any, monkeypatch: pytest.M
 
 def test_a_position_error_needs_both_at_the_same_time() -> None:
     rows = rows_of(100)
-    rows[50, column.X] += 20e-6
     rows[60:, column.X] = math.nan
     true = way_of(TIME[10:90], 0.5e-3 + 0.05 * TIME[10:90])
-    # One of fifty ticks is 20 um off.
-    found = played._position_error(trace_of(rows), true)
-    assert found == pytest.approx(20e-6 / math.sqrt(50))
+    until = way_of(TIME[10:60], 0.5e-3 + 0.05 * TIME[10:60])
+    # One of fifty ticks is 20 um off: the first, one in their midst or the last.
+    for off in (10, 50, 59):
+        moved = rows.copy()
+        moved[off, column.X] += 20e-6
+        for way in (true, until):
+            found = played._position_error(trace_of(moved), way)
+            assert found == pytest.approx(20e-6 / math.sqrt(50))
     assert played._position_error(trace_of(rows), way_of(TIME[:1], TIME[:1])) is None
     later = way_of(TIME[200:300], TIME[200:300])
     assert played._position_error(trace_of(rows), later) is None

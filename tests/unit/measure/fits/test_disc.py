@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 from functools import partial
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
+from scipy.stats import multivariate_normal
 
 from radial_mode import (
     Extrapolation,
@@ -19,6 +22,7 @@ from squeezefilm.measure.fits.ceramic.constants import (
     PARAMETERS,
     RecordedMode,
     _doubted,
+    _evidence,
     ceramic_prior,
     compliances,
 )
@@ -28,6 +32,7 @@ from squeezefilm.measure.fits.ceramic.disc import (
     disc_constants,
     disc_curve,
 )
+from squeezefilm.measure.fits.complex_fit import Prior
 from squeezefilm.measure.fits.estimate import Adequacy
 from squeezefilm.measure.fits.sweep_reading import sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
@@ -197,3 +202,34 @@ def test_two_modes_in_one_sweep_are_fitted_together() -> None:
     assert both.compliance_11.value == pytest.approx(math.exp(TRUE[0]), rel=0.01)
     # The ratio of two radial modes tells Poisson's.
     assert both.from_data["-s12/s11"] < 0.2
+
+
+def test_evidence_is_the_prior_over_what_the_data_leave() -> None:
+    """Against the integral of the prior times the likelihood, where the latter is narrow."""
+    prior = Prior(np.array([1.0, -2.0]), np.array([0.5, 2.0]))
+    where = {0: ([1.2, -1.0], 0.02), 3: ([0.1, 1.5], 0.03)}
+    correlated = np.array([[1.0, 0.4], [0.4, 2.0]])
+    fits: Any = {
+        number: SimpleNamespace(
+            parameters=np.array(parameters),
+            covariance=spread**2 * correlated,
+            spread=spread,
+            degrees_of_freedom=30,
+        )
+        for number, (parameters, spread) in where.items()
+    }
+    grid = (
+        np.stack(np.meshgrid(*2 * [np.linspace(-6, 6, 201)]), axis=-1)
+        @ np.linalg.cholesky(correlated).T
+    )
+    expected = {}
+    for number, (parameters, spread) in where.items():
+        places = np.array(parameters) + spread * grid
+        likelihood = multivariate_normal(parameters, spread**2 * correlated)
+        # Up to the constant of its best point: the likelihood falls as the covariance says.
+        shape = likelihood.pdf(places) / likelihood.pdf(parameters)
+        of_prior = multivariate_normal(prior.mean, np.diag(prior.spread**2)).pdf(places)
+        cell = spread**2 * (12 / 200) ** 2 * np.sqrt(np.linalg.det(correlated))
+        expected[number] = np.log(cell * np.sum(shape * of_prior)) - 30 * np.log(spread)
+    found = _evidence(fits, prior)
+    assert found[0] - found[3] == pytest.approx(expected[0] - expected[3], abs=0.02)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -165,9 +166,17 @@ def test_a_table_without_its_end_is_refused(tmp_path: Path) -> None:
 
 def test_a_head_without_times_is_refused(tmp_path: Path) -> None:
     t, a, b = _decay()
-    damaged = made.rigol_1000z(t, a, b).replace("Sequence", "Sequenz")
-    with pytest.raises(ConfigError, match="first time and the interval"):
-        read_recording(written(tmp_path, damaged, "", "a.csv"))
+    whole = made.rigol_1000z(t, a, b)
+    start, step = re.findall(r"^Sequence,Volt,Volt,(\S+),(\S+)$", whole, re.MULTILINE)[0]
+    for said, instead in (
+        ("Sequence", "Sequenz"),
+        (f"{start},{step}", f"{start},0.0"),
+        (f"{start},{step}", f"{start},-{step}"),
+        (f"{start},{step}", f"{start},+-1"),
+        (f"{start},{step}", f"1e,{step}"),
+    ):
+        with pytest.raises(ConfigError, match="first time and the interval"):
+            read_recording(written(tmp_path, whole.replace(said, instead), "", "a.csv"))
 
 
 @pytest.mark.parametrize(

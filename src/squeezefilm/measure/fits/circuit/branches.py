@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from numpy.polynomial import chebyshev
+from numpy.polynomial import chebyshev, polyutils
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
@@ -142,9 +142,8 @@ def poles(
         raise InputError("the frequencies must span a band", quantity="frequency")
     if not np.all(response):
         raise InputError("a response of exactly zero has no phase", quantity="response")
-    middle = (frequency[-1] + frequency[0]) / 2
-    half = (frequency[-1] - frequency[0]) / 2
-    x = (frequency - middle) / half
+    ends = polyutils.getdomain(frequency)
+    x = polyutils.mapdomain(frequency, ends, chebyshev.chebdomain)
     over = chebyshev.chebvander(x, count + 1)
     under = chebyshev.chebvander(x, count)
     weight = 1 / np.abs(response)
@@ -158,7 +157,7 @@ def poles(
         bottom = under @ coefficients
         # A pole right on the axis would weigh its neighbours without bound.
         bottom = np.where(np.abs(bottom) < 1e-9, 1e-9, bottom)
-    roots = chebyshev.chebroots(coefficients) * half + middle
+    roots = polyutils.mapdomain(chebyshev.chebroots(coefficients), chebyshev.chebdomain, ends)
     roots = roots[np.argsort(roots.real)]
     imaginary = np.where(roots.imag == 0, 1e-30, roots.imag)
     return roots.real, roots.real / (2 * imaginary)

@@ -229,7 +229,7 @@ class _Band:
     @classmethod
     def over(cls, f: si.HertzArray) -> _Band:
         """The band of rising frequencies (Hz)."""
-        return cls(f, float((f[0] + f[-1]) / 2), float(f[-1] - f[0]))
+        return cls(f, float(np.median(f)), float(np.ptp(f)))
 
     @cached_property
     def place(self) -> si.FloatArray:

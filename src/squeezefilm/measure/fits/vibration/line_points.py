@@ -97,8 +97,7 @@ class LinePoints:
     @cached_property
     def _smooth(self) -> tuple[si.MetreArray, si.MetreArray]:
         """A dense row of places, and the local cubics' values there."""
-        length = float(self.x[-1] - self.x[0])
-        count = 1 + _DENSE * int(np.ceil(length / self.half_wavelength))
+        count = 1 + _DENSE * int(np.ceil(np.ptp(self.x) / self.half_wavelength))
         dense = np.linspace(self.x[0], self.x[-1], count)
         values = np.full(count, np.nan)
         for i, place in enumerate(dense):
