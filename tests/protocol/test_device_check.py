@@ -236,3 +236,16 @@ def test_what_the_host_took_is_read_where_the_system_tells(
     assert loop_check.stolen_time() == 250 / os.sysconf("SC_CLK_TCK")
     told.write_text("cpu  11 22\n")
     assert loop_check.stolen_time() == 0.0
+
+
+def test_every_promise_is_looked_at() -> None:
+    refused = [
+        name.removeprefix("refused: ")
+        for name in (result.name for result in checked().results)
+        if name.startswith("refused: ")
+    ]
+    assert refused == [
+        "wrong token", "frequency above its window", "frequency below its window",
+        "voltage above its limit", "voltage below zero", "voltage not a number",
+        "voltage infinite", "an old sequence number", "frame of a wrong length",
+    ]  # fmt: skip

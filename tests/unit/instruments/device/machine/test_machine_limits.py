@@ -50,7 +50,7 @@ def test_all_that_is_allowed_may_be_asked_for() -> None:
         {"lowest_frequency": 19_999_999}, {"highest_frequency": 60_000_001},
         {"lowest_frequency": 40_000_001, "highest_frequency": 40_000_000}, {"duty": 801},
         {"duty": 0}, {"duty_window": 10_001}, {"duty_window": 0}, {"insulated": 2},
-        {"insulated": 0},
+        {"insulated": 0}, {"voltage": 40.0, "slew": 4_000, "insulated": 2},
     ],
 )  # fmt: skip
 def test_what_is_just_past_a_limit_is_refused(changes: dict[str, Any]) -> None:
