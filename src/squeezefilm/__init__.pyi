@@ -34,7 +34,7 @@ if TYPE_CHECKING:
         Volt,
         VoltArray,
     )
-    from squeezefilm.design.analysis.analyze import Analysis
+    from squeezefilm.design.analysis.analysis import Analysis
     from squeezefilm.design.analysis.sensitivities import Effort
     from squeezefilm.design.fabrication.fabricate import Fabrication
     from squeezefilm.design.film.command import FilmAnswer

@@ -15,12 +15,11 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit.page_style import FigureOf
 from squeezefilm.core.kit.sheet import sheet_figure
-from squeezefilm.design.analysis.analyze import Analysis
+from squeezefilm.design.analysis.analysis import Analysis
 from squeezefilm.design.analysis.report.figures import FIGURES
 from squeezefilm.design.analysis.report.page import write_analysis
 from squeezefilm.design.fabrication.fabricate import Fabrication
-from squeezefilm.design.fabrication.report.drawing_sheet import drawing_sheet
-from squeezefilm.design.fabrication.report.page import write_fabrication
+from squeezefilm.design.fabrication.report.page import drawing_sheet, write_fabrication
 from squeezefilm.design.film.command import FilmAnswer, FilmMap
 from squeezefilm.design.film.report import film_map
 from squeezefilm.design.friction.command import FrictionAnalysis

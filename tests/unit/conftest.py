@@ -14,7 +14,7 @@ import pytest
 from tests.unit.described import Descriptions, described, drawn_figures
 
 from squeezefilm.core.kit import style
-from squeezefilm.design.analysis.analyze import Analysis
+from squeezefilm.design.analysis.analysis import Analysis
 from squeezefilm.design.analysis.analyze import analyze as whole_analysis
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import AnnularStator, RectangularPlate

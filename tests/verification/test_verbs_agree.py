@@ -13,7 +13,8 @@ from tests.verification.random_plates import random_glass, random_plate
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.design.analysis.analyze import Analysis, analyze
+from squeezefilm.design.analysis.analysis import Analysis
+from squeezefilm.design.analysis.analyze import analyze
 from squeezefilm.design.analysis.report.first_screen import first_screen
 from squeezefilm.design.analysis.report.rows import vibration_rows
 from squeezefilm.design.plate.command import PlateAnalysis, solve_plate

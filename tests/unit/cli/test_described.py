@@ -11,7 +11,7 @@ from squeezefilm.cli import described
 from squeezefilm.core import presets
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.presets import actuator_names, display_names, materials
-from squeezefilm.design.analysis.analyze import Analysis
+from squeezefilm.design.analysis.analysis import Analysis
 from squeezefilm.design.analysis.report.point_rows import display_values
 
 

@@ -1,280 +1,34 @@
-"""`analyze`: everything about one display at one working point, ready to be shown or saved."""
+"""`analyze`: everything about one display at one working point."""
 
 from __future__ import annotations
 
 import dataclasses
-import functools
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any, ClassVar, get_args, get_type_hints
-
-import numpy as np
+from typing import get_args
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
-from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import Deadline, Pace, SayProgress, said_with_time_left
-from squeezefilm.core.results import Result, stamp, to_json
-from squeezefilm.design.analysis.area_odds import JudgedArea, judged_area
-from squeezefilm.design.analysis.curves import (
-    FrequencyResponse,
-    FrictionCurve,
-    frequency_response,
-    friction_curve,
-)
-from squeezefilm.design.analysis.ears import EarExposure, ear_exposure
-from squeezefilm.design.analysis.felt import DRAWS as FELT_DRAWS
-from squeezefilm.design.analysis.felt import FeltGratings, felt_gratings
-from squeezefilm.design.analysis.other_models import (
-    MeasuredBeside,
-    OtherModel,
-    measured_beside,
-    other_models,
-)
-from squeezefilm.design.analysis.sensitivities import (
-    DisplaySensitivities,
-    Effort,
-    display_sensitivities,
-)
-from squeezefilm.design.analysis.verdict import (
-    Finding,
-    as_json,
-    ears_finding,
-    held_back,
-    model_form,
-    rival_frictions,
-    verdict,
-    why_not_good,
-)
-from squeezefilm.design.analysis.wanted import Wanted
+from squeezefilm.design.analysis.analysis import Analysis
+from squeezefilm.design.analysis.area_odds import judged_area
+from squeezefilm.design.analysis.curves import friction_curve
+from squeezefilm.design.analysis.sensitivities import Effort
+from squeezefilm.design.analysis.verdict import verdict
 from squeezefilm.design.analysis.wanted import wanted_friction as friction_wanted
-from squeezefilm.design.textures.gratings_left import (
-    EXPLORING_SPEEDS,
-    GratingsLeft,
-    speed_gains,
-    what_survives,
-)
+from squeezefilm.design.textures.gratings_left import what_survives
 from squeezefilm.physics.chain.friction_models import FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.wanted_voltage import WantedFriction
 from squeezefilm.physics.display import Display, NamedDisplay
-from squeezefilm.physics.plate.electronics import ElectricalLoad, load_of_mode
 from squeezefilm.physics.plate.working_mode import PlateTheory
 from squeezefilm.physics.render.resonator.envelope import envelope_bandwidth
-from squeezefilm.physics.uncertainty.drawn import description_of
 from squeezefilm.physics.uncertainty.uncertainty import (
     SAMPLES,
-    FrictionBand,
-    UncertainFriction,
-    friction_band,
     interval_or_reason,
 )
 
-BAND_POINTS, BAND_SAMPLES = 9, 64
-"""Amplitudes at which the band of the friction is computed, and draws at each."""
-
-BAND_REACH = 1.5
-"""How far the band goes, in vibration amplitudes: beyond, draws are pressed through."""
-
-KEPT = ("sensitivities", "ears", "friction_curves", "other_models")
-"""Properties that take tenths of a second to seconds, kept on disk (`Analysis.compute`)."""
-
 # What the interval takes (s), measured on the presets; a budget without room for it leaves it out.
 _INTERVAL = 6.0
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Analysis(Result):
-    """Everything `squeezefilm analyze` knows of a display at one working point.
-
-    Its fields are what one decides from. What stands beside it for comparison (other models, curves
-    of the paper) is a property, computed when it is first asked for.
-    Summary and report hold what each value does where an `effort` was asked for, and that and other
-    theories of the plate where it is `whole`.
-    """
-
-    display: Display
-    prediction: Prediction
-    active_area: JudgedArea | None
-    envelope_time_constant: si.Second
-    envelope_bandwidth: si.Hertz
-    own_curve: FrictionCurve
-    uncertainty: UncertainFriction | None
-    fidelity: GratingsLeft | None
-    verdict: tuple[Finding, ...]
-    wanted: Wanted | None = None
-    effort: Effort | None = None
-    whole: bool = False
-    _shown: ClassVar[str] = (
-        "display.name prediction.model prediction.voltage prediction.frequency "
-        "prediction.vibration_amplitude prediction.relative_friction uncertainty.interval "
-        "envelope_time_constant"
-    )
-
-    @functools.cached_property
-    def response(self) -> FrequencyResponse:
-        """The amplitude per volt around the working resonance, without a finger."""
-        return frequency_response(self.prediction)
-
-    @functools.cached_property
-    def own_curves(self) -> tuple[FrictionCurve, ...]:
-        """Friction against amplitude on each surface, by the model of the prediction."""
-        return tuple(
-            self.own_curve
-            if surface == self.prediction.surface
-            else friction_curve(self.prediction, surface, self.prediction.model)
-            for surface in self.display.surfaces
-        )
-
-    @functools.cached_property
-    def friction_curves(self) -> tuple[FrictionCurve, ...]:
-        """Friction against amplitude on each surface: by the paper's model (its Fig 5), then by
-        the prediction's own where that is another."""
-        if self.prediction.model == "paper2008":
-            return self.own_curves
-        papers = (
-            friction_curve(self.prediction, surface, "paper2008")
-            for surface in self.display.surfaces
-        )
-        return (*papers, *self.own_curves)
-
-    @functools.cached_property
-    def band(self) -> FrictionBand | None:
-        """Where µ′/µ lies over the amplitude with all else uncertain; None where no interval is."""
-        if self.uncertainty is None:
-            return None
-        reach = BAND_REACH * self.prediction.vibration_amplitude
-        at = reach * np.linspace(0.0, 1.0, BAND_POINTS) ** 1.5
-        return friction_band(self.display, self.prediction, at, samples=BAND_SAMPLES)
-
-    @functools.cached_property
-    def rivals(self) -> dict[str, float]:
-        """µ′/µ as described by the compared models that the interval does not draw."""
-        return rival_frictions(self.prediction)
-
-    @functools.cached_property
-    def model_form(self) -> Finding | None:
-        """What the interval varied and what not; None where there is no interval."""
-        if self.uncertainty is None:
-            return None
-        return model_form(self.uncertainty, self.rivals, self.prediction.mode.resonance_frequency)
-
-    @functools.cached_property
-    def ears(self) -> EarExposure | None:
-        """What reaches an ear, beside the guidance; about a second, when it is first asked for."""
-        return ear_exposure(self.display, self.prediction, self.uncertainty)
-
-    @functools.cached_property
-    def findings(self) -> tuple[Finding, ...]:
-        """The verdict, with what reaches an ear."""
-        why = None if why_not_good(self.display, self.prediction) is None else ""
-        return (*self.verdict, held_back(ears_finding(self.ears), why))
-
-    @functools.cached_property
-    def felt(self) -> FeltGratings | None:
-        """The finest grating that is felt at the prediction's finger speed, at others too where the
-        analysis is `whole`. Without an interval of the friction this has none either."""
-        draws = 0 if self.uncertainty is None else FELT_DRAWS
-        speeds = EXPLORING_SPEEDS if self.whole else ()
-        return felt_gratings(self.display, self.prediction, draws=draws, speeds=speeds)
-
-    @functools.cached_property
-    def sensitivities(self) -> DisplaySensitivities | None:
-        """What each uncertain or toleranced value does, with the `effort` asked for: about a
-        second, or twice a solve for each value; None where nothing vibrates."""
-        if self.prediction.touch.law is None:
-            return None
-        return display_sensitivities(self.display, self.prediction, self.effort or "quick")
-
-    @property
-    def has_sensitivities(self) -> bool:
-        """True where summary and report hold what each value does."""
-        return self.whole or self.effort is not None
-
-    @functools.cached_property
-    def drive_electronics(self) -> ElectricalLoad | None:
-        """What the plate asks of its amplifier; None where no admittance was solved."""
-        p = self.prediction
-        return load_of_mode(self.display.actuator, p.mode, p.voltage, p.frequency)
-
-    @functools.cached_property
-    def other_models(self) -> tuple[OtherModel, ...]:
-        """The same plate by other theories."""
-        return tuple(other_models(self.display, self.prediction))
-
-    @property
-    def measured(self) -> tuple[MeasuredBeside, ...]:
-        """What was measured of the real display beside what is computed; empty for nothing."""
-        return measured_beside(self.display, self.prediction)
-
-    def compute(self, names: Sequence[str], tell: SayProgress) -> None:
-        """Compute the properties of some names; those that take long are kept on disk. `tell` is
-        told each."""
-        dear = [name for name in names if name in KEPT]
-        types = tuple(get_type_hints(getattr(Analysis, name).func)["return"] for name in dear)
-        kept: Kept[tuple[Any, ...]] = Kept("beside", tuple[types], large=True)  # type: ignore[valid-type]
-        unsure = None if self.uncertainty is None else self.uncertainty.summary()
-        more = (dear, self.effort, unsure)
-        asked = description_of(self.display, self.prediction, more)
-        known = kept.get(asked)
-        vars(self).update(zip(dear, known or (), strict=False))
-        for name in names:
-            if name not in vars(self):
-                tell(name.replace("_", " "))
-                getattr(self, name)
-        if known is None:
-            kept.put(asked, tuple(vars(self)[name] for name in dear))
-
-    def finest_period(self) -> dict[str, float]:
-        """The finest square grating (m) that keeps 90 % of its amplitude swing, by finger speed."""
-        if self.fidelity is None:
-            return {}
-        return {
-            f"{1e3 * speed:g} mm/s": float(period)
-            for speed, period in zip(self.fidelity.speeds, self.fidelity.finest_period, strict=True)
-        }
-
-    def summary(self) -> dict[str, Any]:
-        """The numbers, with units in the keys: what ``--json`` prints."""
-        p, unsure = self.prediction, self.uncertainty
-        shifts = self.sensitivities if self.has_sensitivities else None
-        return {
-            **p.summary(),
-            "active_area": None if self.active_area is None else self.active_area.summary(),
-            "relative_friction_interval": None if unsure is None else list(unsure.interval),
-            "relative_friction_of_rival_models": self.rivals,
-            "model_form": None if self.model_form is None else as_json([self.model_form])[0],
-            "relative_friction_median": None if unsure is None else unsure.median,
-            **_intervals(unsure),
-            "wanted": None if self.wanted is None else self.wanted.summary(),
-            "felt": None if self.felt is None else self.felt.summary(),
-            "sound_at_ear": to_json(self.ears),
-            "sensitivities": None if shifts is None else shifts.summary(),
-            "envelope_bandwidth_Hz": self.envelope_bandwidth,
-            "finest_period_m": self.finest_period(),
-            "finest_period_keeps": None
-            if self.fidelity is None
-            else {
-                "swing": self.fidelity.kept,
-                "fundamental": self.fidelity.fundamental,
-            },
-            "compensation_speed_gain": speed_gains(p),
-            "friction_criterion": [
-                {
-                    "surface": curve.surface,
-                    "model": curve.model,
-                    "amplitude_for_0.7_m": curve.amplitude_for_criterion,
-                    "zero_friction_amplitude_m": curve.zero_friction_amplitude,
-                }
-                for curve in self.friction_curves
-            ],
-            "other_models": to_json(self.other_models) if self.whole else None,
-            "measured": [to_json(one) | {"difference": one.difference} for one in self.measured],
-            "drive_electronics": to_json(self.drive_electronics),
-            "verdict": as_json(self.findings),
-            "provenance": stamp(self.display),
-        }
 
 
 @reads_text
@@ -340,15 +94,6 @@ def analyze(
     return dataclasses.replace(found, wanted=wanted, effort=sensitivities, whole=whole)
 
 
-def _intervals(unsure: UncertainFriction | None) -> dict[str, Any]:
-    """Those of what the drive does, for ``--json``."""
-    if unsure is None:
-        return {}
-    found = unsure.summary()
-    names = ("vibration_amplitude_interval_m", "power_W", "power_interval_W")
-    return {name: found[name] for name in names}
-
-
 def _what_follows(
     display: Display,
     prediction: Prediction,
@@ -381,4 +126,12 @@ def _what_follows(
         uncertainty=unsure,
         fidelity=table,
         verdict=tuple(verdict(display, prediction, area, own, table, unsure, why_not)),
+        notebook=_notebook,
     )
+
+
+def _notebook(analysis: Analysis) -> str:
+    """The first screen of the report, for a notebook."""
+    from squeezefilm.design.analysis.report.page import in_short
+
+    return in_short(analysis)

@@ -10,7 +10,8 @@ import numpy as np
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.model_looks import look_of
 from squeezefilm.core.kit.numbers import M, N, shown
-from squeezefilm.design.analysis.analyze import Analysis, analyze
+from squeezefilm.design.analysis.analysis import Analysis
+from squeezefilm.design.analysis.analyze import analyze
 from squeezefilm.design.analysis.curves import PAPER_CRITERION, pressure_profiles, wavelength_curves
 from squeezefilm.design.analysis.report.figures import criterion_line, working_point
 from squeezefilm.physics.display import load_display

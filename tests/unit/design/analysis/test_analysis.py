@@ -10,7 +10,8 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.core.results import to_json
-from squeezefilm.design.analysis.analyze import KEPT, Analysis, analyze
+from squeezefilm.design.analysis.analysis import KEPT, Analysis
+from squeezefilm.design.analysis.analyze import analyze
 from squeezefilm.design.analysis.curves import pressure_profiles
 from squeezefilm.design.analysis.paper_procedure import design_plate, friction_criterion
 from squeezefilm.physics.chain.friction import friction_law

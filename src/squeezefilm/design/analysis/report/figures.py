@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.core.quantities import FloatArray
-    from squeezefilm.design.analysis.analyze import Analysis
+    from squeezefilm.design.analysis.analysis import Analysis
     from squeezefilm.physics.chain.prediction import Prediction
 
 

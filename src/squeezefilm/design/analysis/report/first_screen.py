@@ -13,7 +13,7 @@ from squeezefilm.design.plate.mode_doubts import why_undriven
 from squeezefilm.physics.uncertainty.parameters import parameter_name
 
 if TYPE_CHECKING:
-    from squeezefilm.design.analysis.analyze import Analysis
+    from squeezefilm.design.analysis.analysis import Analysis
 
 KELVIN = si.Unit("K")
 MOST_DOUBTS = 3

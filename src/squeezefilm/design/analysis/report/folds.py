@@ -42,7 +42,7 @@ from squeezefilm.design.analysis.report.rows import (
 from squeezefilm.design.plate.report.heat_and_sound import heat_rows
 
 if TYPE_CHECKING:
-    from squeezefilm.design.analysis.analyze import Analysis
+    from squeezefilm.design.analysis.analysis import Analysis
 
 NUMBERS = ("Quantity", "Value", "Remark")
 _INFLUENCES = ("Drawn", "From", "Share of the variance", "Whose")

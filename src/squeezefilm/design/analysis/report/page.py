@@ -19,11 +19,11 @@ from squeezefilm.core.kit.page_style import (
     text_table,
 )
 from squeezefilm.design.analysis.report.figures import FIGURES, drawing
-from squeezefilm.design.analysis.report.first_screen import FirstScreen, first_screen
+from squeezefilm.design.analysis.report.first_screen import first_screen
 from squeezefilm.design.analysis.report.folds import Fold, folds
 
 if TYPE_CHECKING:
-    from squeezefilm.design.analysis.analyze import Analysis
+    from squeezefilm.design.analysis.analysis import Analysis
 
 # What stands beside an analysis for comparison, each computed by itself.
 _BESIDE = ("ears", "band", "friction_curves", "response", "felt")
@@ -85,7 +85,7 @@ def report_page(
     stamp = summary["provenance"]
     seed = "no random numbers" if stamp["seed"] is None else f"seed {escape(str(stamp['seed']))}"
     parts = [
-        _first(first_screen(analysis), ready),
+        in_short(analysis, ready),
         *(_fold(each, ready) for each in folds(analysis)),
     ]
     more = "" if analysis.whole else " <code>--all</code> adds every value and other models."
@@ -100,11 +100,13 @@ def report_page(
     )
 
 
-def _first(screen: FirstScreen, drawn: Mapping[str, str]) -> str:
-    """The first screen, with its picture."""
+def in_short(analysis: Analysis, drawn: Mapping[str, str] | None = None) -> str:
+    """First screen of an analysis as HTML, with its picture where that is `drawn`."""
+    screen = first_screen(analysis)
+    picture = "" if drawn is None else _figure("area", drawn)
     numbers = text_table("With 90 % intervals", ("Quantity", "Value", "Interval"), screen.numbers)
     body = (
-        f"<p>{as_html(screen.sentence)}</p>\n{_figure('area', drawn)}{numbers}\n"
+        f"<p>{as_html(screen.sentence)}</p>\n{picture}{numbers}\n"
         f"<h3>What could make it wrong</h3>\n{bullets(screen.doubts)}\n"
         f"<p><strong>Next:</strong> {as_html(screen.next_step)}</p>"
     )

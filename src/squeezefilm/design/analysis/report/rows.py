@@ -29,7 +29,7 @@ from squeezefilm.design.plate.report.heat_and_sound import heat_rows
 from squeezefilm.physics.chain.pad_place import place_words
 
 if TYPE_CHECKING:
-    from squeezefilm.design.analysis.analyze import Analysis
+    from squeezefilm.design.analysis.analysis import Analysis
     from squeezefilm.design.analysis.ears import EarExposure
     from squeezefilm.design.analysis.other_models import MeasuredBeside
     from squeezefilm.physics.chain.prediction import Prediction

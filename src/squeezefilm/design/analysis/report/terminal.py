@@ -13,7 +13,7 @@ from squeezefilm.design.analysis.report.folds import folds
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from squeezefilm.design.analysis.analyze import Analysis
+    from squeezefilm.design.analysis.analysis import Analysis
 
 SHOWN = ("ears",)
 SHOWN_WITH_ALL = ("ears", "sensitivities", "other_models", "felt")

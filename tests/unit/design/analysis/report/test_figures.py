@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.kit import style
-from squeezefilm.design.analysis.analyze import Analysis
+from squeezefilm.design.analysis.analysis import Analysis
 from squeezefilm.design.analysis.report.figures import FIGURES, half_power
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")

@@ -15,9 +15,10 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit.numbers import printable, shown
 from squeezefilm.core.quantities import Unit
-from squeezefilm.design.analysis.analyze import Analysis
+from squeezefilm.design.analysis.analysis import Analysis
 from squeezefilm.design.analysis.report import page
 from squeezefilm.design.analysis.report.figures import FIGURES
+from squeezefilm.design.analysis.report.first_screen import first_screen
 from squeezefilm.design.analysis.report.folds import folds
 from squeezefilm.design.analysis.report.page import report_page, write_analysis
 
@@ -96,6 +97,17 @@ def test_the_first_screen_stands_above_folded_questions(written: tuple[Path, Ana
     assert sum(tag == "figure" for tag, _ in reader.elements) <= 7
     # Everything but the verdict's model is said with --all.
     assert not any(name in words for name in ("levitation-2016", "paper2008", "timoshenko"))
+
+
+def test_a_notebook_shows_the_first_screen(written: tuple[Path, Analysis]) -> None:
+    analysis = written[1]
+    screen = first_screen(analysis)
+    said = " ".join(read(analysis._repr_html_()).text.split())
+    cells = [cell for row in screen.numbers for cell in row]
+    for text in (screen.sentence, *cells, *screen.doubts, screen.next_step):
+        assert " ".join(printable(text).split()) in said
+    # One that no verb made has the table that all results have.
+    assert "prediction.voltage" in dataclasses.replace(analysis, notebook=None)._repr_html_()
 
 
 def test_page_refers_to_nothing_outside(written: tuple[Path, Analysis]) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from squeezefilm.core.kit.numbers import printable
-from squeezefilm.design.analysis.analyze import Analysis
+from squeezefilm.design.analysis.analysis import Analysis
 from squeezefilm.design.analysis.report import terminal
 from squeezefilm.design.analysis.report.decisions import sensitivity_rows
 from squeezefilm.design.analysis.report.first_screen import (

@@ -20,7 +20,7 @@ from squeezefilm.core.distributions import Normal, Uniform
 from squeezefilm.core.formats.drawing import Dimension, Drawing, Ordinate, Polyline, Text
 from squeezefilm.core.formats.dxf import APPLICATION, dxf_text
 from squeezefilm.design.fabrication.fabricate import Fabrication
-from squeezefilm.design.fabrication.report.drawing_sheet import drawing_sheet
+from squeezefilm.design.fabrication.report.page import drawing_sheet
 from squeezefilm.design.fabrication.report.rectangular_sheet import electrode_rows
 from squeezefilm.design.fabrication.report.round_sheet import sector_rows
 from squeezefilm.design.fabrication.report.section_view import Cut, best_cut, spans, stretch_for
