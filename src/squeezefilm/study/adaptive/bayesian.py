@@ -89,7 +89,7 @@ class AdaptiveDesign:
 
 @dataclass(frozen=True, slots=True)
 class AdaptiveTrial:
-    """One answer: the intensity shown, and whether it was positive (correct, or yes)."""
+    """An answer: the intensity shown, and whether it was positive (correct, or yes)."""
 
     intensity: float
     positive: bool

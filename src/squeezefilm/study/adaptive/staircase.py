@@ -83,7 +83,7 @@ class StaircaseRule:
 
 @dataclass(frozen=True, slots=True)
 class StaircaseTrial:
-    """One answer: the intensity shown, whether it was correct, and whether it turned the stairs."""
+    """An answer: the intensity shown, whether it was correct, and whether it turned the stairs."""
 
     intensity: float
     correct: bool

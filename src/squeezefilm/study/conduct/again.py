@@ -20,13 +20,13 @@ from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
 
 COUNTED = "NOT EXISTS (SELECT 1 FROM set_aside a WHERE a.trial = t.uuid)"
-"""Of a trial `t`: that it was not set aside."""
+"""True of a trial `t` that was not set aside."""
 
 
 def spoiled_by(design: StudyDesign, explorations: Iterable[TrialMotion]) -> str:
-    """Why the exploration of an answer does not count: a surface that was not played as planned, or
-    one of the design's rules that is broken; empty where it counts, and where nothing was recorded
-    of it."""
+    """Reason why the exploration of an answer does not count: a surface that was not played as
+    planned, or one of the design's rules that is broken; empty where it counts, and where nothing
+    was recorded of it."""
     rules = design.rules or TrialRules()
     for exploration in explorations:
         if exploration.unusable:
@@ -134,7 +134,7 @@ def restart_block(store: StudyStore, who: str, session: str, row: Row) -> None:
 
 
 def why_begun_again(store: StudyStore, session: str) -> str:
-    """Why a session began with a block of before, for the experimenter; empty where it did not."""
+    """Reason why a session began with a block of before, for the experimenter; empty without."""
     found = store.rows(
         "SELECT a.reason, count(r.trial) AS answers FROM set_aside a LEFT JOIN response r "
         "ON r.trial = a.trial WHERE a.session = ? GROUP BY a.reason",

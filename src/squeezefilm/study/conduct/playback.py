@@ -99,13 +99,13 @@ class Playback:
 
     @property
     def failure(self) -> str:
-        """Why the device or its process failed; empty where nothing did."""
+        """Reason why the device or its process failed; empty where nothing did."""
         return self._failure if self.state == "failed" else ""
 
     @property
     def started(self) -> si.Second:
-        """When the device said that it plays what was started last (s, `time.monotonic`); NaN
-        before. On the twin the output rises 11 to 14 ms later."""
+        """Time at which the device said that it plays what was started last (s, `time.monotonic`);
+        NaN before. On the twin the output rises 11 to 14 ms later."""
         return self._device.began
 
     @reads_text
@@ -186,7 +186,7 @@ class Playback:
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class PlayingOptions:
-    """What `play` is asked for."""
+    """Options of `play`."""
 
     display: str | Path
     surface: Playable

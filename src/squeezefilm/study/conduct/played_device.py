@@ -104,7 +104,7 @@ class SessionDevice:
 
     @property
     def began(self) -> si.Second:
-        """When the device said that it plays what was presented last (s, `time.monotonic`)."""
+        """Time at which the device said that it plays what was presented (s, `time.monotonic`)."""
         return self._began
 
     @property
@@ -177,8 +177,8 @@ class SessionDevice:
         return found
 
     def ended(self) -> tuple[str, TrialMotion]:
-        """As `stop`, but a failure is returned: what failed (empty: nothing) and the exploration,
-        of which nothing is known where the process that plays failed."""
+        """Stop as `stop` does, and return a failure: what failed (empty: nothing) and the
+        exploration, of which nothing is known where the process that plays failed."""
         if not self._presenting:
             return "", TrialMotion()
         self._presenting = False

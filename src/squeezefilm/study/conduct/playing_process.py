@@ -58,7 +58,7 @@ from squeezefilm.study.record.exploration import PATH_PERIOD, explored_table
 LONGEST_PRESENTATION: si.Second = 600.0
 """A surface that nobody answers plays no longer; the trial then comes again."""
 VERIFICATION_SHARE: si.Dimensionless = 0.25
-"""Of the display's voltage, at which its resonance is swept."""
+"""Share of the display's voltage at which its resonance is swept."""
 _SPAN = 4.0
 """The carrier is swept over so many bandwidths to either side of the prediction."""
 _POINTS = 41
@@ -68,7 +68,7 @@ _PATH = ("time_s", "x_m", "y_m", "speed_m_per_s", "amplitude_m", "relative_frict
 
 
 Surface = Stimulus | TextureFile
-"""What may be played: a study's stimulus, or any texture with what it is called."""
+"""Something to play: a study's stimulus, or any texture with what it is called."""
 
 Sweep = Callable[[Limits, si.HertzArray, si.Volt, si.Second], ResonanceSweep | None]
 """Sweeps carriers within limits at a voltage, settling at each; None without a pickup."""
@@ -76,8 +76,8 @@ Sweep = Callable[[Limits, si.HertzArray, si.Volt, si.Second], ResonanceSweep | N
 
 @dataclass(frozen=True)
 class WorkerOrders:
-    """What the process is told once: the display's name or file, the drive, the folder of traces,
-    the twin's settings and finger, the loop's rate, and the device's pickup (m/V; None: unknown).
+    """Orders to the process: the display's name or file, the drive, the folder of traces, the
+    twin's settings and finger, the loop's rate, and the device's pickup (m/V; None: unknown).
     """
 
     target: str
@@ -238,7 +238,7 @@ def resonance_verified(
     *,
     twin: bool,
 ) -> DeviceVerification:
-    """What a sweep of the carrier over a mode's resonance, without a finger, says of a device.
+    """Verdict on a device by a sweep of the carrier over a mode's resonance, without a finger.
 
     At a quarter of the display's voltage; the amplitude is judged where the pickup is calibrated
     (m/V). A device without a pickup is not measurable. Raises what `sweep` raises.
@@ -275,7 +275,7 @@ def resonance_verified(
 
 
 def explored(trace: Trace, name: str) -> TrialMotion:
-    """How the finger went, from a session's record; `name` is that of its file.
+    """Motion of the finger, from a session's record; `name` is that of its file.
 
     Path and speed are those of the time in which it touched. No force is known.
     """

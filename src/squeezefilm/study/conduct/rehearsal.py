@@ -100,7 +100,7 @@ def rehearse(
 
 
 def _simulated(store: StudyStore) -> list[str]:
-    """Who was enrolled by a rehearsal, in the order of their numbers; of the files of older
+    """Participants enrolled by a rehearsal, in the order of their numbers; of the files of older
     versions those who have a session, which is simulated."""
     sat = {row["participant"] for row in store.rows("SELECT DISTINCT participant FROM session")}
     return [
@@ -111,7 +111,7 @@ def _simulated(store: StudyStore) -> list[str]:
 
 
 def _responses(study: SimulatedStudy, person: int) -> dict[int, Response]:
-    """What a person answers, by the number of the trial."""
+    """Answers of a person by the number of the trial."""
     answers = study.answers
     names, mine = answers.design.answers, answers.participant == person
     asked = [trial.number for trial in trials(answers.design, person, study.seed) if trial.asks]
@@ -154,8 +154,8 @@ class _Hand:
         self._motions: dict[tuple[str, int], tuple[Stimulus, TrialMotion]] = {}
 
     def explored(self, presentation: Presentation) -> tuple[TrialMotion, ...]:
-        """Of each virtual surface; none where the design's rules would not let it count, for the
-        hand would break them again."""
+        """Exploration of each virtual surface; none where the design's rules would not let it
+        count, for the hand would break them again."""
         display = presentation.trial.display
         found = tuple(
             self._motion(display, surface)
@@ -196,7 +196,7 @@ _STROKES = "Strokes to and fro along x, each pass of least jerk, as the simulate
 def path_of(
     exploring: Exploring, display: Display, observer: Observer, finger: FingerClass
 ) -> FingerPath:
-    """How a finger of that class explores a surface of a display in a rehearsal.
+    """Path by which a finger of that class explores a surface of a display in a rehearsal.
 
     Raises `InputError` for free exploration of a ring.
     """
@@ -210,7 +210,7 @@ def path_of(
 def rehearsed(
     path: FingerPath, exploring: Exploring, stimulus: Stimulus, normal_force: si.Newton
 ) -> TrialMotion:
-    """That a finger explored a surface along a path at a force (N), as a device would say it."""
+    """Motion along a path over a surface at a force (N), as a device would tell it."""
     times = np.arange(0.0, path.duration, PATH_PERIOD)
     x, y = path.place(times)
     about = {

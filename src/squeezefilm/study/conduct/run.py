@@ -61,7 +61,7 @@ class Presentation:
 # of the table `response` (`study.record.schema`) of their names with units: each needs its column.
 @dataclass(frozen=True)
 class Response:
-    """What a participant answered, and when.
+    """A participant's answer and its times.
 
     `choice` is one of the trial's alternatives, `estimate` a number above 0 where magnitudes are
     estimated; both stay empty while gratings are only felt. Monotonic times (s) are the clock of
@@ -80,8 +80,8 @@ class Response:
 
 @dataclass(frozen=True)
 class Acknowledgement:
-    """What is on the disk of an answer. `repeated` says that it was there before this call; what
-    was recorded first stands. `correct` is None where nothing is right or wrong."""
+    """Receipt for an answer that is on the disk. `repeated` says that it was there before this
+    call; what was recorded first stands. `correct` is None where nothing is right or wrong."""
 
     number: int
     choice: str
@@ -95,8 +95,8 @@ class Acknowledgement:
 
 
 class StudyRun:
-    """One session of a participant: `next_trial`, present it, `respond`, until `state` is
-    "finished" or "display changes" (then begin a session on the other display)."""
+    """A session of a participant: `next_trial`, present it, `respond`, until `state` is "finished"
+    or "display changes" (then begin a session on the other display)."""
 
     def __init__(
         self, store: StudyStore, session: str, *, clock: Callable[[], si.Second] = time.monotonic
@@ -124,7 +124,7 @@ class StudyRun:
 
     @property
     def state(self) -> State:
-        """Where the run stands; "presented" if a trial of this object waits for its answer."""
+        """State of the run; "presented" if a trial of this object waits for its answer."""
         display = display_wanted(self._store, self.participant)
         if display is None:
             return "finished"
@@ -256,7 +256,7 @@ class StudyRun:
         return max(left - (self._clock() - seen), 0.0)
 
     def _rest_after_answer(self, whole: si.Second) -> si.Second:
-        """What is left (s) of a break that began with the answer before, by the wall clock."""
+        """Rest (s) of a break that began with the answer before, by the wall clock."""
         [last] = self._store.rows(
             "SELECT max(r.ended_utc) AS ended FROM response r JOIN trial t ON t.uuid = r.trial "
             "WHERE t.participant = ?",

@@ -116,12 +116,12 @@ class Exposure:
 
     @property
     def above_guidance_dB(self) -> si.Dimensionless | None:
-        """By how much the level exceeds the guidance (dB); None where there is none."""
+        """Excess of the level over the guidance (dB); None where there is none."""
         return None if self.guidance_dB is None else self.level_dB - self.guidance_dB
 
     @property
     def statement(self) -> str:
-        """What the experimenter acknowledges, in two sentences."""
+        """Statement that the experimenter acknowledges, in two sentences."""
         said = (
             f"Airborne ultrasound of {self.display}: up to {self.level_dB:.0f} dB at "
             f"{si.format_quantity(self.distance, si.Unit('m'))}, "

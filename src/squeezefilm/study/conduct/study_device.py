@@ -1,4 +1,4 @@
-"""What a study asks of a device: who it is, whether it is in order, to play, and to stop."""
+"""A study's demands of a device: who it is, whether it is in order, to play, and to stop."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from squeezefilm.physics.perception.stimuli import Stimulus
 
 @dataclass(frozen=True)
 class DeviceIdentity:
-    """Which device presented a trial, so that its rows can be told apart.
+    """Identity of the device that presented a trial, so that its rows can be told apart.
 
     `device_sha256` is the hash of the display's description (`core.results.config_hash`),
     `calibration_sha256` that of the calibration in use; both are empty where there is none.
@@ -58,7 +58,7 @@ class DeviceVerification:
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """What is off, in sentences; none if all is within tolerance. What could not be read (NaN)
+        """Sentences on what is off; none if all is within tolerance. What could not be read (NaN)
         is off."""
         if not self.measurable:
             return ()
@@ -84,7 +84,7 @@ class DeviceVerification:
 
 @dataclass(frozen=True)
 class TrialMotion:
-    """How the finger explored one trial; NaN where the device does not know.
+    """Exploration of one trial by the finger; NaN where the device does not know.
 
     `trace` is a table's CSV text (`core.formats.traces.csv_text`) of the finger's path, empty if
     there is none; its metadata must not name the participant. `raw_trace` is the random name of a
@@ -109,7 +109,7 @@ class StudyDevice(Protocol):
     """The seam between a study and what presents its surfaces: a device, its twin, or nothing."""
 
     def identity(self) -> DeviceIdentity:
-        """Who it is."""
+        """Identity of the device."""
         ...
 
     def verify_device(self) -> DeviceVerification:

@@ -43,7 +43,7 @@ from squeezefilm.study.record.store import StudyStore, utc_now
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Desk:
-    """How people are spoken to where a session is held.
+    """Ways to speak to people where a session is held.
 
     Attributes:
         examiner: asks the participant.
@@ -114,7 +114,7 @@ def run_session(
     conditions: Path | None = None,
     consent: bool = False,
 ) -> str:
-    """One session on the display that the participant's next trial needs. Returns how it ended.
+    """Run a session on the display that the participant's next trial needs. Returns how it ended.
 
     `drive` is "none", "rehearsal" (the twin in this process, on a virtual clock), "twin" (behind a
     port, in real time) or "serial:PORT", whose pickup gives `amplitude_per_pickup` (m/V; None if
@@ -171,7 +171,7 @@ def run_session(
 
 
 def _attended(store: StudyStore, who: str, display: str) -> str:
-    """What a participant's catch trials on a display say, for the experimenter; nothing without."""
+    """Sentence to the experimenter on catch trials on a display; nothing without."""
     [found] = store.rows(
         "SELECT count(r.correct) AS asked, total(r.correct) AS right FROM response r "
         "JOIN trial t ON t.uuid = r.trial WHERE t.participant = ? AND t.display = ? "
@@ -196,7 +196,7 @@ def _sitting(conditions: Path | None, consent: bool) -> SessionConditions:
 
 
 def _free_path(display: Display) -> FingerPath:
-    """How the hand of a twin explores freely: as a median simulated person would."""
+    """Path by which the hand of a twin explores freely: as a median simulated person would."""
     from squeezefilm.study.simulated.felt_surfaces import free_path
 
     observer = load_observer()
@@ -251,7 +251,7 @@ Mark = Callable[[str, si.Second | None], None]
 
 
 class Examiner(Protocol):
-    """What stands between a session and the person: a terminal, a page, or a script."""
+    """Link between a session and the person: a terminal, a page, or a script."""
 
     def rest(self, duration: si.Second) -> None:
         """Let the person rest (s)."""

@@ -166,14 +166,14 @@ class StudyDesign:
 
     @property
     def most_trials(self) -> int:
-        """At least as many trials as a participant has, without making them."""
+        """Upper bound of the trials that a participant has, without making them."""
         felt = self.familiarisation * max(len(self.stimuli), len(self.alternatives))
         caught = sum(trial.count for trial in self.catch)
         return len(self.displays) * (self.most_main_trials + felt + caught + self.practice)
 
     @property
     def most_main_trials(self) -> int:
-        """At least as many main trials as a participant has on a display."""
+        """Upper bound of the main trials that a participant has on a display."""
         if self.adaptive:
             return sum(series.count for series in self.adaptive)
         conditions = len(self.stimuli) * self.described.most_per_stimulus

@@ -30,7 +30,7 @@ _ORDERS, _MATCHING, _SPREAD, _PRACTICE, _NOISE = range(5)
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """One trial as planned.
+    """A trial as planned.
 
     Attributes:
         number: from 1, within the participant.

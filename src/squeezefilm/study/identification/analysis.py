@@ -43,7 +43,7 @@ from squeezefilm.study.psychometric.estimate import Estimate
 
 @dataclass(frozen=True, slots=True)
 class StimulusCorrect:
-    """One stimulus: how often it was named rightly, with Wilson's interval over trials."""
+    """Correct answers to a stimulus, and their share with Wilson's interval over trials."""
 
     stimulus: str
     trials: int

@@ -40,7 +40,7 @@ class Drift:
 
 @dataclass(frozen=True, slots=True)
 class Attention:
-    """One person's catch trials.
+    """A person's catch trials.
 
     `p_value` is the probability of no more right ones from a person who gets 95 % of them right;
     `attended` says that it is 5 % or more.

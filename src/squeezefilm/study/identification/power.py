@@ -27,7 +27,7 @@ class ParticipantSimulator(Protocol):
     first axis is theirs."""
 
     def __call__(self, participants: int, random: np.random.Generator) -> NDArray[Any]:
-        """So many people; all randomness from `random`."""
+        """Simulate so many people; all randomness from `random`."""
         ...
 
 

@@ -214,7 +214,7 @@ def permutation_test(
 
 
 def _draw(random: np.random.Generator, left: si.IntArray, drawn: int) -> si.IntArray:
-    """One multivariate hypergeometric draw from each row of `left`."""
+    """Draw of a multivariate hypergeometric distribution for each row of `left`."""
     taken = np.zeros_like(left)
     wanted = np.full(left.shape[0], drawn)
     others = left.sum(axis=1)

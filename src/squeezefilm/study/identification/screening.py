@@ -1,4 +1,4 @@
-"""Who does not do the task: each person's answers judged by the design's rule, before pooling.
+"""Screening of people who do not do the task by a design's rule, before answers are pooled.
 
 A person's trials are compared under three models: of somebody who does the task (a cumulative
 Gaussian of the difference, a bias or criterion, 4 % of lapses; among names: somebody who knows a
@@ -59,7 +59,7 @@ _Models = tuple[si.FloatArray, si.FloatArray, si.FloatArray]
 
 @dataclass(frozen=True, slots=True)
 class Screening:
-    """Who does the task, and what becomes of a display's main number with and without the others.
+    """A display's main number with and without people who do not do the task.
 
     Attributes:
         rule: of the design.
@@ -81,7 +81,7 @@ class Screening:
 
     @property
     def named(self) -> tuple[PersonJudgement, ...]:
-        """Who does not do the task by the rule."""
+        """People who do not do the task by the rule."""
         return tuple(person for person in self.people if person.reasons)
 
     @property

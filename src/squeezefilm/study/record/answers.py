@@ -68,7 +68,7 @@ class Answers:
 
     @property
     def values(self) -> si.FloatArray:
-        """How much (SI) each surface has of what is judged, shape (surfaces,)."""
+        """Amount (SI) that each surface has of what is judged, shape (surfaces,)."""
         return np.array([self.design.judged_value(surface) for surface in self.surfaces])
 
     @property

@@ -47,7 +47,7 @@ def is_trace(name: str) -> bool:
 
 
 def problems(rows: Rows, design: Callable[[], StudyDesign]) -> Iterator[str]:
-    """In what a file's tables or rows are not what this program writes: table, row and column.
+    """Faults of a file's tables or rows: table, row and column.
 
     `rows` asks the file, `design` reads its design once the study's own row is known to be good.
     """

@@ -18,12 +18,12 @@ from squeezefilm.core.regular_file import require_regular
 from squeezefilm.study.record.schema import APPLICATION_ID, VERSION
 
 _PATIENCE = 5000
-"""How long a write waits for another program's (ms)."""
+"""Longest wait of a write for another program's (ms)."""
 _PARTS = ("", "-wal", "-shm")
 _LEFT_BEHIND = ("-wal", "-shm", "-journal")
 
 FAILURES = (sqlite3.Error, UnicodeDecodeError)
-"""What `sqlite3` raises; the last one where it cannot even read what SQLite says of a torn file."""
+"""Errors that `sqlite3` raises; the last where it cannot read what SQLite says of a torn file."""
 
 Identity = tuple[int, int]
 

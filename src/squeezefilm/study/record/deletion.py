@@ -209,7 +209,7 @@ def _placed(paths: Iterable[Path]) -> set[Path]:
 
 
 def _found_in(paths: Iterable[Path], identifiers: set[str]) -> list[str]:
-    """Those whose name or content has one of the identifiers in it; links lead out of here."""
+    """Files whose name or content has one of the identifiers in it; links lead out of here."""
     wanted = [identifier.encode() for identifier in identifiers]
     return sorted(
         str(path)

@@ -202,7 +202,7 @@ def keyword(text: str) -> str:
 
 
 def description(store: StudyStore) -> str:
-    """One paragraph about the study, for a dataset's description."""
+    """A paragraph about the study, for a dataset's description."""
     design, study = store.design, store.study
     said = (
         f"{design.title or design.name}: {design.task} on {', '.join(design.displays)}, "

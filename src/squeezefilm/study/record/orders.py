@@ -28,7 +28,7 @@ ORDER_COLUMNS = tuple(
         *("pause_s", "seed"),
     )
 )
-"""What an order file holds."""
+"""Columns of an order file."""
 
 
 def write_orders(plan: StudyPlan, folder: str | Path) -> list[Path]:

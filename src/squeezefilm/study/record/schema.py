@@ -10,8 +10,8 @@ from __future__ import annotations
 APPLICATION_ID = 0x73_66_73_74
 """Marks the file as a study of squeezefilm in SQLite's header ("sfst")."""
 VERSION = 2
-"""Of the tables, in SQLite's header. Version 1 had no `set_aside`, and is brought up to date
-when it is opened; another one is refused."""
+"""Version of the tables in SQLite's header: 1, without `set_aside`, is brought up to date when it
+is opened; another one is refused."""
 
 SCHEMA = """
 CREATE TABLE study (

@@ -43,7 +43,7 @@ _PATIENCE: si.Second = 5.0
 
 @dataclass(frozen=True)
 class Sitting:
-    """One sitting: which study's file, who, with what; `session` once it was consented to."""
+    """A sitting: which study's file, who, with what; `session` once it was consented to."""
 
     id: str
     study: str

@@ -1,4 +1,4 @@
-"""One file per study: SQLite with a write-ahead log, in which what is acknowledged stays.
+"""Store of a study in one file: SQLite with a write-ahead log, in which what is acknowledged stays.
 
 Every write is one transaction with ``synchronous=FULL``: when a call returns, its rows have been
 handed to the disk and synced, and survive a crash of program or machine as far as the disk keeps
@@ -237,7 +237,7 @@ class StudyStore:
         return self._design
 
     def rows(self, query: str, values: Iterable[Any] = ()) -> list[dict[str, Any]]:
-        """What a query finds, as dictionaries. Raises `RecordError` if the file cannot be read."""
+        """Rows of a query, as dictionaries. Raises `RecordError` if the file cannot be read."""
         self._database.require_in_place()
         try:
             cursor = self._database.connection.execute(query, tuple(values))
@@ -248,7 +248,7 @@ class StudyStore:
 
     @contextlib.contextmanager
     def transaction(self) -> Iterator[sqlite3.Connection]:
-        """One transaction: all of it is on the disk when it ends, or nothing is and it raises."""
+        """Open a transaction: all of it is on the disk when it ends, or it raises and none is."""
         connection = self._database.connection
         try:
             connection.execute("BEGIN IMMEDIATE")

@@ -25,7 +25,7 @@ from squeezefilm.study.record.store import StudyStore
 
 @dataclass(frozen=True)
 class Column:
-    """One column: name with its unit, what it holds, its unit in words of BIDS, and its kind."""
+    """A column: name with its unit, what it holds, its unit in words of BIDS, and its kind."""
 
     name: str
     description: str
@@ -315,7 +315,7 @@ def csv_text(rows: Sequence[dict[str, Cell]], columns: Sequence[Column] = COLUMN
 
 
 def cell_text(value: Cell, missing: str = "") -> str:
-    """One cell as text, guarded if it is text."""
+    """A cell as text, guarded if it is text."""
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return missing
     if isinstance(value, bool):

@@ -25,7 +25,7 @@ class Picture:
     message: str
 
     def get_suptitle(self) -> str:
-        """As matplotlib's figures say it."""
+        """The figure's title, by the name of matplotlib's method."""
         return self.message
 
 

@@ -170,7 +170,7 @@ class TerminalExaminer:
         self._reads, self._write, self._sleep = read, write, sleep
 
     def _read(self, prompt: str) -> str:
-        """One line. The end of the input stops the session as Ctrl-C does."""
+        """A line from the terminal. The end of the input stops the session as Ctrl-C does."""
         try:
             return self._reads(prompt)
         except EOFError as error:

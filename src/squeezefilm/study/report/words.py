@@ -104,7 +104,7 @@ _JUDGED = {
 
 
 def _screening_first(screening: Screening) -> list[str]:
-    """Who does not do the task, and what the main number is without them."""
+    """Sentences on who does not do the task, and the main number without them."""
     said = [screening.said] if screening.said else []
     named = screening.named
     if not named:
@@ -310,7 +310,7 @@ def confusion_rows(matrix: ConfusionMatrix) -> tuple[tuple[str, ...], list[tuple
 
 
 def whose(origin: str) -> str:
-    """Whose answers: "simulated answers", "measured answers", "answers of people"."""
+    """Origin of answers: "simulated answers", "measured answers", "answers of people"."""
     is_noun = any(word in origin for word in ("people", "participants", "nobody"))
     return f"answers of {origin}" if is_noun else f"{origin} answers"
 

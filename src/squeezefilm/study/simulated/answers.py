@@ -50,13 +50,13 @@ class SimulatedStudy(Result):
 
     @property
     def participants(self) -> int:
-        """How many people."""
+        """Number of people."""
         return len(self.answers.people)
 
     @functools.cached_property
     def analyses(self) -> dict[str, StudyAnalysis]:
-        """What they say, by display; a psychometric function a person takes some 20 ms. Empty
-        where gratings and stimuli do not pair up, so that nothing is right or wrong."""
+        """Analyses of the answers, by display; a psychometric function a person takes some 20 ms.
+        Empty where gratings and stimuli do not pair up, so that nothing is right or wrong."""
         from squeezefilm.study.tasks.analyze import analyze_answers
 
         design = self.tables.design
@@ -86,7 +86,7 @@ class SimulatedStudy(Result):
         return self.matches
 
     def summary(self) -> dict[str, Any]:
-        """What ``squeezefilm study simulate --json`` prints; keys carry units."""
+        """Mapping that ``squeezefilm study simulate --json`` prints; keys carry units."""
         tables, design = self.tables, self.tables.design
         return {
             "study": design.name,
@@ -137,7 +137,7 @@ class SimulatedStudy(Result):
         return self.rows()
 
     def rows(self) -> list[dict[str, Any]]:
-        """One row a trial, units in the names."""
+        """A row a trial, with units in the names."""
         a = self.answers
         names = [surface.name for surface in a.surfaces]
         answers, series = a.design.answers, [one.name for one in a.design.adaptive]
@@ -205,7 +205,7 @@ def study_of(matches: Matches) -> SimulatedStudy:
 
 
 def answers_of(study: Matches) -> Answers:
-    """What people matched in main trials, as analyses take it."""
+    """Matches of people in main trials, as analyses take them."""
     design = study.tables.design
     asked = study.choice.shape[1]
     size = study.choice.size

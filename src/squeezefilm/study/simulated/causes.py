@@ -1,4 +1,4 @@
-"""Why a stimulus is confused: what the chain makes of it under a finger, in numbers."""
+"""Causes of confusion of a stimulus: what the chain makes of it under a finger, in numbers."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Causes:
-    """What speaks against a stimulus being recognised (over several fingers: medians).
+    """Causes against a stimulus being recognised (over several fingers: medians).
 
     Attributes:
         texture_frequency: at which it passes the finger at mean speed (Hz).
@@ -121,7 +121,7 @@ def _line(way: si.FloatArray, values: si.FloatArray, observer: Observer, period:
 
 
 def _ripple_share(played: RenderAnalysis) -> si.Dimensionless:
-    """What the wave adds to the friction that the same amplitudes make over an antinode."""
+    """Contribution of the wave to the friction that the same amplitudes make over an antinode."""
     # A compensating renderer's inverse is of the driven amplitude, so there is no plain friction.
     if played.wave != "felt":
         return 0.0 if played.wave == "ignored" else float("nan")

@@ -1,5 +1,5 @@
-"""What every finger class gets of every surface of a study, and why a stimulus is confused: the
-slow part, computed once and kept on disk.
+"""Surfaces of a study as every finger class gets them, and why a stimulus is confused: the slow
+part, computed once and kept on disk.
 
 Noise and decisions (`participants`, `judgements`) need only these tables, so ten thousand people
 cost seconds.
@@ -70,7 +70,7 @@ class ChainTables:
 
     @property
     def asked(self) -> str:
-        """What simulated answers follow from, but for people and seed: under it they are kept."""
+        """Text of what simulated answers follow from, but for people and seed: it names them."""
         design = self.design
         surfaces = [*design.stimuli, *(trial.stimulus for trial in design.catch)]
         # Two kinds of texture may have the same numbers, and the text of an image has no pixels.
@@ -83,7 +83,7 @@ class ChainTables:
 
     @property
     def whose_finger(self) -> str:
-        """Whose finger the displays are under, in words."""
+        """Words for whose finger the displays are under."""
         return "; ".join(dict.fromkeys(plate.whose_finger for plate in self.plates))
 
     def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
@@ -209,7 +209,7 @@ def _competing(
 
 
 def _gathered(tree: Any, part: Callable[[FeltSurface], si.FloatArray | None]) -> si.FloatArray:
-    """One array of every percept in nested lists, which become its first axes."""
+    """An array of every percept in nested lists, which become its first axes."""
 
     def gather(one: Any) -> Any:
         return [gather(i) for i in one] if isinstance(one, list) else part(one)

@@ -1,4 +1,4 @@
-"""What a finger's own path would have felt like, by a study's surfaces and an observer's senses.
+"""Percept of a finger's own path, by a study's surfaces and an observer's senses.
 
 The path is one that a study recorded (`felt_in_trial`), or any other (`felt_on_path`). Every
 surface that the study might have presented is felt along the same path, so that it is known which
@@ -49,7 +49,7 @@ _KEPT = frozenset({"speed_m_per_s", "amplitude_m", "relative_friction"})
 
 @dataclass(frozen=True, slots=True)
 class Likeness:
-    """How far a surface felt along the path is from the one explored: `apart` in standard
+    """Distance of a surface felt along the path from the one explored: `apart` in standard
     deviations of that difference (1), without noise; infinite where nothing was felt."""
 
     name: str
@@ -58,7 +58,7 @@ class Likeness:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class FeltPath(Result):
-    """What a path over a surface would have felt like.
+    """Percept of a path over a surface.
 
     Attributes:
         design, observer: of the study, and whose senses.
@@ -95,12 +95,12 @@ class FeltPath(Result):
 
     @property
     def directions(self) -> dict[str, RunPercept]:
-        """What was felt along x and along y, where the path has runs."""
+        """Percepts along x and along y, where the path has runs."""
         both = {"along x": self.felt.along, "along y": self.felt.across}
         return {name: one for name, one in both.items() if one is not None}
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints; keys carry units."""
+        """Mapping that ``--json`` prints; keys carry units."""
         found = {}
         for name, direction in self.directions.items():
             rhythms = direction.percept.candidates
@@ -144,7 +144,7 @@ class FeltPath(Result):
 @si.checked_numbers
 @dataclass(frozen=True)
 class FeltRequest:
-    """What `felt_on_path` is asked for."""
+    """Arguments of `felt_on_path`."""
 
     design: NamedDesign
     stimulus: str
@@ -162,7 +162,7 @@ class FeltRequest:
 @reads_text
 @called_with(FeltRequest)
 def felt_on_path(asked: FeltRequest) -> FeltPath:
-    """What a path over one of a design's surfaces would have felt like.
+    """Percept of a path over one of a design's surfaces.
 
     Args:
         design: the study whose surfaces are compared.
@@ -263,7 +263,7 @@ def _paths(
 
 
 def _explored(paths: tuple[FingerPath, ...], face: tuple[si.Metre, si.Metre] | None) -> Exploration:
-    """One exploration of all touches, set one after another."""
+    """An exploration of all touches, set one after another."""
     pause, now = 1.0, 0.0
     times: list[si.FloatArray] = []
     for path in paths:
@@ -277,7 +277,7 @@ def _explored(paths: tuple[FingerPath, ...], face: tuple[si.Metre, si.Metre] | N
 
 
 def _perceived(felt: PathPercept, observer: Observer) -> Perceived:
-    """What is perceived in each direction without noise; nothing where there is no run."""
+    """Percept in each direction without noise; nothing where there is no run."""
     both = [felt.along, felt.across]
     strength = np.array([0.0 if one is None else one.clearest_d_prime for one in both])
     period = [math.nan if one is None else one.clearest_period for one in both]

@@ -1,4 +1,4 @@
-"""What fingers get of surfaces: felt once, kept on disk, and shared by two processes."""
+"""Percepts of surfaces under fingers: felt once, kept on disk, and shared by two processes."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _AT_ONCE = 12
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FeltSurface:
-    """What one finger gets of one surface: candidates and evidence by period, of free exploration
+    """Percept of a surface under a finger: candidates and evidence by period, of free exploration
     along x, and `across` along y; why it may be confused (a real grating has no causes)."""
 
     candidates: Candidates
@@ -46,24 +46,24 @@ _KEPT: Kept[FeltSurface] = Kept("percepts", FeltSurface)
 _NO_CAUSES: Causes = Causes(*(math.nan,) * len(dataclasses.fields(Causes)))
 _MOST_REMEMBERED = 8192
 _REMEMBERED: dict[str, FeltSurface] = {}
-"""What this process has met, by what was asked: where nothing is kept on disk, and to be quick."""
+"""Percepts that this process has met, by request: to be quick, and where no disk keeps them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Asked:
-    """What one finger gets of several surfaces: `feel` of each with the `rest` of its inputs."""
+    """Request for percepts of surfaces under a finger: `feel` of each, `rest` of its inputs."""
 
     feel: Callable[..., FeltSurface]
     surfaces: tuple[Any, ...]
     rest: tuple[Any, ...]
 
     def known(self) -> list[FeltSurface] | None:
-        """What was computed before; None unless all was."""
+        """Percepts computed before; None unless all was."""
         found = [_known(_name(self.feel, surface, self.rest)) for surface in self.surfaces]
         return None if None in found else [one for one in found if one is not None]
 
     def remember(self, found: list[FeltSurface]) -> None:
-        """What another process found need not be found, nor read, again."""
+        """Keep percepts of another process, which need not be computed nor read again."""
         for surface, felt in zip(self.surfaces, found, strict=True):
             _remember(_name(self.feel, surface, self.rest), felt)
 
@@ -75,7 +75,7 @@ def _felt_of(
 
 
 def felt_surfaces(asked: list[Asked], tell: SayProgress) -> list[list[FeltSurface]]:
-    """What each finger gets, what is not known yet by two processes."""
+    """Percepts of each finger; two processes compute what is not known yet."""
     found = [one.known() for one in asked]
     lacking = [at for at, known in enumerate(found) if known is None]
     with contextlib.ExitStack() as stack:
@@ -99,12 +99,12 @@ def felt_surfaces(asked: list[Asked], tell: SayProgress) -> list[list[FeltSurfac
 
 
 def _load() -> None:
-    """What a second process needs before it takes fingers."""
+    """Load the modules that a second process needs before it takes fingers."""
     import squeezefilm.physics.chain.rendered_texture  # noqa: F401
 
 
 def _name(feel: Callable[..., FeltSurface], surface: Stimulus | Grating, rest: Any) -> str:
-    """What is asked, as text: how, the surface, and all else that decides what is felt of it."""
+    """Text of a request: how, the surface, and all else that decides what is felt of it."""
     parts = " ".join(_hash(one) for one in rest)
     if isinstance(surface, Grating):
         return f"{feel.__name__} {parts} {config_hash(surface)}"
@@ -114,7 +114,7 @@ def _name(feel: Callable[..., FeltSurface], surface: Stimulus | Grating, rest: A
 
 
 def _known(asked: str) -> FeltSurface | None:
-    """What was computed before: in this process, or by what is on disk."""
+    """Percept computed before: in this process, or by what is on disk."""
     if asked not in _REMEMBERED and (kept := _KEPT.get(asked)) is not None:
         _remember(asked, kept)
     return _REMEMBERED.get(asked)
@@ -182,7 +182,7 @@ def felt_really(grating: Grating, observer: Observer, finger: FingerClass) -> Fe
 
 
 def free_path(display: Display, observer: Observer, finger: FingerClass) -> FingerPath:
-    """How a finger explores a display freely. Raises `InputError` for a ring: it has no plane."""
+    """Path of a finger that explores a display freely. Raises `InputError` for a ring."""
     from squeezefilm.physics.perception.free_hand import free_exploration
     from squeezefilm.physics.plate.layout import AnnularStator
 

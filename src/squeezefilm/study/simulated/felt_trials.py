@@ -23,7 +23,7 @@ def felt_in_trial(
     *,
     progress: Callable[[str], None] | None = None,
 ) -> tuple[FeltPath, ...]:
-    """What a recorded answer's paths would have felt like, one result for each surface.
+    """Percepts of a recorded answer's paths, one result for each surface.
 
     Args:
         store: the study.

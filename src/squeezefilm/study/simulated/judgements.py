@@ -106,7 +106,7 @@ def simulate_judgements(
 
 
 class _Room:
-    """What a surface gives each finger, felt when first asked for."""
+    """Percepts of each finger, computed when first asked for."""
 
     def __init__(self, design: StudyDesign, observer: Observer, tables: ChainTables) -> None:
         self.design, self.observer, self.tables = design, observer, tables
@@ -148,7 +148,7 @@ class _Room:
     def presented(
         self, display: si.IntArray, finger: si.IntArray, surface: si.IntArray
     ) -> Candidates:
-        """What everybody gets, shape (people, candidates), or (people, directions, candidates)."""
+        """Percepts of everybody, shape (people, candidates) or (people, directions, candidates)."""
         found = [
             self.felt(d, f, s)
             for d, f, s in zip(display.tolist(), finger.tolist(), surface.tolist(), strict=True)
@@ -158,8 +158,7 @@ class _Room:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Part:
-    """What a chunk of people answered, shape (people, trials), and was presented, shape (people,
-    trials, surfaces)."""
+    """Answers of a chunk of people, shape (people, trials), and their surfaces, (…, surfaces)."""
 
     participant: si.IntArray
     schedules: list[list[Trial]]
@@ -239,7 +238,7 @@ _Judge = Callable[[list[Perceived], float, int, int], _Given]
 
 
 def _judge(room: _Room, people: SimulatedPeople) -> _Judge:
-    """How answers follow from what was perceived, by the design's task."""
+    """Judge of the design's task: a function from percepts to answers."""
     task = room.design.task
     if task == "magnitude-estimation":
         return functools.partial(_number, room, people)
@@ -248,7 +247,7 @@ def _judge(room: _Room, people: SimulatedPeople) -> _Judge:
 
 
 def _in_clearest_direction(felt: Perceived) -> Perceived:
-    """What is perceived in the direction in which it is the more evident; of strokes as it is."""
+    """Percept in the direction in which it is the more evident; of strokes as it is."""
     if felt.strength.ndim == 1:
         return felt
     best = np.arange(felt.strength.shape[0]), np.argmax(felt.strength, axis=-1)
@@ -258,7 +257,7 @@ def _in_clearest_direction(felt: Perceived) -> Perceived:
 def _judged(
     room: _Room, people: SimulatedPeople, felt: Perceived, skill: float
 ) -> tuple[si.FloatArray, si.FloatArray]:
-    """What is judged on a scale, and the standard deviation of one percept on it."""
+    """Judged amounts on a scale, and the standard deviation of one percept on it."""
     if room.design.judged == "friction_depth":
         return felt.strength, np.full(felt.strength.shape, skill)
     return felt.log_period, people.spread[: felt.log_period.size] * skill

@@ -34,7 +34,7 @@ _STREAM = 29
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Matches:
-    """What simulated participants matched in main trials; arrays of shape (participants, trials).
+    """Matches of simulated participants in main trials; arrays of shape (participants, trials).
 
     Attributes:
         tables: the chain behind them.
@@ -59,7 +59,7 @@ class Matches:
 
     @property
     def participants(self) -> int:
-        """How many people."""
+        """Number of people."""
         return int(self.choice.shape[0])
 
     def participant_counts(self, display: int = 0) -> si.IntArray:
@@ -218,8 +218,8 @@ def _from_gratings(
     sigma: si.DimensionlessArray,
     random: np.random.Generator,
 ) -> tuple[si.FloatArray, NDArray[np.bool_]]:
-    """How far the period perceived lies from that of each real grating, shape (people, trials,
-    gratings), infinite where that was not felt; and whether the surface was."""
+    """Distance of the perceived period from each real grating's, shape (people, trials, gratings),
+    infinite where that was not felt; and whether the surface was."""
     shown, touched = tables.virtual, tables.real
     places = display, finger[:, None], stimulus
     felt_now = Candidates(shown.period[places], shown.d_prime[places])
@@ -306,5 +306,5 @@ def _random(seed: int, chunk: int) -> np.random.Generator:
 
 
 def finger_of(person: int, fingers: int, seed: int) -> int:
-    """Which of so many finger classes a simulated person of these tasks has."""
+    """Finger class that a simulated person of these tasks has, of so many."""
     return int(_random(seed, person // CHUNK).integers(0, fingers, CHUNK)[person % CHUNK])

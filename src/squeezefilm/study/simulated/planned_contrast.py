@@ -1,4 +1,4 @@
-"""How many people show that two displays differ, for any task, adaptive series included.
+"""Number of people who show that two displays differ, for any task, adaptive series included.
 
 Simulated people do the whole design on both displays. Each one's value on each display is fitted as
 the analysis fits it: the logarithm of the Weber fraction, the exponent, or the share of right
@@ -93,8 +93,8 @@ def planned_contrast(asked: ContrastAsked) -> PlannedPower:
 
 
 def within_people(answers: Answers) -> tuple[str, si.FloatArray]:
-    """What is measured of a person, and each person's value on the first display less that on the
-    second, shape (people,); of a Weber fraction the logarithm."""
+    """Name of what is measured of a person, and each person's value on the first display less that
+    on the second, shape (people,); of a Weber fraction the logarithm."""
     (measure, here), (_, there) = (person_values(answers.main(number)) for number in (0, 1))
     if measure == "Weber fraction":
         return "ln Weber fraction", np.log(here) - np.log(there)

@@ -1,4 +1,4 @@
-"""How many people a planned study needs to tell two stimuli apart, by simulated participants."""
+"""Number of people that a planned study needs to tell two stimuli apart, by simulation."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ _SCORES: Kept[si.FloatArray] = Kept("simulated-scores", si.FloatArray)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlannedStudies:
-    """What is asked of studies that are simulated to plan one.
+    """Request for studies that are simulated to plan one.
 
     Args:
         design: of any task.
@@ -95,7 +95,7 @@ class PlannedStudies:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Planned:
-    """What simulated studies say of a design, by the names of design, display and observer."""
+    """Result of simulated studies of a design, with the names of design, display and observer."""
 
     design: str
     display: str
@@ -198,8 +198,8 @@ def require_pair(design: StudyDesign, first: str, second: str) -> None:
 
 
 def pair_scores(answers: Answers, first: str, second: str) -> si.FloatArray:
-    """How well each person tells two stimuli apart, shape (people,); 0 in the mean of people who
-    cannot: share of right answers less that of guesses; "different" to them less "different" to
+    """Success of each person at telling two stimuli apart, shape (people,); 0 in the mean of people
+    who cannot: share of right answers less that of guesses; "different" to them less "different" to
     the same; or the difference of the mean logarithms of their numbers, more less less.
 
     Raises `InputError` for a pair that no test tells apart.

@@ -1,4 +1,4 @@
-"""How many people make a study's answer precise, and what stopping once it is does to its errors.
+"""Number of people who make a study's answer precise, and the errors of stopping then.
 
 For any task: simulated people do the whole design, each one's answers are fitted once, and studies
 are put together of people drawn with replacement. A *sequential* study adds people one at a time
@@ -52,7 +52,7 @@ Interval = Callable[[si.IntArray], Ends]
 
 @dataclass(frozen=True, slots=True)
 class SequentialStudies:
-    """What came of studies that stopped as soon as their interval was narrow enough.
+    """Results of studies that stopped as soon as their interval was narrow enough.
 
     Attributes:
         mean, low, high: people when they stopped: mean, and central 95 % of the studies.
@@ -116,7 +116,7 @@ class PrecisionAsked(PlannedStudies):
 
 @called_with(PrecisionAsked)
 def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
-    """How many people make the answer of a design as precise as asked, by simulation.
+    """Number of people who make the answer of a design as precise as asked, by simulation.
 
     Arguments are those of `PlannedStudies`, half of the interval that is wanted (of Weber fractions
     in parts of the value, of exponents and proportions correct absolute), and how many people are
@@ -201,7 +201,7 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
 def simulated_answers(
     tables: ChainTables, people: int, seed: int, tell: Callable[[str], None]
 ) -> Answers:
-    """What simulated people answer to the whole design of tables, of any task."""
+    """Answers of simulated people to the whole design of tables, of any task."""
     tell(f"{people} simulated participants")
     design, observer = tables.design, tables.observer
     if design.task == "match-to-sample":
@@ -210,8 +210,8 @@ def simulated_answers(
 
 
 def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Interval]:
-    """What a study of these people measures, and its value with the 95 % interval of any group of
-    them, whose people are fitted once."""
+    """Name of what a study of these people measures, and its value with the 95 % interval of any
+    group of them, whose people are fitted once."""
     main = answers.main(0)
     tell("each person's fit")
     people = _on_grid(main)
@@ -232,8 +232,8 @@ def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Int
 
 
 def person_values(main: Answers) -> tuple[str, si.FloatArray]:
-    """What the answers to one display measure of a person, and each one's value, as the analysis
-    fits it; shape (people,)."""
+    """Name of what the answers to one display measure of a person, and each one's value, as the
+    analysis fits it; shape (people,)."""
     people, task = _on_grid(main), main.design.task
     if people is not None:
         return "Weber fraction", _values(people.estimates(0.95))
@@ -267,10 +267,10 @@ def _sequential(
     seed: int,
     asked: str,
 ) -> SequentialStudies:
-    """So many sequential studies; those of each few are kept under what was `asked`."""
+    """Simulate so many sequential studies; those of each few are kept under what was `asked`."""
 
     def stop(who: si.IntArray) -> tuple[int, bool, bool]:
-        """With how many people a study stops, whether it gives up, and whether it holds."""
+        """Number of people at which a study stops, and whether it gives up and whether it holds."""
         for count in range(_FEWEST, _MOST + 1):
             found = interval(who[:count])
             if is_precise := bool(precise(found)):

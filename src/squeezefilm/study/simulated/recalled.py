@@ -1,4 +1,4 @@
-"""How like two surfaces feel, direction by direction; and surfaces matched with those recalled.
+"""Likeness of two surfaces, direction by direction; and surfaces matched with those recalled.
 
 A surface is perceived in each direction in which it was explored (`physics.perception.perceived`):
 how evident its clearest rhythm is, and with which period. Two percepts differ, in standard
@@ -31,14 +31,13 @@ ASSUMED = (
     "are felt, in standard deviations.",
     "The senses know rhythms and how evident they are, and not where on the face something lies.",
 )
-"""What answers by likeness assume, in sentences that results repeat."""
+"""Assumptions of answers by likeness, in sentences that results repeat."""
 
 
 def difference(
     one: Perceived, other: Perceived, skill: si.DimensionlessArray, spread: si.DimensionlessArray
 ) -> si.DimensionlessArray:
-    """How far two percepts are apart, in standard deviations; the last axis, of directions, is
-    summed over.
+    """Distance between two percepts in standard deviations, summed over the last axis (directions).
 
     Args:
         one, other: of shapes (…, directions) that broadcast.
@@ -61,7 +60,7 @@ def recalled_distances(
     random: np.random.Generator,
     drawn: int,
 ) -> tuple[si.DimensionlessArray, NDArray[np.bool_]]:
-    """How far each trial's surface is from every stimulus recalled, shape (people, trials,
+    """Distance of each trial's surface from every stimulus recalled, shape (people, trials,
     stimuli), and whether anything was felt of it, shape (people, trials).
 
     Args:
@@ -88,7 +87,7 @@ def recalled_distances(
 
 
 def assumed(design: StudyDesign) -> tuple[str, ...]:
-    """What the simulated answers to a design assume beyond the observer's own file."""
+    """Assumptions of the simulated answers to a design, beyond the observer's own file."""
     task = design.described
     found = task.assumed
     if design.exploring == "free":

@@ -21,7 +21,7 @@ from squeezefilm.study.tasks.population import PopulationEstimate
 
 @dataclass(frozen=True, slots=True)
 class PersonEstimate:
-    """One person's Weber fraction or exponent.
+    """A person's Weber fraction or exponent.
 
     `unbounded` says that the answers alone do not bound it: an end of the interval is the prior's.
     """
@@ -168,7 +168,7 @@ class TaskAnalysis(Result):
         return plain
 
     def _table(self) -> Any:
-        """One row a condition."""
+        """Table with a row a condition."""
         return [
             {
                 "condition": condition.name,

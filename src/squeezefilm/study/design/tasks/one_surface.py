@@ -23,7 +23,7 @@ MATCH_TO_SAMPLE = StudyTask(
     ),
     counted="Right",
 )
-"""One virtual surface, which of the real gratings (or of the stimuli) is it like?"""
+"""Task: which of the real gratings (or of the stimuli) is a virtual surface like?"""
 
 MAGNITUDE_ESTIMATION = StudyTask(
     name="magnitude-estimation",
@@ -52,4 +52,4 @@ MAGNITUDE_ESTIMATION = StudyTask(
     ),
     in_plane=(CLEARER,),
 )
-"""One surface, a number for how much it has of what is judged."""
+"""Task: a number for how much a surface has of what is judged."""

@@ -1,4 +1,4 @@
-"""Same or different: the differencing model of two surfaces.
+"""Task "same or different": the differencing model of two surfaces.
 
 The difference of two percepts decides: P("different" | d′) = Φ((d′ − k)/√2) + Φ((−d′ − k)/√2), with
 the person's criterion k in standard deviations of one percept (Macmillan and Creelman 2005,
