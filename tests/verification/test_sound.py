@@ -9,6 +9,7 @@ from scipy import special
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.plate.exposure import GUIDANCE, exposure_guidance
 from squeezefilm.physics.plate.sound import (
+    loudest,
     pressure_level,
     rectangular_surface,
     ring_surface,
@@ -58,20 +59,6 @@ def test_piston_in_the_far_field() -> None:
     assert got == pytest.approx(np.abs(exact), rel=2e-3)
 
 
-@pytest.mark.slow
-def test_power_and_directivity_of_a_piston() -> None:
-    """W = ½ρc π a² v² (1 − J1(2ka)/(ka)) (Kinsler, eq 7.5.11)."""
-    a, v = 12e-3, 0.4
-    field = sound_field(piston(a), (0.5,))
-    ka = K * a
-    power = 0.5 * RHO * C * math.pi * a**2 * v**2 * (1 - special.j1(2 * ka) / ka)
-    assert field.radiated_power == pytest.approx(power, rel=1e-3)
-    assert field.polar[0] == pytest.approx(0, abs=2e-3)
-    exact = ka**2 / (1 - special.j1(2 * ka) / ka)
-    # D = 4π I R²/W = 4π (ρ f v πa²)²/(2ρc) / W = (ka)²/(1 − J1(2ka)/ka), all against the sphere.
-    assert field.directivity_dB == pytest.approx(10 * math.log10(exact), abs=0.01)
-
-
 def test_simple_source() -> None:
     """Much smaller than a wave: p = ρ f Q/R for a baffled volume velocity Q, any direction."""
     small = ring_surface(np.linspace(0, 0.2e-3, 9), np.full(9, 0.5), 0, F)
@@ -79,8 +66,6 @@ def test_simple_source() -> None:
     volume = 0.5 * math.pi * 0.2e-3**2
     exact = [20 * math.log10(RHO * F * volume / r / math.sqrt(2) / 20e-6) for r in field.distances]
     assert field.sound_pressure_level_dB == pytest.approx(exact, abs=0.01)
-    assert np.ptp(field.levels_dB, axis=(1, 2)).max() < 0.05
-    assert field.directivity_dB == pytest.approx(10 * math.log10(2), abs=0.02)
     # Phase: i ρ f Q exp(−ikR)/R.
     p = sound_pressure(small, np.array([0, 0, 0.5]))
     assert p == pytest.approx(1j * RHO * F * volume / 0.5 * np.exp(-1j * K * 0.5), rel=1e-3)
@@ -92,12 +77,12 @@ def test_a_supersonic_wave_on_a_plate_radiates_at_its_coincidence_angle() -> Non
     x, y = np.linspace(-0.11, 0.11, 101), np.linspace(-0.03, 0.03, 25)
     wave = 22e-3
     moving = np.cos(2 * math.pi * x / wave)[:, None] * np.ones(y.size)
-    field = sound_field(rectangular_surface(x, y, moving, F), (30.0,))
-    assert math.sin(field.polar[0]) == pytest.approx(2 * math.pi / wave / K, abs=0.02)
-    assert math.sin(field.azimuth[0]) == pytest.approx(0, abs=1e-2)
+    loud = loudest(rectangular_surface(x, y, moving, F), 30.0)
+    assert math.sin(loud.polar) == pytest.approx(2 * math.pi / wave / K, abs=0.02)
+    assert math.sin(loud.azimuth) == pytest.approx(0, abs=1e-2)
     slow = np.cos(2 * math.pi * x / 8e-3)[:, None] * np.ones(y.size)
-    quiet = sound_field(rectangular_surface(x, y, slow, F), (30.0,))
-    assert quiet.sound_pressure_level_dB[0] < field.sound_pressure_level_dB[0] - 15
+    quiet = loudest(rectangular_surface(x, y, slow, F), 30.0)
+    assert quiet.level_dB < loud.level_dB - 15
 
 
 def test_rectangle_and_ring_agree_on_a_disc_mode() -> None:
@@ -126,15 +111,9 @@ def test_the_papers_plate_is_loud() -> None:
     shape = np.cosh(u) + np.cos(u) - ratio * (np.sinh(u) + np.sin(u))
     shape /= abs(shape[np.abs(x - 41.5e-3) < 5e-3]).max()  # 2 µm at the middle antinode
     velocity = 2j * math.pi * F * 2e-6 * shape[:, None] * np.ones(y.size)
-    field = sound_field(rectangular_surface(x, y, velocity, F))
-    at_half_metre = field.sound_pressure_level_dB[1]
-    assert at_half_metre == pytest.approx(126.9, abs=0.3)
-    assert math.degrees(field.polar[1]) == pytest.approx(29, abs=1)
-    assert field.guidance is not None
-    assert field.above_guidance_dB is not None
-    assert field.above_guidance_dB[1] == pytest.approx(at_half_metre - 100)
-    damped = sound_field(rectangular_surface(x, y, velocity, F), (0.5,), absorption_dB_per_m=1.0)
-    assert damped.sound_pressure_level_dB[0] == pytest.approx(at_half_metre - 0.5)
+    loud = loudest(rectangular_surface(x, y, velocity, F), 0.5)
+    assert loud.level_dB == pytest.approx(126.9, abs=0.3)
+    assert math.degrees(loud.polar) == pytest.approx(29, abs=1)
 
 
 def test_level_of_a_known_pressure() -> None:
@@ -156,7 +135,7 @@ def test_bad_surfaces_are_refused() -> None:
         rectangular_surface(x, x, np.ones((9, 9)), F)
     with pytest.raises(InputError, match="shape"):
         rectangular_surface(x / 10, x / 10, np.ones((9, 8)), F)
-    with pytest.raises(InputError, match="distances"):
+    with pytest.raises(InputError, match="distance = 10 mm"):
         sound_field(piston(0.02), (0.01,))
     with pytest.raises(InputError, match="height"):
         sound_pressure(piston(0.02), np.array([0.0, 0.0, -0.1]))

@@ -131,7 +131,6 @@ FORCE = HardLimit("a force", 1e-6, 1e4, "a fly to a car's jack; " + _SLIP, _N)
 PRESSURE = HardLimit("a pressure", 1e-3, 1e10, "a high vacuum to a press; " + _SLIP, _PA)
 VISCOSITY = HardLimit("a viscosity", 1e-8, 1e3, "below any gas to honey; " + _SLIP, si.Unit("Pa*s"))
 GAS_DENSITY = HardLimit("a gas's density", 1e-9, 1e4, "of any gas; " + _SLIP, si.Unit("kg/m3"))
-SOUND_SPEED = HardLimit("a speed of sound", 10.0, 1e5, "of any gas; " + _SLIP, si.Unit("m/s"))
 FREE_PATH = HardLimit("a mean free path", 1e-18, 1e3, "none, in effect, to a vacuum; " + _SLIP, _M)
 TOUCHED_VIBRATION = HardLimit(
     "a vibration under a finger",

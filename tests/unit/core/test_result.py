@@ -17,7 +17,6 @@ from squeezefilm.core.results import Result
 from squeezefilm.physics.film.periodic.profile import (
     flexural_profile,
     profile_from_function,
-    profile_from_samples,
 )
 from squeezefilm.study.psychometric.fit import PsychometricFit
 
@@ -146,7 +145,6 @@ def test_gaps_travel() -> None:
     for profile in (
         flexural_profile(0.4, wavenumber=3.0, ridge_depth=0.1, ridge_wavenumber=40.0, tilt=0.05),
         profile_from_function(given),
-        profile_from_samples(x, t, given(x[:, None], t[None, :])),
     ):
         there = pickle.loads(pickle.dumps(profile))
         np.testing.assert_array_equal(there.gap(x, t), profile.gap(x, t))

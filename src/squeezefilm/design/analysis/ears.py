@@ -20,7 +20,7 @@ from squeezefilm.physics.plate.layout import DiscPlate
 from squeezefilm.physics.plate.ring.body import ring_body
 from squeezefilm.physics.plate.sound import (
     RadiatingSurface,
-    loudest_level,
+    loudest,
     ring_surface,
     smooth_surface,
 )
@@ -130,7 +130,7 @@ def ear_exposure(
     surface = moving_surface(display, p) if p.voltage is not None and free > 0 else None
     if surface is None:
         return None
-    level = float(loudest_level(surface, EAR_DISTANCE))
+    level = loudest(surface, EAR_DISTANCE).level_dB
     low = high = 0.0
     if unsure is not None and unsure.amplitude_interval is not None and p.vibration_amplitude > 0:
         ends = np.maximum(unsure.amplitude_interval, 1e-3 * p.vibration_amplitude)

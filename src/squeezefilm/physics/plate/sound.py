@@ -9,17 +9,15 @@ estimate.
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.hard_limits import SOUND_SPEED, require_within
 from squeezefilm.physics.plate.exposure import ExposureGuidance, exposure_guidance
 
 REFERENCE_PRESSURE = 20e-6
@@ -27,6 +25,9 @@ REFERENCE_PRESSURE = 20e-6
 
 DISTANCES: tuple[si.Metre, ...] = (0.3, 0.5, 1.0)
 """Where levels are given unless asked otherwise: a bent head, a seated user, a bystander."""
+
+_DENSITY, _SOUND_SPEED = 1.204, 343.2
+"""Of air at 20 °C (kg/m³, m/s)."""
 
 _COARSEST = 4
 """Points per wavelength in air below which a surface is refused."""
@@ -55,7 +56,6 @@ def rectangular_surface(
     y: si.MetreArray,
     velocity: si.ComplexArray,
     frequency: Annotated[si.Hertz, si.Above(0.0)],
-    sound_speed: float = 343.2,
 ) -> RadiatingSurface:
     """A plate's surface from its velocity (len(x), len(y)) on a rising grid (trapezoidal rule).
 
@@ -73,7 +73,7 @@ def rectangular_surface(
     for name, line in (("x", x), ("y", y)):
         if line.size < 2 or np.any(np.diff(line) <= 0):
             raise InputError(f"{name} must be two or more rising positions", quantity=name)
-        _require_fine(name, float(np.diff(line).max()), frequency, sound_speed)
+        _require_fine(name, float(np.diff(line).max()), frequency)
     grid = np.stack(
         np.meshgrid(x - (x[0] + x[-1]) / 2, y - (y[0] + y[-1]) / 2, indexing="ij"), axis=-1
     )
@@ -119,7 +119,6 @@ def ring_surface(
     velocity: si.ComplexArray,
     harmonic: Annotated[int, si.AtLeast(0)],
     frequency: Annotated[si.Hertz, si.Above(0.0)],
-    sound_speed: float = 343.2,
 ) -> RadiatingSurface:
     """A ring's or disc's surface moving with `velocity` (r) × cos(`harmonic` × θ).
 
@@ -133,8 +132,8 @@ def ring_surface(
         raise InputError(
             "radius must be two or more rising radii, with one velocity each", quantity="radius"
         )
-    _require_fine("radius", float(np.diff(radius).max()), frequency, sound_speed)
-    waves = 2 * math.pi * radius[-1] * frequency / sound_speed
+    _require_fine("radius", float(np.diff(radius).max()), frequency)
+    waves = 2 * math.pi * radius[-1] * frequency / _SOUND_SPEED
     around = max(32, 8 * math.ceil(waves), 8 * harmonic)
     angle = 2 * math.pi * np.arange(around) / around
     position = radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
@@ -149,18 +148,12 @@ def ring_surface(
 
 
 @si.checked_numbers
-def sound_pressure(
-    surface: RadiatingSurface,
-    points: si.MetreArray,
-    *,
-    density: Annotated[si.KilogramPerCubicMetre, si.Above(0.0)] = 1.204,
-    sound_speed: si.MetrePerSecond = 343.2,
-) -> si.ComplexArray:
+def sound_pressure(surface: RadiatingSurface, points: si.MetreArray) -> si.ComplexArray:
     """Complex sound pressure (Pa, zero-to-peak) at `points` (..., 3) above the surface (z > 0).
 
-    p = iωρ/2π ∫ v exp(−ikR)/R dS, lossless. Raises `InputError` for a point not above the plane.
+    p = iωρ/2π ∫ v exp(−ikR)/R dS, lossless, in air at 20 °C. Raises `InputError` for a point not
+    above the plane.
     """
-    require_within(SOUND_SPEED, sound_speed, "sound_speed")
     points = np.asarray(points, dtype=float)
     if points.shape[-1:] != (3,):
         raise InputError(f"points has the shape {points.shape}; its last axis must be x, y and z")
@@ -177,11 +170,11 @@ def sound_pressure(
         distance = np.sqrt((px - x) ** 2 + (py - y) ** 2 + pz**2)
         si.require("distance", distance, si.Unit("m"), above=0)
         # In real numbers: the complex exponential takes several times as long.
-        phase = (omega / sound_speed) * distance
+        phase = (omega / _SOUND_SPEED) * distance
         cosine, sine = ((wave / distance) @ parts for wave in (np.cos(phase), np.sin(phase)))
         pressure[start : start + rows].real = cosine[:, 0] + sine[:, 1]
         pressure[start : start + rows].imag = cosine[:, 1] - sine[:, 0]
-    return (1j * omega * density / (2 * math.pi) * pressure).reshape(points.shape[:-1])
+    return (1j * omega * _DENSITY / (2 * math.pi) * pressure).reshape(points.shape[:-1])
 
 
 def pressure_level(pressure: si.ComplexArray) -> si.FloatArray:
@@ -190,135 +183,59 @@ def pressure_level(pressure: si.ComplexArray) -> si.FloatArray:
     return level
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class SoundField:
-    """Levels around a surface at some distances from its middle.
-
-    `sound_pressure_level_dB` is the maximum over directions at each of `distances`; it is reached
-    at the angle `polar` from the normal and `azimuth` from the x-axis (one each per distance).
-    `levels_dB` (distances, polar angles, azimuths) holds all, over `polar_angles` and `azimuths`.
-    `radiated_power` in W goes into the upper half space; `directivity_dB` is the strongest
-    direction against the same power sent evenly all round (a small baffled source has 3 dB).
-    `guidance` is what the levels are compared with, if there is any for the frequency.
-    """
+    """Sound pressure levels (dB re 20 µPa) in the loudest direction at distances (m) from the
+    middle of a surface, and the `guidance` for the public that they are compared with, if there is
+    any for the frequency (Hz)."""
 
     frequency: si.Hertz
     distances: tuple[si.Metre, ...]
     sound_pressure_level_dB: tuple[float, ...]
-    polar: tuple[si.Radian, ...]
-    azimuth: tuple[si.Radian, ...]
-    polar_angles: si.FloatArray
-    azimuths: si.FloatArray
-    levels_dB: si.FloatArray
-    radiated_power: float
-    directivity_dB: float
     guidance: ExposureGuidance | None
     model: str = "baffled_rayleigh"
 
-    @property
-    def above_guidance_dB(self) -> tuple[float, ...] | None:
-        """By how much each maximum exceeds the guidance; None where there is no guidance."""
-        if self.guidance is None:
-            return None
-        return tuple(level - self.guidance.level_dB for level in self.sound_pressure_level_dB)
 
-
-@si.checked_numbers
 def sound_field(
-    surface: RadiatingSurface,
-    distances: tuple[si.Metre, ...] = DISTANCES,
-    *,
-    absorption_dB_per_m: Annotated[si.Dimensionless, si.AtLeast(0.0)] = 0.0,
-    density: si.KilogramPerCubicMetre = 1.204,
-    sound_speed: si.MetrePerSecond = 343.2,
-    audience: Literal["public", "occupational"] = "public",
+    surface: RadiatingSurface, distances: tuple[si.Metre, ...] = DISTANCES
 ) -> SoundField:
-    """Sound pressure levels at distances from the surface's middle, over all directions.
-
-    A grid of at least 2.5° × 10° is searched, finer for surfaces of many waves, and the best
-    direction refined to a few hundredths of a degree.
-    `absorption_dB_per_m` of the air (ISO 9613-1; about 1 dB/m at 33 kHz) is left out by default,
-    which errs on the loud side. Raises `InputError` for a distance within the surface's extent.
-    """
-    require_within(SOUND_SPEED, sound_speed, "sound_speed")
+    """The `loudest` levels at distances (m) from a surface's middle. Raises `InputError` as it
+    does, and where there is no distance."""
     if not distances:
         raise InputError("distances is empty; name at least one", quantity="distances")
-    si.require("distances", distances, si.Unit("m"), above=surface.extent)
-    polar, azimuth = _directions(surface, sound_speed)
+    levels = tuple(loudest(surface, distance).level_dB for distance in distances)
+    guidance = exposure_guidance(surface.frequency)
+    return SoundField(surface.frequency, tuple(distances), levels, guidance)
 
-    def at(distance: float, theta: si.FloatArray, phi: si.FloatArray) -> si.FloatArray:
-        up = np.cos(theta) * distance
-        out = np.sin(theta) * distance
-        points = np.stack([out * np.cos(phi), out * np.sin(phi), np.maximum(up, 0)], axis=-1)
-        pressure = sound_pressure(surface, points, density=density, sound_speed=sound_speed)
-        return pressure_level(pressure) - absorption_dB_per_m * distance
 
-    theta, phi = np.meshgrid(polar, azimuth, indexing="ij")
-    levels = np.stack([at(distance, theta, phi) for distance in distances])
-    best = [
-        _loudest(functools.partial(at, distance), level, polar, azimuth)
-        for distance, level in zip(distances, levels, strict=True)
-    ]
-    strongest = (best[-1][1], best[-1][2])
-    power, directivity = _power(surface, strongest, density, sound_speed)
-    return SoundField(
-        frequency=surface.frequency,
-        distances=tuple(distances),
-        sound_pressure_level_dB=tuple(b[0] for b in best),
-        polar=tuple(b[1] for b in best),
-        azimuth=tuple(b[2] % (2 * math.pi) for b in best),
-        polar_angles=polar,
-        azimuths=azimuth,
-        levels_dB=levels,
-        radiated_power=power,
-        directivity_dB=directivity,
-        guidance=exposure_guidance(surface.frequency, audience),
-    )
+class Loudest(NamedTuple):
+    """The highest level (dB re 20 µPa) and its direction: the angle `polar` from the normal and
+    `azimuth` from the x axis (rad)."""
+
+    level_dB: float
+    polar: si.Radian
+    azimuth: si.Radian
 
 
 @si.checked_numbers
-def loudest_level(
-    surface: RadiatingSurface,
-    distance: si.Metre,
-    *,
-    density: si.KilogramPerCubicMetre = 1.204,
-    sound_speed: si.MetrePerSecond = 343.2,
-) -> si.Dimensionless:
-    """The sound pressure level (dB re 20 µPa) in the loudest direction at one distance (m) from the
-    surface's middle, as `sound_field` has it, without absorption; a third of its work. Raises
-    `InputError` for a distance within the surface's extent."""
-    require_within(SOUND_SPEED, sound_speed, "sound_speed")
+def loudest(surface: RadiatingSurface, distance: si.Metre) -> Loudest:
+    """The sound pressure level in the loudest direction at a distance (m) from the surface's
+    middle.
+
+    A grid of at least 2.5° × 10° is searched, finer for surfaces of many waves, and the best
+    direction refined to a few hundredths of a degree. The air's absorption (ISO 9613-1; about
+    1 dB/m at 33 kHz) is left out, which errs on the loud side. Raises `InputError` for a distance
+    within the surface's extent.
+    """
     si.require("distance", distance, si.Unit("m"), above=surface.extent)
-    polar, azimuth = _directions(surface, sound_speed)
+    polar, azimuth = _directions(surface)
 
     def at(theta: si.FloatArray, phi: si.FloatArray) -> si.FloatArray:
         out = np.sin(theta) * distance
         place = [out * np.cos(phi), out * np.sin(phi), np.maximum(np.cos(theta) * distance, 0)]
-        points = np.stack(place, axis=-1)
-        pressure = sound_pressure(surface, points, density=density, sound_speed=sound_speed)
-        return pressure_level(pressure)
+        return pressure_level(sound_pressure(surface, np.stack(place, axis=-1)))
 
-    return _loudest(at, at(*np.meshgrid(polar, azimuth, indexing="ij")), polar, azimuth)[0]
-
-
-def _directions(
-    surface: RadiatingSurface, sound_speed: si.MetrePerSecond
-) -> tuple[si.FloatArray, si.FloatArray]:
-    """Polar angles and azimuths (rad) that miss no lobe of a surface."""
-    # A lobe is about a wavelength over the extent wide: look at it at least four times.
-    lobe = sound_speed / surface.frequency / (2 * surface.extent)
-    steps = max(36, math.ceil(2 * math.pi / lobe))
-    polar = np.linspace(0, math.pi / 2, max(36, steps // 2) + 1)
-    return polar, 2 * math.pi * np.arange(steps) / steps
-
-
-def _loudest(
-    at: Callable[[si.FloatArray, si.FloatArray], si.FloatArray],
-    level: si.FloatArray,
-    polar: si.FloatArray,
-    azimuth: si.FloatArray,
-) -> tuple[float, float, float]:
-    """The highest level (dB) and its direction (rad): the best of a grid, looked around thrice."""
+    level = at(*np.meshgrid(polar, azimuth, indexing="ij"))
     i, j = np.unravel_index(int(np.argmax(level)), level.shape)
     found = (float(level[i, j]), float(polar[i]), float(azimuth[j]))
     wide = (float(polar[1]), float(azimuth[1]))
@@ -330,33 +247,16 @@ def _loudest(
         i, j = np.unravel_index(int(np.argmax(fine)), fine.shape)
         found = max(found, (float(fine[i, j]), float(t[i, j]), float(p[i, j])))
         wide = (wide[0] / 4, wide[1] / 4)
-    return found
+    return Loudest(found[0], found[1], found[2] % (2 * math.pi))
 
 
-def _power(
-    surface: RadiatingSurface, strongest: tuple[float, float], density: float, sound_speed: float
-) -> tuple[float, float]:
-    """Power (W) and directivity (dB) from the far field: Gauss points in cos θ, even in φ."""
-    k = 2 * math.pi * surface.frequency / sound_speed
-    count = 16 + math.ceil(k * surface.extent)
-    cosine, weight = np.polynomial.legendre.leggauss(count)
-    cosine, weight = (cosine + 1) / 2, weight / 2
-    phi = 2 * math.pi * np.arange(2 * count) / (2 * count)
-
-    def intensity(theta: si.FloatArray, phi: si.FloatArray) -> si.FloatArray:
-        towards = np.sin(theta)[..., None] * np.stack([np.cos(phi), np.sin(phi)], axis=-1)
-        phase = np.exp(1j * k * (towards @ surface.position.T))
-        far = density * surface.frequency * np.abs(phase @ (surface.velocity * surface.area))
-        result: si.FloatArray = far**2 / (2 * density * sound_speed)
-        return result
-
-    around = np.stack([intensity(np.full(phi.size, t), phi) for t in np.arccos(cosine)])
-    power = float((weight @ around).sum() * (2 * math.pi / (2 * count)))
-    if power == 0:
-        return 0.0, 0.0
-    # The strongest direction was found nearby; the normal is its limit for symmetric sources.
-    peak = intensity(np.array([strongest[0], 0.0]), np.array([strongest[1], 0.0]))
-    return power, 10 * math.log10(4 * math.pi * max(peak.max(), around.max()) / power)
+def _directions(surface: RadiatingSurface) -> tuple[si.FloatArray, si.FloatArray]:
+    """Polar angles and azimuths (rad) that miss no lobe of a surface."""
+    # A lobe is about a wavelength over the extent wide: look at it at least four times.
+    lobe = _SOUND_SPEED / surface.frequency / (2 * surface.extent)
+    steps = max(36, math.ceil(2 * math.pi / lobe))
+    polar = np.linspace(0, math.pi / 2, max(36, steps // 2) + 1)
+    return polar, 2 * math.pi * np.arange(steps) / steps
 
 
 def _trapezoid(line: si.FloatArray) -> si.FloatArray:
@@ -366,9 +266,8 @@ def _trapezoid(line: si.FloatArray) -> si.FloatArray:
     return weight
 
 
-def _require_fine(name: str, step: float, frequency: float, sound_speed: float) -> None:
-    si.require("sound_speed", sound_speed, si.Unit("m/s"), above=0)
-    longest = sound_speed / frequency / _COARSEST
+def _require_fine(name: str, step: float, frequency: float) -> None:
+    longest = _SOUND_SPEED / frequency / _COARSEST
     if step > longest:
         raise InputError(
             f"{name} has steps of {si.format_quantity(step, si.Unit('m'))}; at "

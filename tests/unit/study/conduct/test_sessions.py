@@ -7,7 +7,6 @@ import json
 import math
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from squeezefilm.core import config
@@ -101,13 +100,6 @@ def test_the_level_falls_with_the_distance_and_is_held_against_the_guidance() ->
         frequency=33e3,
         distances=(0.5, 1.0),
         sound_pressure_level_dB=(124.0, 118.0),
-        polar=(0.5, 0.5),
-        azimuth=(0.0, 0.0),
-        polar_angles=np.zeros(1),
-        azimuths=np.zeros(1),
-        levels_dB=np.zeros((2, 1, 1)),
-        radiated_power=1e-3,
-        directivity_dB=9.0,
         guidance=exposure_guidance(33e3),
     )
     near = exposure_of("d", field, 600.0, 0.25)
@@ -144,13 +136,6 @@ def test_the_nearest_distance_that_was_computed_is_taken() -> None:
         distances=(0.25, 0.5, 1.0),
         # Nearer than 1/distance would have it, so that it shows from which the level is taken.
         sound_pressure_level_dB=(120.0, 110.0, 90.0),
-        polar=(0.5, 0.5, 0.5),
-        azimuth=(0.0, 0.0, 0.0),
-        polar_angles=np.zeros(1),
-        azimuths=np.zeros(1),
-        levels_dB=np.zeros((3, 1, 1)),
-        radiated_power=1e-3,
-        directivity_dB=9.0,
         guidance=None,
     )
     for distance, level, base in ((0.2, 120.0, 0.25), (0.5, 110.0, 0.5), (1.5, 90.0, 1.0)):

@@ -3,26 +3,24 @@
 The force of the film on a rigid surface vibrating with amplitude ε h over an area A at ambient
 pressure p0 is p0 A ε Re[(−fk − i fd) exp(iT)]: fk is the relative stiffness, fd the relative
 damping, both functions of the squeeze number σ = 12 η ω ℓ² / (p0 h²) and of the planform. ℓ is the
-strip's width, the disc's radius or the rectangle's shorter side. A polytropic gas takes
-n f(σ/n), first-order slip f(σ/(1 + 6 Kn)).
+strip's width or the disc's radius. A polytropic gas takes n f(σ/n),
+first-order slip f(σ/(1 + 6 Kn)).
 
-Sources: Langlois 1962, Quarterly of Applied Mathematics 20, 131; Blech 1983, 10.1115/1.3254692.
+Source: Langlois 1962, Quarterly of Applied Mathematics 20, 131.
 """
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 
-Planform = Literal["strip", "disc", "rectangle"]
-_Exponent = Annotated[si.Dimensionless, si.AtLeast(1), si.AtMost(5 / 3)]
+Planform = Literal["strip", "disc"]
 
 # Below: continued fraction. Above: exponential (strip) or asymptotic (disc) form.
 _SWITCH = 900.0
-_MODES = 301
 
 
 def _continued_fraction(u: Any, first: int, step: int) -> Any:
@@ -69,81 +67,31 @@ def _disc(sigma: Any) -> Any:
     return np.where(sigma <= _SWITCH, _continued_fraction(u, 2, 1), 1 - 2 * ratio / s)
 
 
-def _rectangle(sigma: Any, beta: float) -> Any:
-    """Blech's double series over odd m, n with the sum over n done in closed form:
-
-    fk + i fd = strip(σ) − Σ_m 16 β/(π² m²) iσ/q³ tanh(q/2β),  q² = π² m² + iσ.
-
-    Beyond m = 301 tanh is 1 and the tail is its integral with the first midpoint correction;
-    the integral of 1/(m² q³) from M is 1/(M q (πM + q)²). The relative error is below 1e-9.
-    """
-    i_sigma = 1j * np.asarray(sigma, dtype=float)
-    m = np.arange(1, _MODES + 1, 2, dtype=float)
-    q2 = (np.pi * m) ** 2 + i_sigma[..., np.newaxis]
-    q = np.sqrt(q2)
-    ends = (i_sigma[..., np.newaxis] / q2) * np.tanh(q / (2 * beta)) / (m**2 * q)
-    M = _MODES + 1.0
-    Q2 = (np.pi * M) ** 2 + i_sigma
-    Q = np.sqrt(Q2)
-    integral = i_sigma / (np.pi * M + Q) / (np.pi * M + Q) / (M * Q)
-    slope = -(2 / M + 3 * np.pi**2 * M / Q2) / (M**2 * Q) * (i_sigma / Q2)
-    rest = np.sum(ends, axis=-1) + (integral + slope / 6) / 2
-    return _strip(sigma) - 16 * beta / np.pi**2 * rest
-
-
-def _force(planform: Planform, sigma: Any, aspect_ratio: float) -> Any:
-    """fk + i fd of a planform; raises `InputError` for a rectangle's aspect ratio above 1."""
-    if planform == "strip":
-        return _strip(sigma)
-    if planform == "disc":
-        return _disc(sigma)
-    si.require("aspect_ratio", aspect_ratio, above=0, at_most=1)
-    return _rectangle(sigma, aspect_ratio)
-
-
 def _plain(value: Any) -> Any:
     return float(value) if np.ndim(value) == 0 else value
 
 
-def _effective(sigma: Any, n: float, knudsen: Any) -> Any:
-    return sigma / (n * (1 + 6 * knudsen))
+def _force(planform: Planform, sigma: Any) -> Any:
+    return _strip(sigma) if planform == "strip" else _disc(sigma)
 
 
-@si.closed_form(nonnegative="squeeze_number knudsen_number", positive="aspect_ratio")
+@si.closed_form(nonnegative="squeeze_number")
 def relative_stiffness(
-    squeeze_number: si.DimensionlessLike,
-    planform: Planform = "strip",
-    aspect_ratio: si.Dimensionless = 1.0,
-    polytropic_exponent: _Exponent = 1.0,
-    knudsen_number: si.DimensionlessLike = 0.0,
+    squeeze_number: si.DimensionlessLike, planform: Planform = "strip"
 ) -> si.DimensionlessLike:
-    """The film's stiffness over p0 A/h: n fk(σ / (n (1 + 6 Kn))) (dimensionless); broadcasts.
+    """The stiffness of an isothermal film over p0 A/h, fk(σ) (dimensionless); broadcasts.
 
-    Small amplitudes; first-order slip, Kn up to about 0.1; n from 1 (isothermal) to 1.4 (air,
-    adiabatic). `aspect_ratio` (shorter/longer) counts for the rectangle only. Raises `InputError`
-    for an unknown planform, n outside 1 to 5/3 or an aspect ratio outside (0, 1].
+    Small amplitudes, no slip. Raises `InputError` for an unknown planform.
     """
-    sigma = _effective(squeeze_number, polytropic_exponent, knudsen_number)
-    value: si.DimensionlessLike = _plain(
-        polytropic_exponent * np.real(_force(planform, sigma, aspect_ratio))
-    )
+    value: si.DimensionlessLike = _plain(np.real(_force(planform, squeeze_number)))
     return value
 
 
-@si.closed_form(nonnegative="squeeze_number knudsen_number", positive="aspect_ratio")
+@si.closed_form(nonnegative="squeeze_number")
 def relative_damping(
-    squeeze_number: si.DimensionlessLike,
-    planform: Planform = "strip",
-    aspect_ratio: si.Dimensionless = 1.0,
-    polytropic_exponent: _Exponent = 1.0,
-    knudsen_number: si.DimensionlessLike = 0.0,
+    squeeze_number: si.DimensionlessLike, planform: Planform = "strip"
 ) -> si.DimensionlessLike:
-    """The film's damping times ω over p0 A/h: n fd(σ / (n (1 + 6 Kn))) (dimensionless).
-
-    Arguments, range and errors as `relative_stiffness`; broadcasts.
-    """
-    sigma = _effective(squeeze_number, polytropic_exponent, knudsen_number)
-    value: si.DimensionlessLike = _plain(
-        polytropic_exponent * np.imag(_force(planform, sigma, aspect_ratio))
-    )
+    """The film's damping times ω over p0 A/h, fd(σ) (dimensionless); broadcasts, as
+    `relative_stiffness`."""
+    value: si.DimensionlessLike = _plain(np.imag(_force(planform, squeeze_number)))
     return value

@@ -135,19 +135,19 @@ def solve_profile(
 ) -> FilmSolution:
     """The film of a strip whose gap H(X, T) varies along it, −1/2 ≤ X ≤ 1/2, open at both edges.
 
-    `profile` comes from `flexural_profile`, `profile_from_samples` or `profile_from_function`, or
-    is a function H(X, T) that broadcasts. σ is on the full length l0 and the reference gap H0
-    that H is relative to. The other inputs, range and errors are those of `solve_uniform`; a gap
-    that closes raises `GeometryError`, one that is not periodic `InputError`. Stiffness and
-    damping are relative to the largest amplitude of the first harmonic of H (NaN for a gap
-    that does not move). Without `field`, the pressure, its mean and the gap are left empty (and
-    stiffness, damping and harmonics beyond the mean NaN): for sweeps that want the load alone.
+    `profile` comes from `flexural_profile` or `profile_from_function`, or is a function H(X, T)
+    that broadcasts. σ is on the full length l0 and the reference gap H0 that H is relative to. The
+    other inputs, range and errors are those of `solve_uniform`; a gap that closes raises
+    `GeometryError`, one that is not periodic `InputError`. Stiffness and damping are relative to
+    the largest amplitude of the first harmonic of H (NaN for a gap that does not move). Without
+    `field`, the pressure, its mean and the gap are left empty (and stiffness, damping and harmonics
+    beyond the mean NaN): for sweeps that want the load alone.
     """
     if not isinstance(profile, GapProfile):
         if not callable(profile):
             raise InputError(
                 f"profile of type {type(profile).__name__} cannot be used: give a GapProfile or a "
-                f"function H(X, T); for arrays use profile_from_samples"
+                f"function H(X, T); of arrays give an interpolator"
             )
         profile = profile_from_function(profile)
     check_film(squeeze_number, 0.0, polytropic_exponent, knudsen_number, tolerance)

@@ -26,11 +26,10 @@ GapFunction = Callable[[si.FloatArray, si.FloatArray], ArrayLike]
 class GapProfile:
     """A gap H(X, T) = Re Σ h_k(X) e^{ikT} over −1/2 ≤ X ≤ 1/2, relative to the reference gap H0.
 
-    `harmonics(X)` returns the h_k, shape (orders, len(X)). Made by `flexural_profile`,
-    `profile_from_function` or `profile_from_samples`; making one checks that the gap never
-    closes. `excursion` is the largest |h_1|, `depth` the largest relative excursion
-    (max − min)/(max + min) over a period at any X, `mean_depth` its mean along X, `features` the
-    number of waves along X.
+    `harmonics(X)` returns the h_k, shape (orders, len(X)). Made by `flexural_profile` or
+    `profile_from_function`; making one checks that the gap never closes. `excursion` is the largest
+    |h_1|, `depth` the largest relative excursion (max − min)/(max + min) over a period at any X,
+    `mean_depth` its mean along X, `features` the number of waves along X.
     """
 
     harmonics: Harmonics
@@ -173,19 +172,6 @@ class _Given:
         return np.asarray(h)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Splined:
-    """Harmonics at places X, cubic splines between them."""
-
-    position: si.FloatArray
-    spectrum: si.ComplexArray
-
-    def __call__(self, x: si.FloatArray) -> si.ComplexArray:
-        from scipy.interpolate import CubicSpline
-
-        return np.asarray(CubicSpline(self.position, self.spectrum, axis=1)(x), dtype=complex)
-
-
 def _sampled(gap: GapFunction, x: si.FloatArray, times: si.FloatArray) -> si.FloatArray:
     given = np.asarray(gap(x[:, None], times[None, :]), dtype=float)
     return np.array(np.broadcast_to(given, (len(x), len(times))))
@@ -232,52 +218,6 @@ def profile_from_function(gap: GapFunction, description: str = "given function")
     orders = int(significant.max()) + 1
     _require_smooth(orders, description)
     return GapProfile(_Given(gap, orders), description)
-
-
-def profile_from_samples(
-    X: ArrayLike, T: ArrayLike, H: ArrayLike, description: str = "measured profile"
-) -> GapProfile:
-    """A gap from samples H[i, j] at positions X[i], −1/2 to 1/2, and evenly spaced times T[j].
-
-    T covers one period: from 0 to 2π with both ends (then the ends must agree) or without the
-    last. Cubic splines along X, Fourier series in T. Raises `InputError` for shapes, orders or
-    ends that do not fit and for a profile that is not periodic, `GeometryError` for a closed gap.
-    """
-    x, t, h = (np.asarray(a, dtype=float) for a in (X, T, H))
-    if x.ndim != 1 or t.ndim != 1 or h.shape != (len(x), len(t)) or len(x) < 4 or len(t) < 3:
-        raise InputError(
-            f"samples of shape {h.shape} at {x.shape} positions and {t.shape} times cannot be "
-            f"used: H needs shape (len(X), len(T)), at least 4 positions and 3 times"
-        )
-    for name, values in (("X", x), ("T", t), ("H", h)):
-        si.require(name, values)
-    if np.any(np.diff(x) <= 0.0) or abs(x[0] + 0.5) > 1e-9 or abs(x[-1] - 0.5) > 1e-9:
-        raise InputError(
-            f"X runs from {x[0]:.6g} to {x[-1]:.6g}: it must rise strictly from -0.5 to 0.5"
-        )
-    steps = np.diff(t)
-    if np.ptp(steps) > 1e-6 * abs(steps).max() or steps[0] <= 0.0:
-        raise InputError(
-            f"T has steps from {steps.min():.4g} to {steps.max():.4g}: space it evenly"
-        )
-    period = 2.0 * np.pi
-    if abs(t[-1] - t[0] - period) < 1e-6:
-        _check_periodic(h[:, :1], h[:, -1:], x, t[:1], description)
-        t, h = t[:-1], h[:, :-1]
-    elif abs(t[-1] + steps[0] - t[0] - period) > 1e-6:
-        raise InputError(
-            f"T runs from {t[0]:.6g} to {t[-1]:.6g} in steps of {steps[0]:.6g}: it must cover one "
-            f"period of 2π"
-        )
-    spectrum = np.fft.rfft(h, axis=1).T / len(t)
-    spectrum[1:] *= 2.0
-    if len(t) % 2 == 0:
-        spectrum = spectrum[:-1]
-    spectrum = spectrum * np.exp(-1j * t[0] * np.arange(len(spectrum)))[:, None]
-    size = np.abs(spectrum).max(axis=1)
-    spectrum = spectrum[: int(np.flatnonzero(size > _NEGLIGIBLE * size.max()).max()) + 1]
-    _require_smooth(len(spectrum), description)
-    return GapProfile(_Splined(x, spectrum), description)
 
 
 def _require_smooth(orders: int, description: str) -> None:

@@ -29,11 +29,12 @@ def test_it_is_the_second_order_of_the_linear_film(shape: str, n: float, kn: flo
     small = small_vibration(
         sigma, np.full(9, 1e-3), shape, np.full(9, n), np.full(9, kn), slip_law("first", kn)
     )
-    springs = relative_stiffness(sigma, shape, 1.0, n, kn)
+    local = sigma / (n * (1 + 6 * kn))
+    springs = n * relative_stiffness(local, shape)
     known = springs * (1.25 + 6 * kn - 1.5 * kn * (1 - n)) / (1 + 6 * kn)
     assert small.over_pressure == pytest.approx(1e-6 * known, rel=1e-6)
     assert small.force.real == pytest.approx(springs)
-    assert small.force.imag == pytest.approx(relative_damping(sigma, shape, 1.0, n, kn))
+    assert small.force.imag == pytest.approx(n * relative_damping(local, shape))
 
 
 @pytest.mark.parametrize("slip", ["first", "second", "fukui-kaneko", "veijola"])
