@@ -101,12 +101,12 @@ def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
 
 
 def test_a_partial_result_holds_nothing_that_was_not_computed(monkeypatch):
+    # Compiled code is made while NumPy is itself.
+    solve_profile(10.0, lambda X, T: 1.0 + 0.1 * X + 0.4 * np.cos(T))
     for rounds, newton in ((batch, batch), (nested, film)):
         monkeypatch.setattr(rounds, "ROUNDS", 1)
         monkeypatch.setattr(newton, "MOST_NEWTON", 2)
     # What memory happens to hold is seen where it is no number.
-    # Compiled code is made before NumPy is not itself.
-    solve_profile(10.0, lambda X, T: 1.0 + 0.1 * X + 0.4 * np.cos(T))
     monkeypatch.setattr(film.np, "empty", lambda shape, **_: np.full(shape, np.nan))
     wavy = profile_from_function(lambda x, t: 1 + 0.3 * np.cos(6 * x) + 0.5 * np.cos(t))
     for solve in (
