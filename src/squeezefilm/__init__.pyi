@@ -220,7 +220,7 @@ if TYPE_CHECKING:
         slip: str = ...,
         tolerance: Dimensionless | str = ...,
     ) -> FilmAnswer:
-        """One film. σ is on the width of a strip, the radius of a disc, the X side of a rectangle or"""
+        """Solve a film. σ is on the width of a strip, the radius of a disc, the X side of a rectangle"""
     def sweep(
         display: NamedDisplay | Sequence[Display | str | Path] | str | Path,
         *,
@@ -442,7 +442,7 @@ if TYPE_CHECKING:
         seed: int = ...,
         progress: SayProgress | None = ...,
     ) -> Fabrication:
-        """What it takes to build a display and to measure it, with what is expected."""
+        """Prepare to build a display and to measure it, with what is expected."""
     def plan_study(
         design: NamedDesign | str | Path,
         participants: int = ...,

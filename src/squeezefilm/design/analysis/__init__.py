@@ -1,1 +1,1 @@
-"""What is asked of a display as a whole: analysis, the paper's design procedure, its claims."""
+"""Answers about a display as a whole: analysis, the paper's design procedure, its claims."""

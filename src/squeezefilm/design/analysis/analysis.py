@@ -63,7 +63,7 @@ BAND_POINTS, BAND_SAMPLES = 9, 64
 """Amplitudes at which the band of the friction is computed, and draws at each."""
 
 BAND_REACH = 1.5
-"""How far the band goes, in vibration amplitudes: beyond, draws are pressed through."""
+"""Reach of the band in vibration amplitudes: beyond, draws are pressed through."""
 
 KEPT = ("sensitivities", "ears", "friction_curves", "other_models")
 """Properties that take tenths of a second to seconds, kept on disk (`Analysis.compute`)."""
@@ -130,7 +130,7 @@ class Analysis(Result):
 
     @functools.cached_property
     def band(self) -> FrictionBand | None:
-        """Where µ′/µ lies over the amplitude with all else uncertain; None where no interval is."""
+        """Band of µ′/µ over the amplitude with all else uncertain; None where no interval is."""
         if self.uncertainty is None:
             return None
         reach = BAND_REACH * self.prediction.vibration_amplitude
@@ -144,14 +144,14 @@ class Analysis(Result):
 
     @functools.cached_property
     def model_form(self) -> Finding | None:
-        """What the interval varied and what not; None where there is no interval."""
+        """Sentence on what the interval varied and what not; None where there is no interval."""
         if self.uncertainty is None:
             return None
         return model_form(self.uncertainty, self.rivals, self.prediction.mode.resonance_frequency)
 
     @functools.cached_property
     def ears(self) -> EarExposure | None:
-        """What reaches an ear, beside the guidance; about a second, when it is first asked for."""
+        """Sound at an ear, beside the guidance; about a second, when it is first asked for."""
         return ear_exposure(self.display, self.prediction, self.uncertainty)
 
     @functools.cached_property
@@ -170,7 +170,7 @@ class Analysis(Result):
 
     @functools.cached_property
     def sensitivities(self) -> DisplaySensitivities | None:
-        """What each uncertain or toleranced value does, with the `effort` asked for: about a
+        """Effect of each uncertain or toleranced value, with the `effort` asked for: about a
         second, or twice a solve for each value; None where nothing vibrates."""
         if self.prediction.touch.law is None:
             return None
@@ -183,7 +183,7 @@ class Analysis(Result):
 
     @functools.cached_property
     def drive_electronics(self) -> ElectricalLoad | None:
-        """What the plate asks of its amplifier; None where no admittance was solved."""
+        """Load that the plate is for its amplifier; None where no admittance was solved."""
         p = self.prediction
         return load_of_mode(self.display.actuator, p.mode, p.voltage, p.frequency)
 
@@ -194,7 +194,7 @@ class Analysis(Result):
 
     @property
     def measured(self) -> tuple[MeasuredBeside, ...]:
-        """What was measured of the real display beside what is computed; empty for nothing."""
+        """Measurements of the real display beside what is computed; empty for nothing."""
         return measured_beside(self.display, self.prediction)
 
     def compute(self, names: Sequence[str], tell: SayProgress) -> None:
@@ -267,7 +267,7 @@ class Analysis(Result):
 
 
 def _intervals(unsure: UncertainFriction | None) -> dict[str, Any]:
-    """Those of what the drive does, for ``--json``."""
+    """Intervals of what the drive does, for ``--json``."""
     if unsure is None:
         return {}
     found = unsure.summary()

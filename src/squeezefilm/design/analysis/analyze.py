@@ -101,7 +101,7 @@ def _what_follows(
     tell: SayProgress,
     deadline: Deadline | None,
 ) -> Analysis:
-    """What one decides from, of a prediction; what a deadline leaves no room for is left out."""
+    """Analysis of a prediction; what a deadline leaves no room for is left out."""
     mode = prediction.mode
     tau = prediction.envelope_time_constant
     tell("friction against amplitude")

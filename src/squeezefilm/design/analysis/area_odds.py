@@ -1,4 +1,4 @@
-"""How probable a friction is at the best place of the active area, in its middle and at the worst.
+"""Probability of a friction at the best place of the active area, in its middle and at the worst.
 
 Each draw of all that is uncertain has an amplitude with the finger where the prediction has it, and
 at the other places as much more or less as the display as described. What a stiff pad's friction
@@ -54,7 +54,7 @@ class AreaOdds:
         return low, high
 
     def summary(self) -> dict[str, Any]:
-        """What JSON has under `active_area`."""
+        """Mapping that JSON has under `active_area`."""
         return {
             f"probability_below_{criterion:.2f}": dict(
                 zip(WHERE, self.probabilities_below(criterion), strict=True)
@@ -70,7 +70,7 @@ class JudgedArea(NamedTuple):
     odds: AreaOdds | None
 
     def summary(self) -> dict[str, Any]:
-        """What JSON has under `active_area`; keys carry units."""
+        """Mapping that JSON has under `active_area`; keys carry units."""
         return self.area.summary() | {"odds": None if self.odds is None else self.odds.summary()}
 
 
@@ -114,8 +114,7 @@ def _drawn(
 
 
 class _Elsewhere(NamedTuple):
-    """What ridges meet at another place over the amplitude where the prediction is, and the shares
-    that meet it."""
+    """Amplitudes of ridges at another place, over that where the prediction is, and shares."""
 
     swings: si.DimensionlessArray
     shares: si.DimensionlessArray

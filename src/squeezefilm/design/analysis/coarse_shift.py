@@ -1,4 +1,4 @@
-"""How far a plate's working mode moves with another glue, by its solid on the coarse mesh.
+"""Shift of a plate's working mode with another glue, by its solid on the coarse mesh.
 
 A beam has no glue, and a solve on two meshes takes seconds. The coarse mesh lacks as much of the
 changed plate as of the described one, so that what differs between the two is right to a few
@@ -81,7 +81,7 @@ class CoarseShifts:
     def _peak(
         self, response: HarmonicResponse, shape: si.ComplexArray
     ) -> tuple[si.Hertz, si.MetrePerVolt]:
-        """Where the motion in a shape is largest (Hz), and the lobe's amplitude there (m/V)."""
+        """Frequency of the largest motion in a shape (Hz), and the lobe's amplitude there (m/V)."""
         f = response.frequencies
         alike = np.abs(self._surface(response) @ shape.conj())
         at = int(np.argmax(alike))

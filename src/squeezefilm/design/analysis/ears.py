@@ -1,4 +1,4 @@
-"""What reaches the ear of somebody at a display, beside the published guidance.
+"""Sound at the ear of somebody at a display, beside the published guidance.
 
 The level is that of the plate's face in a baffle, without a finger, in its loudest direction
 (`physics.plate.sound`). It is uncertain by the amplitude's interval and by what the baffle stands
@@ -27,8 +27,8 @@ from squeezefilm.physics.plate.sound import (
 from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
 MODEL_ERROR_dB: si.Dimensionless = 6.0
-"""Of the level either way, assumed: a wall or a table may double the pressure, and a thin plate
-without a baffle, whose back moves against its front, may halve it."""
+"""Error of the level either way, assumed: a wall or a table may double the pressure, and a thin
+plate without a baffle, whose back moves against its front, may halve it."""
 _AIR: si.MetrePerSecond = 343.2
 AUDIBLE: si.Hertz = 17.8e3
 """The lower edge of the one-third-octave band around 20 kHz: below it limits of noise hold."""
@@ -36,7 +36,7 @@ AUDIBLE: si.Hertz = 17.8e3
 
 @dataclass(frozen=True)
 class EarLimit:
-    """One limit, and whether the level is below it, above it, or it is open."""
+    """A limit, and whether the level is below it, above it, or it is open."""
 
     guidance: ExposureGuidance
     standing: str
@@ -62,7 +62,7 @@ class EarExposure:
 
     @property
     def mean_dB(self) -> si.Dimensionless:
-        """Of the mean square over the time with and without output."""
+        """Level of the mean square over the time with and without output."""
         return self.level_dB + 10 * math.log10(self.duty)
 
     @property
@@ -119,7 +119,7 @@ def ear_exposure(
     prediction: Prediction,
     unsure: UncertainFriction | None = None,
 ) -> EarExposure | None:
-    """What reaches an ear at `EAR_DISTANCE` from a display where a prediction was made.
+    """Sound at an ear at `EAR_DISTANCE` from a display where a prediction was made.
 
     The duty is the drive's. None where the plate's shape is not known (an amplitude that was given,
     a plate taken as a beam) or nothing vibrates. Raises `InputError` for a distance within the

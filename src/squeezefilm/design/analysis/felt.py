@@ -43,10 +43,10 @@ Felt = Callable[[si.MetreArray], si.DimensionlessArray]
 
 @dataclass(frozen=True)
 class FeltAt:
-    """At one finger speed (m/s): the finest period (m) that keeps 90 % of its swing of amplitude
-    (`survives`), the finest that is `felt` as described (None: none), and the `interval` of that
-    over the draws (None at an end where so many of them have none; None without draws). `never` is
-    the share of the draws in which no period is felt."""
+    """Gratings felt at a finger speed (m/s): the finest period (m) that keeps 90 % of its swing of
+    amplitude (`survives`), the finest that is `felt` as described (None: none), and the `interval`
+    of that over the draws (None at an end where so many of them have none; None without draws).
+    `never` is the share of the draws in which no period is felt."""
 
     speed: si.MetrePerSecond
     survives: si.Metre
@@ -72,7 +72,7 @@ class FeltGratings:
 
     @property
     def here(self) -> FeltAt:
-        """What is felt at the prediction's speed."""
+        """Gratings felt at the prediction's speed."""
         return next(one for one in self.at if one.speed == self.speed)
 
     def summary(self) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What stands beside the plate that the chain goes on with: other theories, and measurements."""
+"""Results beside the plate that the chain goes on with: other theories, and measurements."""
 
 from __future__ import annotations
 
@@ -75,9 +75,9 @@ class MeasuredBeside:
 
 
 def measured_beside(display: Display, prediction: Prediction) -> tuple[MeasuredBeside, ...]:
-    """What a display's `[measured]` says beside the solved mode of a prediction, in the order
-    frequency, amplitude, quality factor; empty without one. The amplitude is the free antinode's
-    at resonance, linear in the voltage."""
+    """Measurements in a display's `[measured]` beside the solved mode of a prediction, in the order
+    frequency, amplitude, quality factor; empty without one. The amplitude is the free antinode's at
+    resonance, linear in the voltage."""
     known, mode = display.measured, prediction.mode
     if known is None:
         return ()

@@ -23,11 +23,11 @@ from squeezefilm.physics.plate.beam.modes import (
 from squeezefilm.physics.plate.laminate import Laminate
 
 MEAN_EXPLORED_AREA: si.SquareMetre = 28.18e-4
-"""In Smith's experiment; the largest, 128.37 cm², bounds from above."""
+"""Mean area explored in Smith's experiment; the largest, 128.37 cm², bounds from above."""
 LARGEST_EXPLORED_AREA: si.SquareMetre = 128.37e-4
 SQUEEZE_NUMBER: si.Dimensionless = 10.0
 FREQUENCY_AMPLITUDE: si.Metre = 3e-6
-"""Of the unfavourable film for which the frequency criterion is asked."""
+"""Amplitude of the unfavourable film for which the frequency criterion is asked."""
 WANTED_FRICTION: si.Dimensionless = 0.7
 CERAMIC_LENGTH: si.Metre = 11e-3
 CERAMIC_GAP: si.Metre = 1e-3
@@ -41,7 +41,7 @@ _NO_ASYMPTOTE_YET = (
 
 @dataclass(frozen=True, eq=False)
 class Design:
-    """What the procedure yields, with the paper's contradictions in words.
+    """Result of the procedure, with the paper's contradictions in words.
 
     `half_wavelengths` and `amplitudes` are the points of its Fig 11; an amplitude is NaN where no
     amplitude up to 50 µm reaches the wanted friction.
@@ -147,7 +147,7 @@ def design_plate(
 
 
 def _against_division(length: si.Metre, lines: int, half: si.Metre) -> str:
-    """That a free plate's half wavelength is not its length over its nodal lines."""
+    """Sentence that a free plate's half wavelength is not its length over its nodal lines."""
     return (
         f"a free plate of {length * 1e3:.4g} mm with {lines} nodal lines has λ/2 = "
         f"{half * 1e3:.4g} mm, not {length * 1e3:.4g}/{lines} = {length / lines * 1e3:.4g} mm"
@@ -155,7 +155,7 @@ def _against_division(length: si.Metre, lines: int, half: si.Metre) -> str:
 
 
 def _against_rising(halves: si.MetreArray, amplitudes: si.MetreArray) -> str:
-    """How the amplitude of the friction criterion goes with the half wavelength."""
+    """Sentence on how the amplitude of the friction criterion goes with the half wavelength."""
     falling = bool(np.all(np.diff(amplitudes[np.argsort(halves)]) < 0))
     return (
         f"the friction criterion needs {_list(amplitudes)} µm at λ/2 = {_list(halves, 1e3)} mm; "

@@ -21,9 +21,9 @@ Verdict = Literal[
     "reachable with parameters of our choice",
 ]
 Relation = Literal["equals", "above", "at_least", "at_most", "within"]
-"""How what is computed must stand to what was printed; "within" the range of several measured."""
+"""Relation of a computed value to the printed one; "within" the range of several measured."""
 Grounds = Literal["compared", "sign", "construction", "our parameters"]
-"""What a claim that passes is worth: see `VERDICT_OF_GROUNDS`."""
+"""Grounds on which a claim passes: see `VERDICT_OF_GROUNDS`."""
 
 VERDICT_OF_GROUNDS: dict[Grounds, Verdict] = {
     "sign": "sign only",
@@ -44,12 +44,12 @@ MEANINGS: dict[Verdict, str] = {
     "reachable with parameters of our choice": "it comes out with values that we chose or fitted, "
     "since those of the measurement could not be read",
 }
-"""What each verdict says, in words."""
+"""Meaning of each verdict, in words."""
 
 
 @dataclass(frozen=True)
 class Claim:
-    """One published claim: what stands where, how near counts as the same, the verdict on record.
+    """A published claim: what stands where, how near counts as the same, the verdict on record.
 
     `printed` and the values computed for it are in the SI unit `unit`; `tolerance` is relative and
     used for the relation "equals". A number that a preset carries as measured is not written again:
@@ -80,7 +80,7 @@ class Claim:
 
 @dataclass(frozen=True)
 class Asked:
-    """What becomes of a published direction in one model: verdict on record, its grounds, why."""
+    """Published direction in one model: verdict on record, its grounds, why."""
 
     model: str
     verdict: Verdict
@@ -163,7 +163,7 @@ def read_claims() -> ClaimFile:
 
 
 def measured_of_preset(preset: str, quantity: str) -> float:
-    """What was measured of a preset's real device (SI): `quantity` is a field of `Measured`."""
+    """Value measured of a preset's real device (SI): `quantity` is a field of `Measured`."""
     return float(getattr(preset_display(preset).measured, quantity))
 
 

@@ -1,4 +1,4 @@
-"""What each uncertain or toleranced value of a display does to its frequency, amplitude, friction.
+"""Effect of each uncertain or toleranced value of a display on frequency, amplitude, friction.
 
 One value at a time goes from the 5 % to the 95 % quantile of its range, all else as described: the
 range that the description gives, that of the friction's interval
@@ -36,7 +36,7 @@ from squeezefilm.physics.uncertainty.parameters import (
 )
 
 Effort = Literal["quick", "solved"]
-"""How a changed plate is computed: "quick" by the beam, in milliseconds, and where its glue changes
+"""Way to compute a changed plate: "quick" by the beam, in milliseconds, and where its glue changes
 by the solid on its coarse mesh (0.1 to 0.4 s), or "solved" in three dimensions, twice for each
 value. A disc is solved either way (0.1 s a time)."""
 
@@ -71,7 +71,7 @@ _GLUE = "actuator.glue."
 
 @dataclass(frozen=True)
 class Shift:
-    """What one end of a value's range does: the relative change of the resonance frequency and of
+    """Effect of one end of a value's range: the relative change of the resonance frequency and of
     the amplitude per volt without a finger (None where the theory does not know), and µ′/µ (None
     where it is refused). `why_not` says why something is None."""
 
@@ -84,7 +84,7 @@ class Shift:
 
 @dataclass(frozen=True)
 class DisplaySensitivity:
-    """One value of a display, by its dotted path, at the low and the high end of its range."""
+    """A value of a display, by its dotted path, at the low and the high end of its range."""
 
     path: str
     nominal: float
@@ -101,7 +101,7 @@ class DisplaySensitivity:
 
     @property
     def friction_change(self) -> si.Dimensionless:
-        """By how much µ′/µ differs between the two ends (0 where one is refused)."""
+        """Difference of µ′/µ between the two ends (0 where one is refused)."""
         low, high = self.low.relative_friction, self.high.relative_friction
         return 0.0 if low is None or high is None else abs(high - low)
 
@@ -138,7 +138,7 @@ class _Changed(NamedTuple):
 def display_sensitivities(
     display: Display, prediction: Prediction, effort: Effort = "quick"
 ) -> DisplaySensitivities:
-    """What each uncertain or toleranced value does where a prediction was made, its voltage kept.
+    """Effect of each uncertain or toleranced value where a prediction was made, its voltage kept.
 
     The drive follows the resonance. A plate's own values move frequency and amplitude as the beam
     says, those of its glue as the solid on its coarse mesh ("quick": some 10 ms a value, 0.2 to
@@ -167,7 +167,7 @@ def display_sensitivities(
 
 
 def _every(display: Display, mixture: Mixture) -> Iterator[_Changed]:
-    """What the interval draws, and usual tolerances of the plate where there are none."""
+    """Ranges that the interval draws, and usual tolerances of the plate where there are none."""
     for one in mixture.inputs:
         if isinstance(one, Parameter):
             yield _Changed(one, functools.partial(_with, path=one.path))
@@ -200,7 +200,7 @@ def _with(display: Display, value: float, *, path: str) -> Display:
 
 
 def _along(actuator: Actuator, path: str, share: float) -> dict[str, float]:
-    """What grows with a plate's length, width or diameter, by paths in the display."""
+    """Lengths that grow with a plate's length, width or diameter, by paths in the display."""
     found: dict[str, float] = {}
     if isinstance(actuator, RectangularPlate) and path in _SIDES:
         for group in ("patches", "supports"):
@@ -234,7 +234,7 @@ class _Bench:
                 self.model += ", with another glue by the solid on its coarse mesh"
 
     def shift(self, one: _Changed, value: float) -> Shift:
-        """What one value in the place of the described one does."""
+        """Effect of one value in the place of the described one."""
         path = one.parameter.path
         if path.startswith("actuator."):
             return self._of_plate(one.make(self.display, value), path, value)

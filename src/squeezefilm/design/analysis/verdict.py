@@ -43,8 +43,8 @@ Kind = Literal["good", "limit", "doubt"]
 
 @dataclass(frozen=True)
 class Finding:
-    """One sentence of the verdict: good news, a limit to know, or a reason not to believe; what it
-    is `about` where that matters, and in `short` what the first screen says in its place."""
+    """A sentence of the verdict: good news, a limit to know, or a reason not to believe; what it is
+    `about` where that matters, and in `short` what the first screen says in its place."""
 
     kind: Kind
     text: str
@@ -61,8 +61,8 @@ def verdict(
     unsure: UncertainFriction | None = None,
     why_not: str = "",
 ) -> Iterator[Finding]:
-    """What an analysis amounts to, in sentences: `own` is the curve of the prediction's model on
-    its surface, `why_not` says why no friction is `unsure`.
+    """Sentences on what an analysis amounts to: `own` is the curve of the prediction's model on its
+    surface, `why_not` says why no friction is `unsure`.
 
     What the prediction's `objections` say and what speaks against the working mode come first;
     while an objection stands, or where the mode is not driven, nothing is good.
@@ -111,8 +111,8 @@ def as_json(findings: Iterable[Finding]) -> list[dict[str, str]]:
 
 
 def why_not_good(display: Display, p: Prediction) -> str | None:
-    """Why nothing that is found of a display may be called good: its working mode is not driven, or
-    an objection stands, which says so itself (then empty). None where things may be good."""
+    """Reason why nothing of a display may be called good: its working mode is not driven, or an
+    objection stands, which says so itself (then empty). None where things may be good."""
     undriven = None if p.voltage is None else why_undriven(display, p.mode)
     return undriven or ("" if p.objections else None)
 
@@ -125,8 +125,8 @@ def held_back(finding: Finding, why: str | None) -> Finding:
 
 
 def ears_finding(ears: EarExposure | None) -> Finding:
-    """What reaches an ear, beside the guidance: good where it is surely below the one for the
-    public, a limit where it is surely above or audible, a doubt where that is open or unknown."""
+    """Finding on the sound at an ear: good where it is surely below the one for the public, a limit
+    where it is surely above or audible, a doubt where that is open or unknown."""
     if ears is None:
         return Finding(
             "doubt",
@@ -145,8 +145,8 @@ def friction_verdict(
     why_not: str,
     area: JudgedArea | None = None,
 ) -> tuple[Finding, ...]:
-    """How probable it is that the friction falls below the paper's criterion: at the place of the
-    prediction, and over the active area where there is one.
+    """Findings on how probable it is that the friction falls below the paper's criterion: at the
+    place of the prediction, and over the active area where there is one.
 
     Good where all of the interval lies below it, at the worst place of the active area too; a limit
     where it does not, a doubt where there is no interval (`why_not` says why). The same sentences
@@ -164,7 +164,7 @@ def friction_verdict(
 
 
 def _odds(area: JudgedArea) -> str:
-    """How probable the criterion is over the area, in a sentence."""
+    """Sentence on how probable the criterion is over the area."""
     if area.odds is None:
         return ""
     best, median, worst = (probability_words(p) for p in area.odds.probabilities_below(CRITERIA[0]))
@@ -180,7 +180,7 @@ def _odds(area: JudgedArea) -> str:
 
 
 def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str) -> Finding:
-    """Of the place that the prediction is of."""
+    """Finding on the place of the prediction."""
     where = p.place_said
     if p.law.place is None:
         where += f", at {p.vibration_amplitude * 1e6:.3g} µm"
@@ -217,12 +217,12 @@ def _at_the_place(p: Prediction, unsure: UncertainFriction | None, why_not: str)
 
 
 def probability_words(value: si.Dimensionless) -> str:
-    """In two digits; never 0 or 1, which so few draws cannot say."""
+    """Probability in two digits; never 0 or 1, which so few draws cannot say."""
     return "above 0.99" if value > 0.99 else "below 0.01" if value < 0.01 else f"{value:.2f}"
 
 
 def _of_needed_amplitude(p: Prediction, own: FrictionCurve) -> Iterator[Finding]:
-    """What the paper's criterion takes where the display as described misses it."""
+    """Findings on what the criterion takes where the display as described misses it."""
     papers = not MODEL_KINDS[p.model].shares_load
     by = "By the paper's model" if papers else f"By the model '{p.model}'"
     if papers or p.relative_friction > PAPER_CRITERION:
@@ -237,7 +237,7 @@ def _of_needed_amplitude(p: Prediction, own: FrictionCurve) -> Iterator[Finding]
 
 
 def _of_ceramics_touched(display: Display) -> Iterator[Finding]:
-    """What is to be known of ceramics that lie on the face that is touched."""
+    """Findings on ceramics that lie on the face that is touched."""
     plate = display.actuator
     if not isinstance(plate, RectangularPlate) or not (share := plate.coverage_of("top")):
         return
@@ -264,9 +264,9 @@ def rival_frictions(p: Prediction) -> dict[str, si.Dimensionless]:
 def model_form(
     unsure: UncertainFriction, rivals: Mapping[str, si.Dimensionless], frequency: si.Hertz
 ) -> Finding:
-    """What an interval of the friction has varied and what it has not: how much of it is laws that
-    nobody knows and which friction model holds, and how far rival models lie apart beside its
-    width."""
+    """Finding on what an interval of the friction has varied and what it has not: how much of it is
+    laws that nobody knows and which friction model holds, and how far rival models lie apart beside
+    its width."""
     low, high = unsure.interval
     values = sum(not hasattr(influence.parameter, "options") for influence in unsure.influences)
     laws = len(unsure.influences) - values
@@ -293,8 +293,8 @@ def model_form(
 
 
 def _of_gratings(table: GratingsLeft, relative_friction: si.Dimensionless) -> Finding:
-    """Which square gratings survive, and how fast the finger may be on the worst; good only where
-    the friction swings by as much as people notice."""
+    """Finding on which square gratings survive, and how fast the finger may be on the worst; good
+    only where the friction swings by as much as people notice."""
     noticed = 1 - relative_friction >= NOTICED_DIFFERENCE
     unfelt = (
         ""

@@ -88,7 +88,7 @@ class VoltageInterval:
 
 @dataclass(frozen=True)
 class Wanted:
-    """What a wanted friction takes: amplitude with the finger on it (m) and voltage (V), as
+    """Price of a wanted friction: amplitude with the finger on it (m) and voltage (V), as
     described; None where nothing brings the display there, and `why_not` says why. `uncertain` is
     the voltage over the draws; None without one, with the reason in `why_no_interval`."""
 
@@ -101,7 +101,7 @@ class Wanted:
 
     @property
     def sentence(self) -> str:
-        """What it takes, as described and over the draws."""
+        """Sentence on what it takes, as described and over the draws."""
         if self.voltage is None or self.vibration_amplitude is None:
             said = f"not reached as described: {self.why_not}"
         else:
@@ -133,7 +133,7 @@ def wanted_friction(
     strict: bool = True,
     progress: SayProgress | None = None,
 ) -> Wanted:
-    """What a wanted µ′/µ takes where a prediction was made: its frequency, force, surface, speed.
+    """Price of a wanted µ′/µ where a prediction was made: its frequency, force, surface, speed.
 
     `samples` is the base of the draws (0: no interval). Raises `UnreachableError` where no voltage
     does it as described, without `strict` that is said in its place, and what

@@ -1,1 +1,1 @@
-"""What a workshop needs to know of a display, in numbers: electrodes, bodies as triangles, bill."""
+"""Numbers of a display for its workshop: electrodes, bodies as triangles, bill."""

@@ -18,8 +18,8 @@ CUT = "cut to size"
 
 @dataclass(frozen=True)
 class BillRow:
-    """One thing: `mass` (kg) is that of all `count` of it, None where the display does not say;
-    `in_mass` whether it counts in the display's own mass."""
+    """A row of the bill: `mass` (kg) is that of all `count` of it, None where the display does not
+    say; `in_mass` whether it counts in the display's own mass."""
 
     what: str
     count: int
@@ -75,7 +75,7 @@ def bill_of(
 
 
 def _size(part: Part) -> str:
-    """Its size in millimetres, as a workshop reads it."""
+    """Size in millimetres, as a workshop reads it."""
     shape = part.footprint
     if isinstance(shape, Rectangle):
         sides = f"{millimetres(shape.length)} × {millimetres(shape.width)}"

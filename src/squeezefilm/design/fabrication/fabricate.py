@@ -50,7 +50,7 @@ ASKED = (
     "amplitude_per_volt",
     "half_wavelength",
 )
-"""What is predicted of every plate and disc, by its name for a calibration."""
+"""Quantities predicted of every plate and disc, by the name for a calibration."""
 SHARES = (0.5, 1.0)
 """The amplitudes, over that of the display under its finger, at which µ′/µ is predicted."""
 
@@ -84,7 +84,7 @@ class Fabrication(Result):
 
     @property
     def mass(self) -> float:
-        """Of all bodies together (kg)."""
+        """Mass of all bodies together (kg)."""
         return math.fsum(part.mass for part in self.parts)
 
     @property
@@ -124,7 +124,7 @@ def fabricate(
     seed: int = 1,
     progress: SayProgress | None = None,
 ) -> Fabrication:
-    """What it takes to build a display and to measure it, with what is expected.
+    """Prepare to build a display and to measure it, with what is expected.
 
     A `prediction` and an `uncertainty` of this display that are there already (those of an
     `Analysis`) are not computed again; without them it is predicted at its own voltage. Of
@@ -198,7 +198,7 @@ def sealed_already(file: Path, display: Display) -> BlindPrediction | None:
 
 
 def _why_not_drawn(display: Display, prediction: Prediction) -> str:
-    """Why no bodies of this kind can be drawn and solved; "" where they can."""
+    """Reason why no bodies of this kind can be drawn and solved; "" where they can."""
     if isinstance(display.actuator, AnnularStator):
         return (
             "frequency and amplitude of a stator are measured values of its description; what a "
@@ -212,7 +212,7 @@ def _why_not_drawn(display: Display, prediction: Prediction) -> str:
 def _expected(
     display: Display, prediction: Prediction, why_not: str, seed: int, tell: SayProgress
 ) -> tuple[BlindPrediction | None, str]:
-    """What a bench will see, and why there is nothing (of the plate) where it is so."""
+    """Prediction of what a bench will see, and the reason where there is none."""
     asked = [] if why_not else [Observation(name, 0.0, 0.0) for name in ASKED]
     amplitude = prediction.vibration_amplitude
     if amplitude > 0 and prediction.touch.law is not None:

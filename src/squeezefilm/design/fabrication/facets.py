@@ -11,14 +11,14 @@ from squeezefilm.core import quantities as si
 from squeezefilm.physics.plate.parts import WHOLE_TURN, Part, Rectangle, Sector
 
 CHORD_ERROR: si.Metre = 1e-6
-"""How far at most the middle of a facet may lie inside of the circle that it stands for."""
+"""Largest distance between the middle of a facet and the circle that it stands for, inside it."""
 _MOST_FACETS = 4000
 
 
 @si.checked_numbers
 def facets_round(radius: Annotated[si.Metre, si.Above(0.0)]) -> int:
-    """How many facets go round a circle so that none is further than `CHORD_ERROR` inside of it;
-    a multiple of 4, at most 4000."""
+    """Number of facets round a circle so that none is further than `CHORD_ERROR` inside of it; a
+    multiple of 4, at most 4000."""
     ratio = min(CHORD_ERROR / radius, 1.0)
     count = math.ceil(math.pi / math.acos(1 - ratio) / 4) * 4
     return min(max(count, 16), _MOST_FACETS)

@@ -16,14 +16,14 @@ from squeezefilm.physics.plate.electronics import ElectricalLoad
 from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
 SMALL_SIGNAL: si.Dimensionless = 0.1
-"""Of the drive's voltage: for what is to be linear."""
+"""Share of the drive's voltage for what is to be linear."""
 _BAND, _POINTS = 8.0, 201
 _HZ, _V, _M = si.Unit("Hz"), si.Unit("V"), si.Unit("m")
 
 
 @dataclass(frozen=True)
 class Check:
-    """One number to be read: `answer` is its name for a calibration ("" where it has none) under
+    """A number to be read: `answer` is its name for a calibration ("" where it has none) under
     `conditions` (SI); `value` is that of the display as described, `interval` holds `level` of what
     is expected of the built one (None where that is not known)."""
 
@@ -39,8 +39,8 @@ class Check:
 
 @dataclass(frozen=True)
 class TestStep:
-    """One step: what to do, in sentences; the `kind` of recording and its `file` (both "" where
-    none is kept), and what to read."""
+    """A step: what to do, in sentences; the `kind` of recording and its `file` (both "" where none
+    is kept), and what to read."""
 
     __test__ = False
 
@@ -53,7 +53,7 @@ class TestStep:
 
 @dataclass(frozen=True, eq=False)
 class Known:
-    """What the plan is made of: everything is computed already."""
+    """Inputs of the plan: everything is computed already."""
 
     prediction: Prediction
     expected: tuple[Predicted, ...]

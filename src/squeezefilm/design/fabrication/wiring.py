@@ -1,5 +1,5 @@
-"""Where the electrodes of a display lie and how they are connected, and where its face stands
-still: what drawing, wiring and test plan have in common."""
+"""Electrodes of a display, how they are connected, and where its face stands still: what drawing,
+wiring and test plan have in common."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class Lead:
 
 
 def leads_of(electrodes: Sequence[Electrode]) -> tuple[Lead, ...]:
-    """One lead for each connection, and one of the bonded sides, which are ground."""
+    """A lead for each connection, and one of the bonded sides, which are ground."""
     by: dict[str, list[str]] = {}
     for electrode in electrodes:
         if electrode.connection != OPEN:
@@ -120,7 +120,7 @@ def leads_of(electrodes: Sequence[Electrode]) -> tuple[Lead, ...]:
 
 
 def wiring_said(electrodes: Sequence[Electrode]) -> tuple[str, ...]:
-    """How the electrodes are driven, in sentences."""
+    """Sentences on how the electrodes are driven."""
     groups = {electrode.connection for electrode in electrodes}
     said = [
         "The bonded side of every ceramic is ground. On a substrate that does not conduct, order "
@@ -175,5 +175,5 @@ def nodal_lines_of(actuator: Actuator, mode: WorkingMode) -> NodalLines:
 
 
 def _radial(diameters: int) -> tuple[si.Radian, ...]:
-    """At the ends of the sectors, which begin at the angle 0."""
+    """Angles at the ends of the sectors, which begin at the angle 0."""
     return tuple(k * math.pi / diameters for k in range(2 * diameters))

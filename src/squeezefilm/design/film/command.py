@@ -1,4 +1,4 @@
-"""What `squeezefilm film` computes: one film of a plain shape, or a map of many."""
+"""Results of `squeezefilm film`: one film of a plain shape, or a map of many."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class FilmAnswer(Result):
     )
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints."""
+        """Mapping that ``--json`` prints."""
         values = {
             field.name: to_json(getattr(self, field.name))
             for field in dataclasses.fields(self)
@@ -103,7 +103,7 @@ class FilmMap:
     model: str
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints."""
+        """Mapping that ``--json`` prints."""
         return {**to_json(self), "provenance": stamp(self.request)}
 
 
@@ -119,8 +119,8 @@ def solve_film(
     slip: str = "first",
     tolerance: si.Dimensionless = 1e-3,
 ) -> FilmAnswer:
-    """One film. σ is on the width of a strip, the radius of a disc, the X side of a rectangle or
-    the X semi-axis of an ellipse.
+    """Solve a film. σ is on the width of a strip, the radius of a disc, the X side of a rectangle
+    or the X semi-axis of an ellipse.
 
     `gap` is the excursion ratio ε of H = 1 + ε cos T, or one's own gap under a strip: a function
     H(X, T) that broadcasts over −1/2 ≤ X ≤ 1/2 and a period of 2π, or a `GapProfile`. The rest as

@@ -1,4 +1,4 @@
-"""What `squeezefilm friction` computes: the friction of a display, how sure it is, and its maps."""
+"""Results of `squeezefilm friction`: the friction of a display, how sure it is, and its maps."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class FrictionAnalysis(Result):
     )
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints; keys carry units."""
+        """Mapping that ``--json`` prints; keys carry units."""
         p = self.prediction
         lifted = p.law.kind.friction == "lift"
         sharing = None if lifted else p.touch.sharing
@@ -139,7 +139,7 @@ class FrictionAnalysis(Result):
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FrictionRequest:
-    """What `analyze_friction` is asked for."""
+    """Arguments of `analyze_friction`."""
 
     display: NamedDisplay
     _: KW_ONLY

@@ -1,4 +1,4 @@
-"""What `squeezefilm plate` computes: the modes of a plate in a band, and its harmonic response.
+"""Results of `squeezefilm plate`: the modes of a plate in a band, and its harmonic response.
 
 `solve_plate` takes whatever a display has: a rectangle, which is solved here, a disc or a stator.
 """
@@ -86,12 +86,12 @@ class PlateAnalysis(SolvedBody):
 
     @property
     def model(self) -> str:
-        """What made the numbers."""
+        """Name of the model that made the numbers."""
         return self.modes.model
 
     @property
     def status(self) -> str:
-        """How good the table is, in words."""
+        """Words for how good the table is."""
         return self.modes.status
 
     def _particulars(self) -> dict[str, Any]:
@@ -118,7 +118,7 @@ def parse_mode(text: str) -> tuple[int, int]:
 @si.checked_numbers
 @dataclass(frozen=True)
 class PlateRequest:
-    """What `solve_plate` is asked for."""
+    """Arguments of `solve_plate`."""
 
     display: NamedDisplay
     _: KW_ONLY
@@ -192,7 +192,7 @@ class _Teller:
 
 
 class SolvedPlate(NamedTuple):
-    """What a plate's analysis knows of the plate alone, whatever drives it and by which voltage."""
+    """Analysis of the plate alone, whatever drives it and by which voltage."""
 
     solid: SolidMode
     modes: PlateModes
@@ -261,7 +261,7 @@ def _driven_plate(display: Display) -> RectangularPlate:
 
 
 def mode_row(modes: PlateModes, index: int) -> ModeRow:
-    """One line of the table of modes: that of the mode number `index` of a solved plate."""
+    """A line of the table of modes: that of the mode number `index` of a solved plate."""
     label, frequency = modes.labels[index], float(modes.frequencies[index])
     quality, force = float(modes.quality_factors[index]), float(modes.drive_forces[index])
     shape, nodes = modes.shapes[index], modes.nodal_positions(index)

@@ -30,7 +30,7 @@ _STRAIGHT = 0.6
 
 @dataclass(frozen=True)
 class ListedMode:
-    """One driven mode: its label, frequency, Q and amplitude per volt on the drive at resonance.
+    """A driven mode: its label, frequency, Q and amplitude per volt on the drive at resonance.
 
     `alone_per_volt` is at its antinode, of this mode alone, zero to peak, without a finger.
     `neighbour` is the mode that adds most at this one's resonance, `neighbour_distance` how far it
@@ -73,7 +73,7 @@ class ListedMode:
 
 @dataclass(frozen=True)
 class Suggestion:
-    """What to write into the display's file, and why; `mode` is None where nothing fits."""
+    """Suggestion for the display's file, and its reason; `mode` is None where nothing fits."""
 
     mode: ListedMode | None
     text: str
@@ -135,7 +135,7 @@ def with_working_mode(
 
 
 def _choice(label: tuple[int, int] | None) -> str | None:
-    """What to write to work in a mode: only lines across one side can be asked for."""
+    """Setting to write to work in a mode: only lines across one side can be asked for."""
     if label is None or min(label) > 0 or max(label) < 2:
         return None
     if label[1] == 0:
@@ -174,7 +174,7 @@ def shown_frequency(mode: ListedMode) -> str:
 def chosen(
     modes: Sequence[ListedMode], label: str, near: si.Hertz | None = None
 ) -> ListedMode | None:
-    """Of the modes with a label the one nearest to a frequency (Hz), without one the strongest."""
+    """Mode nearest to a frequency (Hz) of those with a label; without a frequency the strongest."""
     found = [mode for mode in modes if mode.label == label]
     if near is not None:
         return min(found, key=lambda mode: abs(mode.frequency - near), default=None)

@@ -1,5 +1,5 @@
-"""What speaks against the mode that a display works in: not driven, audible, crowded, or not the
-only one of its name."""
+"""Doubts about the mode that a display works in: not driven, audible, crowded, or not the only one
+of its name."""
 
 from __future__ import annotations
 
@@ -38,15 +38,15 @@ _ELSEWHERE: tuple[si.Hertz, si.Hertz] = (HEARING, 60e3)
 
 @dataclass(frozen=True)
 class ModeDoubt:
-    """One sentence against the working mode; of the kind "undriven" where nothing good may be said
-    of a display that works in it."""
+    """A sentence against the working mode; of the kind "undriven" where nothing good may be said of
+    a display that works in it."""
 
     kind: Literal["undriven", "audible", "crowded", "ambiguous"]
     text: str
 
 
 def why_undriven(display: Display, mode: WorkingMode) -> str | None:
-    """Why the drive does not move a plate's working mode, in a sentence; None where it does.
+    """Reason why the drive does not move a plate's working mode; None where it does.
 
     Symmetry may forbid it; or what moves at its antinode at its frequency is mostly other modes, as
     the solved plate tells.
@@ -70,7 +70,7 @@ def why_undriven(display: Display, mode: WorkingMode) -> str | None:
 
 
 def mode_doubts(display: Display, mode: WorkingMode) -> tuple[ModeDoubt, ...]:
-    """What speaks against the mode that a display works in, the worst first.
+    """Doubts about the mode that a display works in, the worst first.
 
     What lies around it is taken from a plate's solution, of a plate that was not solved from
     screening (some tenths of a second); of discs and stators it is said only whether people hear
@@ -141,7 +141,7 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[ModeDoubt]:
 
 
 def _instead(plate: RectangularPlate) -> str:
-    """What to work in instead."""
+    """Advice on what to work in instead."""
     modes = _screened(plate, _ELSEWHERE)
     if not modes:
         return "squeezefilm modes lists what is driven."

@@ -1,4 +1,4 @@
-"""What `squeezefilm modes` lists: the modes of a band that the drive can move, to choose one by.
+"""List of the modes of a band that the drive can move (`squeezefilm modes`), to choose one by.
 
 A rectangular plate is screened (see `screened_modes`), a disc or a stator solved. What is said of
 the mode that a display has chosen is in `design.plate.mode_doubts`.
@@ -75,7 +75,7 @@ class ModeList(Result):
         return chosen(self.modes, self.working, near)
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints; keys carry units."""
+        """Mapping that ``--json`` prints; keys carry units."""
         return {
             "display": self.display.name,
             "band_Hz": list(self.band),
@@ -190,7 +190,7 @@ def _solved(
 
 
 def _rules(plate: RectangularPlate) -> tuple[str, ...]:
-    """Which modes symmetry keeps the drive from, along each side where it does."""
+    """Rules by which symmetry keeps the drive from modes, along each side where it does."""
     if only_stretches(plate):
         return (
             "No mode of bending is driven: every ceramic has its mirror image on the other face, "

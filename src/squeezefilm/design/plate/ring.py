@@ -1,4 +1,4 @@
-"""What `squeezefilm plate` computes of a disc or a stator: modes in a band, and the response."""
+"""Results of `squeezefilm plate` for a disc or a stator: modes in a band, and the response."""
 
 from __future__ import annotations
 
@@ -76,17 +76,17 @@ class RingAnalysis(SolvedBody):
 
     @property
     def largest_per_volt(self) -> si.MetrePerVolt:
-        """At the touched face's highest point, at resonance, as computed (m/V)."""
+        """Amplitude at the touched face's highest point, at resonance, as computed (m/V)."""
         return float(self.response.maximum[self.resonance])
 
     @property
     def circuit_said(self) -> str:
-        """Why there is no circuit; empty where there is one."""
+        """Reason why there is no circuit; empty where there is one."""
         return "" if self.circuit is not None else "none: the channel does not drive this mode"
 
     @property
     def computed_per_volt(self) -> si.MetrePerVolt | None:
-        """Of a stator, whose amplitude is measured, the computed one at the same place: at an
+        """Computed amplitude of a stator, whose amplitude is measured, at the same place: at an
         antinode of the mean circumference (m/V). None for a disc, whose amplitude is computed."""
         if not isinstance(self.display.actuator, AnnularStator):
             return None
@@ -95,23 +95,23 @@ class RingAnalysis(SolvedBody):
 
     @property
     def scan_radius(self) -> si.Metre:
-        """Where the scan around is taken: the mean radius of the surface."""
+        """Radius of the scan around: the mean radius of the surface."""
         return float(np.mean(self.body.section.surface_radii))
 
     @property
     def model(self) -> str:
-        """What made the numbers."""
+        """Name of the model that made the numbers."""
         return self.annular.model + (", fitted stator" if self.body.fit is not None else "")
 
     @property
     def status(self) -> str:
-        """How good the table is, in words."""
+        """Words for how good the table is."""
         worst = max(row.frequency_error / row.frequency for row in self.rows)
         return f"{len(self.rows)} modes in the band, within {worst:.1e} (estimated)"
 
     @property
     def remarks(self) -> Remarks:
-        """What is said beside the numbers."""
+        """Remarks beside the numbers."""
         return Remarks(
             "(estimated)" + ("; fitted, not predicted" if self.body.fit is not None else ""),
             "largest, touched face",
@@ -206,7 +206,7 @@ def analyze_ring(
 
 
 def _deadline(actuator: AnnularStator | DiscPlate, pace: Pace) -> Deadline | None:
-    """When all must be there, with time kept for the response after the modes.
+    """Time at which all must be there, with time kept for the response after the modes.
 
     Raises `OutOfTimeError`, with the answer of a closed estimate, where the budget does not allow
     the working mode and its response.
@@ -229,7 +229,7 @@ def _deadline(actuator: AnnularStator | DiscPlate, pace: Pace) -> Deadline | Non
 
 
 def mode_row(body: RingBody, mode: AnnularMode, capacitance: si.Farad) -> ModeRow:
-    """One line of the table of modes; the modal force is that of unit modal mass (N/(V √kg)).
+    """A line of the table of modes; the modal force is that of unit modal mass (N/(V √kg)).
 
     The amplitude is that of u_z on the surface, which modes in the plane hardly move; the coupling
     is against the `capacitance` beside the mode.

@@ -1,4 +1,4 @@
-"""What a ring's one channel makes of the two orientations of its working mode, in sentences.
+"""Sentences on what a ring's one channel makes of the two orientations of its working mode.
 
 A round body has cos mθ and sin mθ at one frequency. Its imperfections, or electrodes that are not
 alike all round, part the two by a little. A channel whose antinodes lie on those of one of them
@@ -47,8 +47,8 @@ def least_standing_wave_ratio(split: si.Dimensionless) -> si.Dimensionless:
 def electrode_split(
     section: AnnularSection, mode: AnnularMode, drive: SectorDrive
 ) -> si.Dimensionless:
-    """By how much of its frequency a pair is parted if the electrodes outside the channel are left
-    open, at most: the channel's are shorted by its source, and open ones stiffen.
+    """Share of its frequency by which a pair is parted, at most, if the electrodes outside the
+    channel are left open: the channel's are shorted by its source, and open ones stiffen.
 
     Electrodes as wide as the channel's first sector fill the ring where the channel leaves room,
     each by itself: K grows by F² c cᵀ/C, with c the sector's ∫(cos mθ, sin mθ)dθ and C its clamped
@@ -79,8 +79,8 @@ def electrode_split(
 def crest_speed(
     mode: AnnularMode, travelling: Annotated[si.Metre, si.AtLeast(0.0)]
 ) -> si.MetrePerSecond:
-    """How fast the surface itself moves along the ring at a crest (m/s) of a wave of which the
-    amplitude `travelling` (m) travels.
+    """Speed of the surface itself along the ring at a crest (m/s) of a wave of which the amplitude
+    `travelling` (m) travels.
 
     ω times the surface's displacement around it, V, over that across it, W, at the radius where
     the mode moves most: the particles' ellipse, for a wave that travels alone. In a standing wave
@@ -131,7 +131,7 @@ class RingPair:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """What that means, with its numbers."""
+        """Sentences on what that means, with its numbers."""
         half = self.frequency / (2 * self.quality_factor)
         open_in_halves = self.electrode_split / half
         amplitude = f"{self.amplitude * 1e6:.3g} µm"

@@ -1,4 +1,4 @@
-"""How far a plate's working mode moves when one thing about the plate is different.
+"""Shift of a plate's working mode when one thing about the plate is different.
 
 Each `Change` makes another plate; it is solved in three dimensions like the first, and the mode is
 recognised by its shape. Solved plates are kept, so that asking again costs nothing.
@@ -40,9 +40,9 @@ LOSSLESS: si.Dimensionless = 1e5
 
 @dataclass(frozen=True)
 class WorkingPoint:
-    """What the changes move: the working mode's frequency with its estimated error, the largest
-    amplitude per volt on the upper face at resonance (None where nothing drives it), quality
-    factor, and the frequency with the drive's terminals open."""
+    """Working point that the changes move: the working mode's frequency with its estimated error,
+    the largest amplitude per volt on the upper face at resonance (None where nothing drives it),
+    quality factor, and the frequency with the drive's terminals open."""
 
     label: Label
     frequency: si.Hertz
@@ -54,8 +54,8 @@ class WorkingPoint:
 
 @dataclass(frozen=True)
 class Change:
-    """One thing that is different: its group (`name`), what it is changed to in words, and the
-    plate that it makes of another. `frequency_only` where there is no amplitude to compare."""
+    """A thing that is different: its group (`name`), what it is changed to in words, and the plate
+    that it makes of another. `frequency_only` where there is no amplitude to compare."""
 
     name: str
     change: str
@@ -65,7 +65,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """What one change does: relative shifts of the frequency and of the amplitude per volt (None
+    """Effect of one change: relative shifts of the frequency and of the amplitude per volt (None
     where nothing drives the changed plate), and how alike the mode is to the unchanged one."""
 
     name: str
@@ -182,7 +182,7 @@ def plate_sensitivity(
 
 
 def usual_changes(plate: RectangularPlate) -> Iterator[Change]:
-    """What is seldom known well about a plate, by as much as it is seldom known.
+    """Changes of what is seldom known well about a plate, by as much as it is seldom known.
 
     Sizes are relative, so that they fit any plate: on the paper's they are E 115 and 131 GPa,
     c11_p ∓10 %, plate and ceramic ±0.05 mm, ρ 8360 kg/m³, ν 0.27 and 0.33, glue of 20 and 50 µm.

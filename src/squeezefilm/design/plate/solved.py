@@ -1,4 +1,4 @@
-"""What is alike in a solved plate, disc and stator: its modes, the working one, a summary."""
+"""Parts that solved plate, disc and stator share: its modes, the working one, a summary."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from squeezefilm.physics.plate.heat.warming import Warming
 
 ALONE = "the budget left no time for the other modes of the band"
-"""What is said where only the working mode was solved."""
+"""Sentence where only the working mode was solved."""
 # Points to a wave in air, and at the least along a side: halved, levels change by 0.1 dB.
 _POINTS_OF_A_WAVE, _LEAST_POINTS = 6, 31
 _SOUND_SPEED: si.MetrePerSecond = 343.2
@@ -35,7 +35,7 @@ _SOUND_SPEED: si.MetrePerSecond = 343.2
 
 @dataclass(frozen=True)
 class ModeRow:
-    """One mode of the table: label by nodal lines across length and width, extrapolated frequency
+    """A mode of the table: label by nodal lines across length and width, extrapolated frequency
     with its estimated error, Q, amplitude per volt of this mode alone at its antinode, effective
     coupling √(1 − f²/f_p²) with the parallel resonance f_p (terminals open, no losses), modal force
     (N/V for unit modal mass). Errors are None where nobody estimates them."""
@@ -55,8 +55,8 @@ class ModeRow:
 
 @dataclass(frozen=True)
 class Remarks:
-    """What is said beside the numbers of a working mode: of its frequency, where it moves most,
-    what its quality factor is of, where it is loudest."""
+    """Remarks beside the numbers of a working mode: of its frequency, where it moves most, what its
+    quality factor is of, where it is loudest."""
 
     frequency: str
     largest: str
@@ -65,7 +65,7 @@ class Remarks:
 
 
 class SolvedBody(Result):
-    """What a solved plate, disc or stator has: its modes, the working one, response and sound.
+    """Solved plate, disc or stator: its modes, the working one, response and sound.
 
     `mode` is the working mode as every verb has it, whose free amplitude per volt at the antinode
     `amplitude_per_volt` is; `largest_per_volt` (m/V) is the largest of the touched face at the same
@@ -101,7 +101,7 @@ class SolvedBody(Result):
 
     @functools.cached_property
     def load(self) -> ElectricalLoad:
-        """What the body asks of its amplifier at its resonance, at the display's voltage."""
+        """Load that the body is for its amplifier at its resonance, at the display's voltage."""
         volts, circuit = self.display.drive.voltage, self.circuit
         static = None if circuit is None else circuit.static_capacitance
         at = self.mode.resonance_frequency
@@ -109,7 +109,7 @@ class SolvedBody(Result):
 
     @functools.cached_property
     def heat(self) -> Warming:
-        """What the power that the working mode loses does to it, at the display's voltage.
+        """Warming by the power that the working mode loses, at the display's voltage.
 
         Of a stator, whose modal mass nobody measured, the power that its fitted body takes.
         """
@@ -131,7 +131,7 @@ class SolvedBody(Result):
         return warming(source, self.display.actuator, thermal)
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints; keys carry units."""
+        """Mapping that ``--json`` prints; keys carry units."""
         volts, load = self.display.drive.voltage, self.load
         levels = zip(self.sound.distances, self.sound.sound_pressure_level_dB, strict=True)
         return {
@@ -236,7 +236,7 @@ class Hurry:
 
     @classmethod
     def of(cls, plate: RectangularPlate, label: Label, pace: Pace) -> Hurry:
-        """What a pace leaves of each part of a plate's analysis.
+        """Time that a pace leaves for each part of a plate's analysis.
 
         Raises `OutOfTimeError`, with the answer of a closed estimate, where the budget does not
         allow the coarse meshes.
@@ -255,7 +255,7 @@ class Hurry:
         return self.whole is None or self.whole.allows(band_seconds(plate, band[1]))
 
     def left_out(self, alone: PlateModes, modes: PlateModes) -> tuple[str, ...]:
-        """What the budget left out of the working mode and the band's modes, in sentences."""
+        """Sentences on what the budget left out of the working mode and the band's modes."""
         said = [alone.coarseness] if alone.coarseness else []
         if self.whole is not None and modes is alone:
             said.append(ALONE)

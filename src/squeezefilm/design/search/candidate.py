@@ -1,4 +1,4 @@
-"""One design of a search: what was chosen, the display that follows, and what it does; and the
+"""A design of a search: what was chosen, the display that follows, and what it does; and the
 display that the front is set beside, asked the same."""
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _SCREENING: Mapping[str, PlateTheory | None] = {
     "disc": None,
     "ring": None,
 }
-"""By which theory a shape is screened; None: as it is solved, since a ring's solver is quick."""
+"""Theory by which a shape is screened; None: as it is solved, since a ring's solver is quick."""
 
 
 # Voltages, from the least to the most, at which a plate that was solved is judged beside its own: a
@@ -52,7 +52,7 @@ _VOLTAGES: Mapping[str, int] = {"nominal": 5, "95 %": 3}
 
 @dataclass(frozen=True)
 class Design:
-    """What is chosen: the number of the shape in the requirements, and a value for each of its
+    """Choices of a design: the number of the shape in the requirements, and a value for each of its
     variables."""
 
     shape: int
@@ -71,7 +71,7 @@ class Design:
 
     @property
     def plate(self) -> Design:
-        """What is built and solved, whatever voltage drives it: the design without its voltage."""
+        """Plate that is built and solved: the design without its voltage."""
         return Design(self.shape, tuple(value for value in self.values if value[0] != VOLTAGE))
 
     def at_voltage(self, voltage: si.Volt) -> Design:
@@ -100,7 +100,7 @@ def design_of(shape: int, values: Mapping[str, Setting]) -> Design:
 
 @dataclass(frozen=True)
 class Evaluated:
-    """What a design does: its criteria by key (SI), whether by the screening theory or solved in
+    """Result of a design: its criteria by key (SI), whether by the screening theory or solved in
     three dimensions, the limits that it breaks, why it cannot be built ("" where it can), and what
     it took (s). `lasting` is what would be the same another time."""
 
@@ -119,7 +119,7 @@ class Evaluated:
         return not self.reason and not self.broken
 
     def objectives(self, names: tuple[str, ...]) -> tuple[float, ...]:
-        """What is made small, in the order of names; infinite where it is not known."""
+        """Values to be made small, in the order of names; infinite where it is not known."""
         found = (self.numbers.get(criterion_of(name).key, float("inf")) for name in names)
         return tuple(float("inf") if value != value else value for value in found)
 
@@ -142,15 +142,15 @@ def display_of(requirements: Requirements, design: Design) -> Display:
 
 
 def sourced_display_of(requirements: Requirements, design: Design) -> Display:
-    """As `display_of`, of every number where it is from and, where that is known, within which
-    range it lies: what an interval of its friction rests on."""
+    """Display of a design as by `display_of`, with every number's source and, where that is known,
+    its range: what an interval of its friction rests on."""
     display = display_of(requirements, design)
     sources = plate_sources(requirements, display, design.shape, design.settings)
     return replace(display, provenance=sources)
 
 
 def evaluate(requirements: Requirements, design: Design, level: Level) -> Evaluated:
-    """What a design does, by the screening theory or solved. What is refused is an answer, too."""
+    """Evaluate a design, by the screening theory or solved. What is refused is an answer, too."""
     began = time.perf_counter()
     try:
         with in_passing(), warnings.catch_warnings():
@@ -184,7 +184,7 @@ def evaluate(requirements: Requirements, design: Design, level: Level) -> Evalua
 def evaluate_all(
     requirements: Requirements, designs: tuple[Design, ...], level: Level
 ) -> list[Evaluated]:
-    """What several designs do, in their order: one task of a search."""
+    """Evaluate several designs, in their order: one task of a search."""
     return [evaluate(requirements, design, level) for design in designs]
 
 
@@ -233,11 +233,11 @@ def _since(began: float) -> si.Second:
 
 
 _NOT_CHOSEN = Design(0, ())
-"""In place of a design, since nobody chose it."""
+"""Entry in place of a design, since nobody chose it."""
 
 
 def reference_of(requirements: Requirements) -> Evaluated:
-    """What the display of `compare_with` does at the requirements' voltage, under their finger, on
+    """Result of the display of `compare_with` at the requirements' voltage, under their finger, on
     their surface, cooled as theirs are; solved in three dimensions.
 
     It has no class of cost, since nobody says what it is built from. Where it cannot be judged, its

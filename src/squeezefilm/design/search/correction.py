@@ -1,4 +1,4 @@
-"""What the solved plates say of the screening theory: a smooth correction, with its error."""
+"""Correction of the screening theory by the solved plates: a smooth correction, with its error."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from squeezefilm.design.search.candidate import Design, Evaluated
 from squeezefilm.design.search.space import Space
 
 LEAST_PLATES = 4
-"""From fewer plates nothing is learned."""
+"""Smallest number of plates from which anything is learned."""
 
 _FOLDS = 8
 # As rough as what neighbouring modes do to single designs, in the square of a logarithm.

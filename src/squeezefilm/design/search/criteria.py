@@ -1,4 +1,4 @@
-"""What a design is judged by: one table of numbers, how each is computed and which limit it has."""
+"""Criteria of a design: one table of numbers, how each is computed and which limit it has."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Criterion:
     of: str = ""
 
     def value(self, numbers: Mapping[str, float]) -> float:
-        """Its value among a design's numbers (SI); NaN where it is not known."""
+        """Value among a design's numbers (SI); NaN where it is not known."""
         return numbers.get(self.of or self.key, math.nan)
 
     @property
@@ -114,7 +114,7 @@ CRITERIA: Mapping[str, Criterion] = dict(
         _one("surest_friction", "1", "µ′/µ with 95 % confidence"),
     )
 )
-"""By key, in the order in which they are told."""
+"""Criteria by key, in the order in which they are told."""
 
 OF_SOLVED = ("neighbour", "area", "sound_level", "surest_friction")
 """The keys of those that are known of solved plates alone."""
@@ -168,7 +168,7 @@ def breaches(numbers: Mapping[str, float], limits: Limits) -> tuple[Breach, ...]
 
 
 def excess_of(criterion: Criterion, value: float, bound: float) -> float:
-    """By how much a value exceeds a bound, as a share of it; negative where there is a margin."""
+    """Share of a bound by which a value exceeds it; negative where there is a margin."""
     if math.isinf(value):
         return math.inf if (value > 0) != criterion.is_floor else -1.0
     return (bound - value) / bound if criterion.is_floor else (value - bound) / bound
@@ -272,7 +272,7 @@ def finest_period_felt(display: Display, p: Prediction) -> si.Metre:
 
 
 def _capacitance(body: RectangularPlate | DiscPlate) -> si.Farad:
-    """Of all ceramics in parallel, fringes neglected."""
+    """Capacitance of all ceramics in parallel, fringes neglected."""
     if isinstance(body, RectangularPlate):
         return patch_capacitance(body)
     area = math.pi / 4 * (body.ceramic_outer_diameter**2 - body.ceramic_inner_diameter**2)
@@ -283,7 +283,7 @@ def _capacitance(body: RectangularPlate | DiscPlate) -> si.Farad:
 def _deflection(
     requirements: Requirements, display: Display, p: Prediction, section: Laminate
 ) -> float:
-    """Under the press, of a plate that is held along its outermost nodal lines."""
+    """Deflection under the press, of a plate that is held along its outermost nodal lines."""
     press, body = requirements.limits.press, display.actuator
     stiffness = section.bending_stiffness
     if isinstance(body, DiscPlate):
@@ -309,7 +309,7 @@ def _deflection(
 def _stress(
     body: RectangularPlate | DiscPlate, p: Prediction, section: Laminate, free: si.Metre
 ) -> float:
-    """At the ceramic's outer face, of the working mode's wave without a finger."""
+    """Stress at the ceramic's outer face, of the working mode's wave without a finger."""
     total = sum(layer.thickness for layer in section.layers)
     above, below = ceramics_of(body)
     distance = max(

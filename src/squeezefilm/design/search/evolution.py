@@ -1,4 +1,4 @@
-"""Who proposes designs: a genetic algorithm where they are screened, a Bayesian sampler where they
+"""Proposal of designs: a genetic algorithm where they are screened, a Bayesian sampler where they
 are solved; both are Optuna's."""
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _GENERATION = "NSGAIISampler:generation"
 
 
 class Proposals:
-    """One Optuna study: the designs of one shape, proposed in batches and answered in batches.
+    """An Optuna study: the designs of one shape, proposed in batches and answered in batches.
 
     What is to be screened is proposed by NSGA-II (Deb et al. 2002, 10.1109/4235.996017), what is to
     be solved by a tree-structured Parzen estimator (Ozaki et al. 2020, 10.1145/3377930.3389817),
@@ -77,8 +77,8 @@ class Proposals:
     def ask(
         self, count: int, batch: int, others: Iterable[Evaluated] = ()
     ) -> list[tuple[Any, Design]]:
-        """So many designs, each with the trial that is to be told of; `others` are all that other
-        hosts have found until now of this shape at this level."""
+        """Propose so many designs, each with the trial that is to be told of; `others` are all that
+        other hosts have found until now of this shape at this level."""
         fresh = {answer.design: answer for answer in others if answer.design not in self._others}
         self._others.update(fresh)
         self.known(fresh.values(), max(batch - 1, 0))
@@ -143,7 +143,7 @@ class Proposals:
         return [value if np.isfinite(value) else _NONE for value in values]
 
     def _excess(self, one: Evaluated) -> list[float]:
-        """How far each limit is exceeded; a design that cannot be built exceeds all."""
+        """Excess over each limit; a design that cannot be built exceeds all."""
         bounds = list(bounded(self._requirements.limits))
         if one.reason:
             return [10.0] * max(len(bounds), 1)

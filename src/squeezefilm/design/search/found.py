@@ -1,4 +1,4 @@
-"""What a design search found: the front, the plate that it would build, and why others fail."""
+"""Result of a design search: the front, the plate that it would build, and why others fail."""
 
 from __future__ import annotations
 
@@ -92,28 +92,28 @@ class DesignSearch(Result):
 
     @property
     def chosen_name(self) -> str:
-        """Its short name."""
+        """Short name of the chosen design."""
         return "none" if self.chosen is None else self.chosen.name
 
     @functools.cached_property
     def plates_solved(self) -> int:
-        """How many plates were solved in three dimensions; `solved` has each at several voltages
-        where there are any to choose."""
+        """Number of plates that were solved in three dimensions; `solved` has each at several
+        voltages where there are any to choose."""
         return _plates(self.solved)
 
     @functools.cached_property
     def plates_feasible(self) -> int:
-        """How many of the solved plates keep all limits at one voltage or more."""
+        """Number of the solved plates that keep all limits at one voltage or more."""
         return _plates(solution for solution in self.solved if solution.is_feasible)
 
     @functools.cached_property
     def plates_on_front(self) -> int:
-        """How many plates the front has, each at one voltage or more."""
+        """Number of plates that the front has, each at one voltage or more."""
         return _plates(member.evaluated for member in self.front)
 
     @property
     def plates_better(self) -> int:
-        """How many plates of the front beat the reference at one voltage or more."""
+        """Number of plates of the front that beat the reference at one voltage or more."""
         return _plates(one.evaluated for one in self.beats_reference)
 
     @functools.cached_property
@@ -185,7 +185,7 @@ class DesignSearch(Result):
         return sourced_display_of(self.requirements, one.evaluated.design)
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints; keys carry units."""
+        """Mapping that ``--json`` prints; keys carry units."""
         chosen = self.chosen
         return {
             "requirements": self.requirements.name,
@@ -238,7 +238,7 @@ class DesignSearch(Result):
 
 @dataclass(frozen=True)
 class Glimpse:
-    """What a search has so far, for whoever watches: the stage in words, how many designs are
+    """State of a running search for whoever watches: the stage in words, how many designs are
     screened and how many plates solved, the objectives (SI) of the feasible screened designs that
     none other beats, the front of the solved ones, and the display to compare with."""
 

@@ -1,4 +1,4 @@
-"""Why designs fail: which limits bind, what each of them costs, and which corners are empty."""
+"""Reasons why designs fail: which limits bind, what each costs, and which corners are empty."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _PARTS, _LEAST_DESIGNS = 5, 20
 
 @dataclass(frozen=True)
 class LimitReason:
-    """What a limit does: how many screened designs break it (`broken`), how many nothing but it
+    """Effect of a limit: how many screened designs break it (`broken`), how many nothing but it
     (`alone`), and by objective the best that would be without it (SI)."""
 
     key: str
@@ -49,7 +49,7 @@ class EmptyCorner:
 def limit_reasons(
     requirements: Requirements, screened: Sequence[Evaluated]
 ) -> tuple[LimitReason, ...]:
-    """What every limit does to the screened designs, the one that is broken most first."""
+    """Effect of every limit on the screened designs, the one that is broken most first."""
     found = []
     best = _best(requirements, [candidate for candidate in screened if candidate.is_feasible])
     for criterion, bound in bounded(requirements.limits):
@@ -151,7 +151,7 @@ def conflict_of(screened: Sequence[Evaluated]) -> tuple[str, str, si.Dimensionle
 
 
 def margins(requirements: Requirements, one: Evaluated) -> dict[str, si.Dimensionless]:
-    """How far a design stays from each limit that it could be judged by, as a share of it, the
+    """Distance of a design from each limit that it could be judged by, as a share of it, the
     nearest first."""
     found = {
         criterion.key: -excess_of(criterion, value, bound)
@@ -162,7 +162,7 @@ def margins(requirements: Requirements, one: Evaluated) -> dict[str, si.Dimensio
 
 
 def limit_in_words(reason: LimitReason, screened: int) -> str:
-    """What a limit does, in a sentence."""
+    """Sentence on what a limit does."""
     one = CRITERIA[reason.key]
     said = (
         f"{one.limit_said(reason.limit)}: broken by {reason.broken} of {screened} "

@@ -38,8 +38,8 @@ _SHARE = (si.Above(0.0), si.AtMost(1.0))
 @si.checked_numbers
 @dataclass(frozen=True)
 class Workspace:
-    """What a finger must be able to explore: `length` along the wave and `width` (m); a plate may
-    be up to `largest_length` and `largest_width` (as large as the workspace if not given)."""
+    """Workspace of a finger: `length` along the wave and `width` (m); a plate may be up to
+    `largest_length` and `largest_width` (as large as the workspace if not given)."""
 
     length: Annotated[si.Metre, hard.SIDE]
     width: Annotated[si.Metre, hard.SIDE]
@@ -77,7 +77,7 @@ class Source:
 @si.checked_numbers
 @dataclass(frozen=True)
 class Limits:
-    """What a design must not exceed, or must reach; None where it may be anything.
+    """Limits that a design must not exceed, or must reach; None where it may be anything.
 
     `most_relative_friction` is µ′/µ at the best place, with `confidence` "nominal" as described, or
     "95 %" that of the upper end of its interval. `least_area` is the share of the active area on
@@ -135,7 +135,7 @@ class Limits:
 @si.checked_numbers
 @dataclass(frozen=True)
 class Tolerances:
-    """How far what is made is from what was drawn: standard deviations, of lengths in m, of
+    """Tolerances between what is drawn and what is made: standard deviations, of lengths in m, of
     material constants as shares of their values."""
 
     thickness: Annotated[si.Metre, si.AtLeast(0.0)] = 20e-6
@@ -154,7 +154,7 @@ _TOUCH, _LIMITS, _TOLERANCES = Touch(), Limits(), Tolerances()
 @si.checked_numbers
 @dataclass(frozen=True)
 class Requirements:
-    """What a display must do, and what it may be built from. Read them with `load_requirements`.
+    """Demands on a display, and what it may be built from. Read them with `load_requirements`.
 
     Attributes:
         name, title: what it is called, in files and for people.
@@ -261,7 +261,7 @@ class Requirements:
 
     @functools.cached_property
     def spaces(self) -> tuple[Space, ...]:
-        """What may be chosen, shape by shape. Raises `InputError` for ranges that are none."""
+        """Choices that there are, shape by shape. Raises `InputError` for ranges that are none."""
         least = self.drive.least_voltage or self.drive.voltage
         volts = number(VOLTAGE, least, self.drive.voltage, "V")
         names = [shape_called(one) for one in self.shapes]
@@ -275,7 +275,7 @@ class Requirements:
 
     @property
     def assumed(self) -> tuple[str, ...]:
-        """What every answer of the search rests on and nobody measured."""
+        """Assumptions that every answer of the search rests on and nobody measured."""
         own = f"materials {OWN} are those of {self.start_from}"
         return (
             f"a quality factor of {self.assembly_quality:g} for every assembly, whatever it is "

@@ -52,7 +52,7 @@ _NEAR, _FROM, _GENERATIONS = 8, 12, 3
 @si.checked_numbers
 @dataclass(frozen=True)
 class SearchRequest:
-    """What `search_designs` is asked for."""
+    """Arguments of `search_designs`."""
 
     requirements: NamedRequirements
     _: KW_ONLY
@@ -373,7 +373,7 @@ class SearchRun:
             )
 
     def result(self) -> DesignSearch:
-        """What was found until now."""
+        """Result until now."""
         requirements, screened = self.requirements, tuple(self._seen["screened"].values())
         return DesignSearch(
             requirements=requirements,

@@ -74,7 +74,7 @@ class Strips(Shape):
     type: Literal["strips"] = "strips"
 
     def variables(self, room: Room) -> tuple[Variable, ...]:
-        """What is chosen. A catalogue's ceramics make the length, which is chosen otherwise."""
+        """Variables. A catalogue's ceramics make the length, which is chosen otherwise."""
         (length, width), (longest, widest) = room.least, room.most
         own = self.catalogue
         return (
@@ -164,8 +164,8 @@ def _cut_within(full: si.Metre, cover: si.Dimensionless) -> si.Metre:
 
 
 def _places(count: int, piece: si.Metre, length: si.Metre, inset: si.Metre) -> list[si.Metre]:
-    """Where pieces begin along a length (m), evenly from an inset to its mirror image: on a step,
-    and the second half as the first seen from the other end."""
+    """Places where pieces begin along a length (m), evenly from an inset to its mirror image: on a
+    step, and the second half as the first seen from the other end."""
     spacing = (length - piece - 2 * inset) / (count - 1) if count > 1 else 0.0
     first = [cut_to_step(inset + number * spacing) for number in range(count // 2)]
     middle = [as_drawn((length - piece) / 2)] * (count % 2)
@@ -190,7 +190,7 @@ class EdgeStrips(Shape):
     type: Literal["edge_strips"] = "edge_strips"
 
     def variables(self, room: Room) -> tuple[Variable, ...]:
-        """What is chosen; the strips' width from a catalogue where ceramics have lengths."""
+        """Variables; the strips' width from a catalogue where ceramics have lengths."""
         (length, width), (longest, widest) = room.least, room.most
         own = self.catalogue
         return (
@@ -262,7 +262,7 @@ class Disc(Shape):
     type: Literal["disc"] = "disc"
 
     def variables(self, room: Room) -> tuple[Variable, ...]:
-        """What is chosen; the ceramic's diameter from a catalogue where ceramics have lengths."""
+        """Variables; the ceramic's diameter from a catalogue where ceramics have lengths."""
         own = self.catalogue
         return (
             *self.stock(),
@@ -313,7 +313,7 @@ class Ring(Shape):
             )
 
     def variables(self, room: Room) -> tuple[Variable, ...]:
-        """What is chosen."""
+        """Variables."""
         (around, track), (longest, widest) = room.least, room.most
         return (
             *self.stock(),
@@ -359,7 +359,7 @@ AnyShape = Strips | EdgeStrips | Disc | Ring
 
 
 def shape_called(shape: AnyShape) -> str:
-    """What people call a shape."""
+    """Name that people have for a shape."""
     if isinstance(shape, Strips):
         return f"strips on {'both faces' if shape.both_faces else 'one face'}"
     return shape.type.replace("_", " ")

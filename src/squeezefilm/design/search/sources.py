@@ -1,4 +1,4 @@
-"""Where the numbers of a plate that a search made are from, with the ranges that these give."""
+"""Sources of the numbers of a plate that a search made, with the ranges that these give."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ _GIVEN = ("glue", "supports")
 def plate_sources(
     requirements: Requirements, display: Display, shape: int, settings: Mapping[str, Setting]
 ) -> dict[str, Provenance]:
-    """Where each number of a plate's display is from, by its dotted path: chosen by the search
-    among what the shape of a number allows (the `settings` by name), asked for or given by the
+    """Source of each number of a plate's display, by its dotted path: chosen by the search among
+    what the shape of a number allows (the `settings` by name), asked for or given by the
     requirements, of the library of materials, or of the display that the search started from."""
     found = shared_sources(requirements)
     own = f"the requirements '{requirements.name}'"
@@ -48,7 +48,7 @@ def plate_sources(
 
 
 def shared_sources(requirements: Requirements) -> dict[str, Provenance]:
-    """Where all numbers but those of body and drive are from, which every plate of a search shares:
+    """Sources of all numbers but those of body and drive, which every plate of a search shares:
     finger, gas, surfaces and cooling."""
     base = requirements.started_from
     found = dict(_kept(requirements, base))

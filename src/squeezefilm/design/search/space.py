@@ -45,7 +45,7 @@ class Number:
         return min(max(value, self.low), self.high)
 
     def share(self, values: Values) -> float:
-        """How far along the value of a design lies, from 0 to 1: what distances are measured in."""
+        """Position of a design's value, from 0 to 1: what distances are measured in."""
         return (float(values[self.name]) - self.low) / (self.high - self.low)
 
     def place(self, values: Values) -> float:
@@ -55,8 +55,8 @@ class Number:
 
 @dataclass(frozen=True)
 class Step:
-    """One of rising values (SI), as of counts and stock thicknesses; of the list that goes with the
-    name chosen for `by`, where the list depends on one."""
+    """Choice of one of rising values (SI), as of counts and stock thicknesses; of the list that
+    goes with the name chosen for `by`, where the list depends on one."""
 
     name: str
     lists: Mapping[str, tuple[float, ...]]
@@ -77,7 +77,7 @@ class Step:
         return values[min(int(share * len(values)), len(values) - 1)]
 
     def share(self, values: Values) -> float:
-        """Where the value of a design lies among all that there are, from 0 to 1."""
+        """Position of a design's value among all that there are, from 0 to 1."""
         every = [value for one in self.lists.values() for value in one]
         low, high = min(every), max(every)
         return (float(values[self.name]) - low) / ((high - low) or 1.0)
@@ -91,7 +91,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of several names without an order, as of materials."""
+    """Choice of one of several names without an order, as of materials."""
 
     name: str
     values: tuple[str, ...]
@@ -106,7 +106,7 @@ class Choice:
         return self.values[min(int(share * len(self.values)), len(self.values) - 1)]
 
     def share(self, values: Values) -> float:
-        """Where the name of a design stands in the list, from 0 to 1."""
+        """Position of a design's name in the list, from 0 to 1."""
         return self.values.index(str(values[self.name])) / max(len(self.values) - 1, 1)
 
     def place(self, values: Values) -> float:
@@ -119,7 +119,7 @@ Variable = Number | Step | Choice
 
 @dataclass(frozen=True)
 class Space:
-    """What may be chosen of one shape: its name and its variables."""
+    """Choices of one shape: its name and its variables."""
 
     shape: str
     variables: tuple[Variable, ...]
@@ -171,7 +171,7 @@ class Space:
                     yield {**places, one.name: float(np.clip(places[one.name] + step, 0.0, 1.0))}
 
     def shares(self, values: Values) -> list[float]:
-        """Where values lie, each from 0 to 1, of what is free: features of a design."""
+        """Positions of values, each from 0 to 1, of what is free: features of a design."""
         return [one.share(values) for one in self.free]
 
 
@@ -196,7 +196,7 @@ def number(name: str, low: float, high: float, unit: str) -> Number:
 
 
 def step(name: str, lists: Mapping[str, tuple[float, ...]], unit: str, by: str = "") -> Step:
-    """One of a list of values, in rising order, by the name chosen for `by` where there is one.
+    """Choice of one of a list of values, in rising order, by the name chosen for `by` if any.
 
     Raises `InputError` for an empty list.
     """

@@ -18,7 +18,7 @@ from squeezefilm.design.search.space import Choice, Setting, Variable, step
 from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
 
 OWN = "as described"
-"""In place of a material's name: that of the display which the search starts from."""
+"""Word in place of a material's name: that of the display which the search starts from."""
 
 
 @si.checked_numbers
@@ -124,7 +124,7 @@ def as_drawn(length: si.Metre) -> si.Metre:
 
 @dataclass(frozen=True)
 class Room:
-    """What a plate must give and may take, along its length and across (m)."""
+    """Room that a plate must give and may take, along its length and across (m)."""
 
     least: tuple[si.Metre, si.Metre]
     most: tuple[si.Metre, si.Metre]
@@ -132,7 +132,7 @@ class Room:
 
 @dataclass(frozen=True)
 class Shape:
-    """What all shapes have: sheets and ceramics to build from.
+    """Base of all shapes: sheets and ceramics to build from.
 
     Raises `InputError` for stock that is not there, named twice, or not in the library.
     """

@@ -1,6 +1,5 @@
-"""What a search knows, in a folder: every evaluated design, kept as it comes, by all that it
-depends on. A search that was stopped asks none of them again, and several hosts may write into one
-file."""
+"""Store of a search in a folder: every evaluated design, kept as it comes, by all that it depends
+on. A search that was stopped asks none of them again, and several hosts may write into one file."""
 
 from __future__ import annotations
 
@@ -21,7 +20,7 @@ from squeezefilm.design.search.tolerance import DRAWS, Made
 from squeezefilm.design.sweep.lines import Lines
 
 FILE = "designs.jsonl"
-"""Its name in the folder of a search: a line for every evaluated design."""
+"""Name of the file in the folder of a search: a line for every evaluated design."""
 
 
 def asked_hash(requirements: Requirements, level: Level) -> str:
@@ -94,8 +93,7 @@ class DesignStore:
             self._members[known.design, known.level] = int(read["member"])
 
     def of_others(self, shape: int, level: Level) -> list[Evaluated]:
-        """What other hosts that search in the same folder have evaluated until now, of a shape at a
-        level."""
+        """Results of other hosts that search in the same folder, of a shape at a level."""
         if self._lines is not None:
             self._lines.read(self._take)
         return [
@@ -108,7 +106,7 @@ class DesignStore:
         return len(self._known)
 
     def get(self, design: Design, level: Level) -> Evaluated | None:
-        """What is known of a design at a level; None where nothing is."""
+        """Result of a design at a level; None where nothing is."""
         return self._known.get((design, level))
 
     def add(self, found: Iterable[Evaluated]) -> None:
@@ -123,7 +121,7 @@ class DesignStore:
         self._append(lines)
 
     def made(self, design: Design) -> Made | None:
-        """What is made of a design's drawing; None where it was not drawn."""
+        """Result of making a design's drawing; None where it was not drawn."""
         return self._made.get(design)
 
     def add_made(self, design: Design, made: Made) -> None:

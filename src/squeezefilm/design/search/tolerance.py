@@ -1,4 +1,4 @@
-"""How many of the plates that are made keep the limits, and what each tolerance does to them."""
+"""Share of the plates made that keep the limits, and what each tolerance does to them."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def made_of(
 def _effects(
     requirements: Requirements, solved: Evaluated, nominal: Mapping[str, float]
 ) -> dict[str, dict[str, float]]:
-    """By central differences, of what the tolerances of the file are not zero of."""
+    """Effects of those tolerances of the file that are not zero, by central differences."""
     found: dict[str, dict[str, float]] = {}
     for number, name in enumerate(_NAMES):
         if getattr(requirements.tolerances, name) == 0:

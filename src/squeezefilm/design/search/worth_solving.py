@@ -1,4 +1,4 @@
-"""Which of the screened designs are worth solving in three dimensions."""
+"""Choice of the screened designs that are worth solving in three dimensions."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def worth_solving(
     corrections: Sequence[Correction | None],
     count: int,
 ) -> list[Design]:
-    """At most `count` designs of plates not solved yet, of all shapes together, that might enter
+    """Designs of plates not solved yet, at most `count` of all shapes together, that might enter
     the front: those expected to add most to what it dominates, at all voltages that were screened
     of a plate, each beside those chosen before it; then, since what is expected errs, layer by
     layer, of a layer too large those far apart. No two are of one plate."""
@@ -90,8 +90,7 @@ def _numbered(plates: Sequence[Design]) -> si.IntArray:
 
 
 def _one_each(plates: si.IntArray, shares: si.FloatArray) -> si.IntArray:
-    """Of the rows of each plate the one whose objectives, as shares of the worst, add up to the
-    least."""
+    """Row of each plate whose objectives, as shares of the worst, add up to the least."""
     order = np.argsort(shares.sum(axis=1), kind="stable")
     _, first = np.unique(plates[order], return_index=True)
     return np.sort(order[first])
@@ -104,8 +103,8 @@ def _adding_most(
     count: int,
     plates: si.IntArray,
 ) -> si.IntArray:
-    """At most so many rows, each of another plate, that dominate most of what known rows do not,
-    one after the other, by points spread evenly over the box from the best of all to the worst
+    """Rows, at most so many and each of another plate, that dominate most of what known rows do
+    not, one after the other, by points spread evenly over the box from the best of all to the worst
     corner. Of a plate all rows count: it is solved once for all of them."""
     if not rows.size:
         return np.array([], dtype=np.intp)
@@ -156,7 +155,7 @@ def _expected(
 
 
 def _error(requirements: Requirements, corrections: Sequence[Correction | None]) -> float:
-    """By what share a corrected objective may be off."""
+    """Share by which a corrected objective may be off."""
     errors = [
         correction.errors.get(name, 0.0)
         for correction in corrections
@@ -167,8 +166,8 @@ def _error(requirements: Requirements, corrections: Sequence[Correction | None])
 
 
 def _far_apart(rows: si.FloatArray, taken: si.IntArray, count: int) -> si.IntArray:
-    """So many of the rows taken: the one best in the first objective, then always the farthest from
-    all chosen, each objective over its spread."""
+    """Choice of so many of the rows taken: the one best in the first objective, then always the
+    farthest from all chosen, each objective over its spread."""
     here = rows[taken]
     span = np.ptp(here, axis=0)
     here = (here - here.min(axis=0)) / np.where(span > 0, span, 1.0)

@@ -1,4 +1,4 @@
-"""What a sweep can ask for: every number in the JSON of the verbs, by its dotted name.
+"""Numbers that a sweep can ask for: every number in the JSON of the verbs, by its dotted name.
 
 `answers.toml` holds the names by verb; `tools/sweep_answers.py` writes it, and a test compares it
 with what the verbs say.
@@ -26,7 +26,7 @@ FOLLOWED = "followed"
 
 @dataclass(frozen=True)
 class Asked:
-    """One number that is asked for: the verb that answers, and its key in the verb's JSON."""
+    """A number that is asked for: the verb that answers, and its key in the verb's JSON."""
 
     verb: str
     key: str
@@ -125,7 +125,7 @@ def _known(verb: str, key: str) -> bool:
 
 
 def asked_for(texts: Sequence[str]) -> tuple[Asked, ...]:
-    """What texts ask for, in their order, each once: names with commas between them.
+    """Numbers that texts ask for, in their order, each once: names with commas between them.
 
     A name is a dotted key, with its unit or without, with the verb before it or without; the name
     of a group asks for all numbers in it. Raises `InputError` for a name that no verb knows, or

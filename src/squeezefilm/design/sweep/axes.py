@@ -1,4 +1,4 @@
-"""What a sweep varies: a value of the display or of its operation, and the steps it takes.
+"""Axes of a sweep: a value of the display or of its operation, and the steps it takes.
 
 actuator.thickness=1 mm..3 mm:9          nine values, evenly spaced, ends included
 voltage=1 V..100 V:5:log                 evenly spaced in the logarithm
@@ -188,7 +188,7 @@ def what_is_varied(name: str, display: Display) -> tuple[Option | None, si.Unit 
 
 
 def _instead(name: str, display: Display, error: InputError) -> str:
-    """What may be varied in place of a name that is not known."""
+    """Advice on what may be varied in place of a name that is not known."""
     if "." in name:
         return str(error)
     paths = (re.sub(r"\.\d+\.", ".*.", path) for path in number_paths(display))

@@ -32,10 +32,10 @@ _QUICK: si.Second = 0.1
 """Tasks at a worker: one under way, and one so that it need not wait; more where a task takes less
 than the way there and back."""
 _LOOK: si.Second = 1.0
-"""How often one looks who is there."""
+"""Time between two looks at who is there."""
 _ANSWERS: si.Second = 20.0
 _PATIENCE: si.Second = 120.0
-"""How long a scheduler may be silent, and a cluster without workers."""
+"""Longest silence of a scheduler, and longest wait for workers of a cluster."""
 
 
 class Cluster:
@@ -90,8 +90,8 @@ class Cluster:
         tasks: Mapping[K, tuple[Any, ...]],
         alike: Mapping[K, Hashable] | None = None,
     ) -> Iterator[tuple[K, A | Lost]]:
-        """As `Workers.answers`. Workers come and go; a task is tried again as often as the
-        scheduler's `allowed-failures` says, and then once alone. Where the iteration is closed
+        """Answers as by `Workers.answers`. Workers come and go; a task is tried again as often as
+        the scheduler's `allowed-failures` says, and then once alone. Where the iteration is closed
         early, workers end the task they are at."""
         yield from tried_again(
             functools.partial(self._asked, function, tasks), grouped(tasks, alike)
@@ -180,7 +180,7 @@ class Cluster:
 
 
 class _Asking(Generic[K, A]):
-    """One asking under way: which task is where, and what came of it."""
+    """A question under way: which task is where, and what came of it."""
 
     def __init__(
         self, client: Any, topic: str, numbers: Iterator[int], function: Callable[..., A]
@@ -210,8 +210,8 @@ class _Asking(Generic[K, A]):
                 self._submit(worker, key, tasks[key])
 
     def arrived(self, address: str) -> Iterator[tuple[K, A | Lost]]:
-        """What has come; where nothing has, what comes within a second. Raises what a task raised,
-        and `WorkersError` where the scheduler is gone."""
+        """Answers that have come; where nothing has, what comes within a second. Raises what a task
+        raised, and `WorkersError` where the scheduler is gone."""
         with contextlib.suppress(queue.Empty):
             came = [self._came.get(timeout=_LOOK)]
             while not self._came.empty():
@@ -287,7 +287,7 @@ class _Asking(Generic[K, A]):
             future.release()
 
     def _answer(self, what: Any, address: str) -> A | Lost:
-        """Of an answer that was sent, or of a future that says what became of it."""
+        """Answer that was sent, or that a future tells of."""
         if isinstance(what, bytes):
             answer: A = pickle.loads(what)
             return answer
@@ -313,7 +313,7 @@ def _code_here() -> str:
 def _work(
     topic: str, number: int, meant: str, function: Callable[..., Any], arguments: tuple[Any, ...]
 ) -> None:
-    """One task at a worker, that for which it was `meant` or another: its answer goes out before
+    """Do one task at a worker, that for which it was `meant` or another: its answer goes out before
     the word that it is done."""
     from distributed import get_worker
     from distributed.utils import sync

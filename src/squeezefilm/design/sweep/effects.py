@@ -1,4 +1,4 @@
-"""What decides: how much of an answer's variance over a sweep each varied value explains.
+"""Shares of what decides: how much of an answer's variance over a sweep each varied value explains.
 
 Over a whole grid the shares are exact for its points (analysis of variance: first order, total,
 pairs). Over samples, or a grid with gaps, the answer is fitted by orthogonal polynomials of the
@@ -28,7 +28,7 @@ _FEWEST = 8
 
 @dataclass(frozen=True, eq=False)
 class Varied:
-    """One value that was varied: its column's name, its unit (None for words), and at each point a
+    """A value that was varied: its column's name, its unit (None for words), and at each point a
     number (for words the number of the word)."""
 
     name: str
@@ -51,9 +51,9 @@ class Share:
 
 @dataclass(frozen=True, eq=False)
 class Effects:
-    """What decides one answer: a share for each varied value, and for each pair the share that only
-    both together explain, with its error; `explained` is what the fit explains of points left out
-    (None where nothing was fitted: the whole grid)."""
+    """Shares of what decides one answer: a share for each varied value, and for each pair the share
+    that only both together explain, with its error; `explained` is what the fit explains of points
+    left out (None where nothing was fitted: the whole grid)."""
 
     column: Column
     shares: tuple[Share, ...]
@@ -83,7 +83,7 @@ def varied_values(sweep: Sweep) -> tuple[Varied, ...]:
 
 
 def effects_of(sweep: Sweep) -> tuple[Effects, ...]:
-    """What decides each of a sweep's answers that varies; empty where nothing can be said."""
+    """Effects on each of a sweep's answers that varies; empty where nothing can be said."""
     varied = varied_values(sweep)
     out = []
     for column in sweep.columns:
@@ -182,8 +182,8 @@ def _functions(one: Varied, there: NDArray[np.bool_]) -> list[si.FloatArray]:
 def _terms(
     counts: Sequence[int], degree: int, varied: Sequence[Varied]
 ) -> Iterator[tuple[int, ...]]:
-    """Which function of each value a term multiplies (0: none), of a total degree; a contrast of
-    words counts as degree 1."""
+    """Terms, each by the function of each value that it multiplies (0: none), of a total degree; a
+    contrast of words counts as degree 1."""
     if not counts:
         yield ()
         return

@@ -30,7 +30,7 @@ LOST = 0.4
 """Less alike than this (modal assurance criterion) to itself at the nearest point and where the
 following began, a mode counts as lost."""
 REACH = 0.12
-"""Of the working mode's frequency: the modes around it that are followed, without a band."""
+"""Share of the working mode's frequency: the modes around it that are followed, without a band."""
 _GRID = (33, 21)
 
 
@@ -100,8 +100,8 @@ def unpacked(kept: dict[str, Any]) -> si.FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class FollowedMode:
-    """One mode over the points: its label where the following began, which of each point's modes
-    it is (None where it was lost or nothing is known), how alike it is there to itself at the point
+    """A mode over the points: its label where the following began, which of each point's modes it
+    is (None where it was lost or nothing is known), how alike it is there to itself at the point
     before or at the beginning (the larger), and whether the drive moves it where it began."""
 
     label: str
@@ -116,12 +116,12 @@ class FollowedMode:
 
     @property
     def least_likeness(self) -> si.Dimensionless:
-        """How alike it is at least, where it was not lost."""
+        """Least likeness where it was not lost."""
         pairs = zip(self.numbers, self.likeness.tolist(), strict=True)
         return float(min(alike for number, alike in pairs if number is not None))
 
     def values(self, summaries: Sequence[dict[str, Any] | None], quantity: str) -> si.FloatArray:
-        """One quantity of the mode over the points; NaN where it was lost."""
+        """Values of a quantity of the mode over the points; NaN where it was lost."""
         out = np.full(len(self.numbers), np.nan)
         for at, (number, summary) in enumerate(zip(self.numbers, summaries, strict=True)):
             if number is not None and summary is not None:

@@ -16,7 +16,7 @@ from squeezefilm.core.hard_limits import LINES_BYTES
 from squeezefilm.core.regular_file import parsed_json, read_regular, require_regular
 
 SET_ASIDE = ".damaged"
-"""What is added to a file's name for the lines of it that were damaged."""
+"""Suffix of a file's name for the lines of it that were damaged."""
 
 _CHECK = re.compile(rb',"check":"([0-9a-f]{8})"\}')
 _CHECK_SIZE = len(b',"check":"01234567"}')

@@ -45,7 +45,7 @@ _RANGE = re.compile(r"(?P<first>[^:]+?)\.\.(?P<last>[^:]+?)\s*(?::\s*(?P<log>log
 
 @dataclass(frozen=True)
 class SampledAxes:
-    """What is varied: the samples' axis, if there are ranges, and what is left as it was given."""
+    """Axes of a sampled sweep: the samples' axis, if there are ranges, and the rest as given."""
 
     axes: tuple[Axis, ...]
     others: Mapping[str, Any] | Sequence[str]
@@ -53,7 +53,7 @@ class SampledAxes:
 
 @dataclass(frozen=True)
 class _Range:
-    """One range: its ends (SI), whether it is drawn in its logarithm, whether in whole numbers."""
+    """A range: its ends (SI), whether it is drawn in its logarithm, whether in whole numbers."""
 
     name: str
     unit: si.Unit
@@ -229,7 +229,7 @@ class Plan:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """How many steps each axis has."""
+        """Number of steps that each axis has."""
         return tuple(len(axis) for axis in self.axes)
 
     @functools.cached_property
@@ -248,7 +248,7 @@ class Plan:
 
     @functools.cached_property
     def points(self) -> tuple[tuple[dict[str, Point], str], ...]:
-        """Of each point its question to each verb, and why it has none.
+        """Question of each point to each verb, and the reason why it has none.
 
         Raises `InputError` where none of them can be: the first reason.
         """

@@ -25,7 +25,7 @@ from squeezefilm.physics.display import Display
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """One question: a display and operating options, and the verb that is asked; `samples` is the
+    """A question: a display and operating options, and the verb that is asked; `samples` is the
     base of an interval's samples, 0 for none."""
 
     display: Display
@@ -36,8 +36,8 @@ class Point:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What a verb said of a point: its numbers by dotted key, its warnings, what it took (s), and
-    where it refused, the reason. `lasting` is an answer that would be the same another time;
+    """Answer of a verb about a point: its numbers by dotted key, its warnings, what it took (s),
+    and where it refused, the reason. `lasting` is an answer that would be the same another time;
     `modes` are those to be followed, with their motions."""
 
     numbers: Mapping[str, float]
@@ -95,7 +95,7 @@ def _lost(found: Lost) -> Answer:
 
 
 FILE = "answers.jsonl"
-"""Its name in the folder of a sweep: a line for every answer, appended as it comes."""
+"""Name of the file in the folder of a sweep: a line for every answer, appended as it comes."""
 
 
 def address(point: Point, described: dict[Any, Any] | None = None) -> str:

@@ -29,7 +29,7 @@ from squeezefilm.physics.display import Display, NamedDisplay
 @si.checked_numbers
 @dataclass(frozen=True)
 class SweepRequest:
-    """What `sweep` is asked for."""
+    """Arguments of `sweep`."""
 
     display: NamedDisplay | Sequence[Display | str | Path]
     _: KW_ONLY
@@ -120,7 +120,7 @@ class Run:
                 self._say(self._computed, len(points), began)
 
     def _say(self, done: int, of: int, began: float) -> None:
-        """How far it is, and how long the rest takes if it goes on like this."""
+        """Tell how far it is, and how long the rest takes if it goes on like this."""
         if not of:
             return
         left = ""
@@ -182,7 +182,7 @@ class Run:
         yield Column(asked.column, asked.unit, np.array(values))
 
     def _modes(self) -> list[Any]:
-        """What the points say of their modes; None where they say nothing."""
+        """Modes that the points tell of; None where they say nothing."""
         found = [self._found.get((k, FOLLOWED)) for k in range(len(self.plan.points))]
         return [None if answer is None else answer.modes for answer in found]
 
@@ -192,7 +192,7 @@ class Run:
         return followed_modes(self._modes(), self.plan.shape, self.plan.begin())
 
     def _warnings(self) -> tuple[tuple[str, int], ...]:
-        """What was warned of, texts that differ in their numbers only told once."""
+        """Warnings with their counts, texts that differ in their numbers only told once."""
         answers = self._found.values()
         return counted(text for answer in answers for text in dict.fromkeys(answer.warnings))
 

@@ -1,4 +1,4 @@
-"""What a sweep found: a row for each point, with what was varied, what was asked, and the reason
+"""Result of a sweep: a row for each point, with what was varied, what was asked, and the reason
 where there is no answer."""
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def counted(texts: Iterable[str]) -> tuple[tuple[str, int], ...]:
 
 @dataclass(frozen=True)
 class Column:
-    """One number over the points: its name with its unit, the unit, the values (SI; NaN for none),
+    """A number over the points: its name with its unit, the unit, the values (SI; NaN for none),
     shape (points,)."""
 
     name: str
@@ -45,7 +45,7 @@ class Column:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sweep(Result):
-    """What a sweep found: a row for each point, in the order of its axes, the last varying fastest.
+    """Result of a sweep: a row for each point, in the order of its axes, the last varying fastest.
 
     Attributes:
         title: of what was swept.
@@ -72,7 +72,7 @@ class Sweep(Result):
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """How many steps each axis has."""
+        """Number of steps that each axis has."""
         return tuple(len(axis) for axis in self.axes)
 
     @property
@@ -82,16 +82,16 @@ class Sweep(Result):
 
     @property
     def answered(self) -> int:
-        """How many points have answers."""
+        """Number of points that have answers."""
         return sum(not reason for reason in self.reasons)
 
     @property
     def missing(self) -> int:
-        """How many points were not computed, because the sweep was stopped."""
+        """Number of points that were not computed, because the sweep was stopped."""
         return sum(reason == NOT_YET for reason in self.reasons)
 
     def settings(self) -> dict[str, list[Any]]:
-        """What was varied at each point, by column; numbers are SI with the unit in the name."""
+        """Values varied at each point, by column; numbers are SI with the unit in the name."""
         steps = list(itertools.product(*(axis.steps for axis in self.axes)))
         names = [name for axis in self.axes for name in axis.columns]
         rows = [[value for step in point for value in step] for point in steps]
@@ -113,7 +113,7 @@ class Sweep(Result):
         return self.column(name).reshape(self.shape)
 
     def table(self) -> dict[str, list[Any]]:
-        """What was varied, what was asked for (None where there is no answer), and the reason."""
+        """Table of what was varied, what was asked for (None without an answer), and the reason."""
         values = {
             column.name: [None if math.isnan(v) else v for v in column.values.tolist()]
             for column in self.columns
@@ -154,7 +154,7 @@ class Sweep(Result):
         )
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints."""
+        """Mapping that ``--json`` prints."""
         table = self.table()
         return {
             "title": self.title,

@@ -21,7 +21,7 @@ A = TypeVar("A")
 
 @dataclass(frozen=True)
 class Lost:
-    """In place of an answer: whoever computed it died, and so did who tried it again alone."""
+    """Entry in place of an answer: whoever computed it died, and so did who tried it again."""
 
     reason: str = (
         "the process that computed it ended without an answer, as one does that runs out of memory"
@@ -29,7 +29,7 @@ class Lost:
 
 
 class Workers(Protocol):
-    """Those who answer."""
+    """Processes that answer."""
 
     def answers(
         self,
@@ -52,7 +52,7 @@ class Workers(Protocol):
 
 
 class ThisProcess:
-    """This process alone, which answers in the order of the tasks but for those that are alike."""
+    """This process alone, which answers in the order of the tasks but for those alike."""
 
     def answers(
         self,
@@ -60,14 +60,14 @@ class ThisProcess:
         tasks: Mapping[K, tuple[Any, ...]],
         alike: Mapping[K, Hashable] | None = None,
     ) -> Iterator[tuple[K, A | Lost]]:
-        """As `Workers.answers`; nothing needs to be picklable, and nobody dies alone."""
+        """Answers as by `Workers.answers`; nothing needs to be picklable, and nobody dies alone."""
         for key in (key for group in grouped(tasks, alike) for key in group):
             yield key, computed(function, tasks[key])
 
 
 def computed(function: Callable[..., A], arguments: tuple[Any, ...]) -> A:
-    """One answer. One BLAS thread wherever it is: the same bits, and no cores that wait for each
-    other."""
+    """Compute an answer. One BLAS thread wherever it is: the same bits, and no cores that wait for
+    each other."""
     with one_blas_thread():
         return function(*arguments)
 
@@ -88,8 +88,8 @@ def tried_again(
     ask: Callable[[Sequence[Sequence[K]]], Iterator[tuple[K, A | Lost]]],
     groups: Sequence[Sequence[K]],
 ) -> Iterator[tuple[K, A | Lost]]:
-    """What is asked in groups; tasks that were lost are asked again at last, each alone, since what
-    it needs may be all there is."""
+    """Answers to what is asked in groups; tasks that were lost are asked again at last, each alone,
+    since what it needs may be all there is."""
     alone: list[K] = []
     for key, answer in ask(groups):
         if isinstance(answer, Lost):
@@ -101,7 +101,7 @@ def tried_again(
 
 
 class Shares(Generic[K]):
-    """Which task a worker takes next: one that is like those it did; then of a group that nobody
+    """Choice of a worker's next task: one that is like those it did; then of a group that nobody
     has begun; then half of what another worker has most left of, which solves that plate twice."""
 
     def __init__(self, groups: Sequence[Sequence[K]]) -> None:

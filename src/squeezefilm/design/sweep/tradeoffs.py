@@ -9,7 +9,7 @@ from squeezefilm.core import quantities as si
 
 
 def non_dominated(values: si.FloatArray) -> NDArray[np.bool_]:
-    """Of points with several numbers of which less is better, shape (points, numbers), those for
+    """True of the points, of several numbers of which less is better, shape (points, numbers), for
     which no other is at least as good in all numbers and better in one. Points with a NaN are not
     among them."""
     known = np.isfinite(values).all(axis=1)
@@ -42,7 +42,7 @@ def front_of(objectives: si.FloatArray) -> si.IntArray:
 
 
 def layers_of(objectives: si.FloatArray, count: int) -> si.IntArray:
-    """At least `count` rows, if there are so many finite ones: the front, then what is the front
+    """Rows, at least `count` if there are so many finite ones: the front, then what is the front
     without it, and so on, each layer whole."""
     left = np.flatnonzero(np.isfinite(objectives).all(axis=1))
     taken: list[int] = []

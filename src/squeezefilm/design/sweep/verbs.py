@@ -29,7 +29,7 @@ from squeezefilm.physics.uncertainty.parameters import with_values
 
 @dataclass(frozen=True)
 class Option:
-    """One operating option: the unit of its numbers, or for words what reads one.
+    """An operating option: the unit of its numbers, or for words what reads one.
 
     Numbers are `bounds`, words for `si.require`; `between` separates several words in a text. A
     word may name a file where `of_file` says so.
@@ -96,7 +96,7 @@ OPTIONS: dict[str, Option] = {
         _one_of("wave", WAVES),
     )
 }
-"""By name; they are the arguments of the functions behind the verbs, under the same names."""
+"""Options by name; arguments of the functions behind the verbs have the same names."""
 
 
 USUAL_MOTION = "60 mm/s over 4 cm, 2 passes"
@@ -104,8 +104,8 @@ USUAL_MOTION = "60 mm/s over 4 cm, 2 passes"
 
 @dataclass(frozen=True)
 class Verb:
-    """What answers: its name, what is called with a display and the options that it `takes`, the
-    options that leave its answers as they are, and whether it draws an interval (`samples`)."""
+    """A verb that answers: its name, what is called with a display and the options that it `takes`,
+    the options that leave its answers as they are, and whether it draws an interval (`samples`)."""
 
     name: str
     call: Callable[..., Any]
@@ -118,7 +118,7 @@ class Verb:
         return option in self.takes | self.unmoved | {"voltage", "ambient_pressure"}
 
     def settings(self, options: Mapping[str, Any]) -> dict[str, Any]:
-        """Those of a point's options that the verb is called with."""
+        """Options of a point that the verb is called with."""
         return {name: value for name, value in options.items() if name in self.takes}
 
     def display(self, display: Display, options: Mapping[str, Any]) -> Display:
@@ -131,7 +131,7 @@ class Verb:
         return display
 
     def answer(self, display: Display, settings: Mapping[str, Any], samples: int) -> dict[str, Any]:
-        """What the verb says of a display, as its JSON. Raises what the verb raises."""
+        """Answer of the verb about a display, as its JSON. Raises what the verb raises."""
         arguments = {name: OPTIONS[name].argument(value) for name, value in settings.items()}
         if self.draws:
             arguments["samples"] = samples
@@ -176,4 +176,4 @@ VERBS: dict[str, Verb] = {
         Verb("analyze", analyze, _OF_POINT | {"theory"}, _OF_OTHERS, draws=True),
     )
 }
-"""By name, the quickest first: what several verbs answer is asked of the first of them."""
+"""Verbs by name, the quickest first: what several verbs answer is asked of the first of them."""

@@ -1,4 +1,4 @@
-"""Who answers: this process, processes of this machine, or a Dask cluster; one method wide.
+"""Workers that answer: this process, processes of this machine, or a Dask cluster; one method wide.
 
 with workers(jobs=2) as pool:                      # or workers(scheduler="tcp://host:8786")
     for key, answer in pool.answers(function, {key: (argument, ...), ...}):
@@ -67,7 +67,7 @@ class Processes:
         tasks: Mapping[K, tuple[Any, ...]],
         alike: Mapping[K, Hashable] | None = None,
     ) -> Iterator[tuple[K, A | Lost]]:
-        """As `Workers.answers`."""
+        """Answers as by `Workers.answers`."""
         yield from tried_again(
             functools.partial(self._asked, function, tasks), grouped(tasks, alike)
         )
@@ -138,7 +138,7 @@ def _executor() -> ProcessPoolExecutor:
 def _submitted(
     executor: ProcessPoolExecutor, function: Callable[..., A], *arguments: Any
 ) -> Future[A]:
-    """What an executor will answer; its process, which the first task starts, loads undisturbed."""
+    """Future answer of an executor; its process, which the first task starts, loads undisturbed."""
     with interrupts_held():
         return executor.submit(function, *arguments)
 
@@ -159,7 +159,7 @@ def workers(
     tell: SayProgress | None = None,
     first: Callable[..., Any] | None = None,
 ) -> Iterator[Workers]:
-    """Those who answer, for the block: this process where `jobs` is 1, else so many of their own
+    """Workers that answer, for the block: this process where `jobs` is 1, else so many of their own
     beside it, or all workers of the Dask `scheduler` (``"tcp://host:8786"``) however many there
     are, `jobs` then counting for nothing. `tell` is told of a cluster who is there and where its
     dashboard is. Processes begin at once where it is known which function they are asked `first`,

@@ -1,1 +1,1 @@
-"""What a display makes of textures: what is left of gratings, and their pages."""
+"""Results of a display with textures: what is left of gratings, and their pages."""

@@ -1,4 +1,4 @@
-"""What a display's resonator leaves of square gratings, and what compensation does for them."""
+"""Square gratings that a display's resonator leaves, and what compensation does for them."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _LEVEL = 0.8
 
 @dataclass(frozen=True, slots=True, eq=False)
 class GratingsLeft:
-    """Which square gratings keep their swing of amplitude at which finger speeds, by the closed
+    """Square gratings that keep their swing of amplitude, and at which finger speeds, by the closed
     forms of `envelope`.
 
     Attributes:
@@ -54,7 +54,7 @@ class GratingsLeft:
 
 
 def what_survives(prediction: Prediction, time_constant: si.Second) -> GratingsLeft | None:
-    """Which gratings survive an envelope's time constant (s); None where the amplitude changes no
+    """Gratings that survive an envelope's time constant (s); None where the amplitude changes no
     friction."""
     if prediction.relative_friction == 1 or prediction.vibration_amplitude == 0:
         return None
@@ -71,8 +71,8 @@ def what_survives(prediction: Prediction, time_constant: si.Second) -> GratingsL
 
 
 def speed_gains(prediction: Prediction) -> dict[str, float] | None:
-    """How much faster a finger may be on a square grating of any period, by drive; None where no
-    voltage makes an amplitude."""
+    """Factor by which a finger may be faster on a square grating of any period, by drive; None
+    where no voltage makes an amplitude."""
     if not prediction.voltage or prediction.vibration_amplitude == 0:
         return None
     mode, volts = prediction.mode, prediction.voltage

@@ -1,4 +1,4 @@
-"""What one decides from, as rows: intervals, voltages, what is felt, what each value does."""
+"""Rows of what one decides from: intervals, voltages, what is felt, what each value does."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def interval_rows(unsure: UncertainFriction | None) -> list[Row]:
 
 
 def wanted_rows(wanted: Wanted | None) -> list[Row]:
-    """What a wanted friction takes, as described and over the draws."""
+    """Rows of what a wanted friction takes, as described and over the draws."""
     if wanted is None:
         return []
     label = f"For µ′/µ = {wanted.relative_friction:.3g}"

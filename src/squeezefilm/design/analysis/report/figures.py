@@ -65,7 +65,7 @@ def own_friction(analysis: Analysis) -> Figure:
 
 
 def criterion_line(axes: Axes) -> None:
-    """What the paper asks of the friction, as a line across."""
+    """Draw a line across at what the paper asks of the friction."""
     axes.axhline(PAPER_CRITERION, **style.REFERENCE, label="0.7: what the paper asks for")
 
 
@@ -115,7 +115,7 @@ def frequency_response(analysis: Analysis) -> Figure:
 
 
 def _lost_beside(p: Prediction) -> str:
-    """What a drive beside the resonance gets of the motion, in words; nothing where it is all.
+    """Words for what a drive beside the resonance gets of the motion; nothing where it is all.
 
     Without a finger, which damps the motion wherever the drive is.
     """
@@ -294,11 +294,11 @@ FIGURES: tuple[FigureOf, ...] = (
         "the amplitude is uncertain too.",
     ),
 )
-"""What one decides from, in the order of the page."""
+"""Figures of what one decides from, in the order of the page."""
 
 
 def drawing(analysis: Analysis, key: str) -> str:
-    """One of the figures as an SVG element, with its message for those who cannot see it."""
+    """A figure as an SVG element, with its message for those who cannot see it."""
     item = next(one for one in FIGURES if one.key == key)
     with style.rc():
         figure = item.draw(analysis)

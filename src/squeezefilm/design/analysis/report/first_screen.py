@@ -1,4 +1,4 @@
-"""What decides, on one screen: the same rows in the terminal and at the top of the page."""
+"""Screen of what decides: the same rows in the terminal and at the top of the page."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def criterion(analysis: Analysis) -> tuple[si.Dimensionless, str]:
 
 
 def _sentence(analysis: Analysis) -> str:
-    """How probable it is that the criterion is met."""
+    """Sentence on how probable it is that the criterion is met."""
     unsure, area = analysis.uncertainty, analysis.active_area
     below, whose = criterion(analysis)
     if unsure is None:
@@ -116,7 +116,7 @@ def _between(ends: tuple[float, float] | None, unit: si.Unit) -> str:
 
 
 def _doubts(analysis: Analysis) -> list[tuple[str, str]]:
-    """What could make the numbers wrong, the worst first: in short, and the finding's own text."""
+    """Doubts about the numbers, the worst first: in short, and the finding's own text."""
     far = [
         (
             f"{one.quantity.partition(',')[0]} is computed {si.percent(abs(one.difference))} "
@@ -143,7 +143,7 @@ def _of_sources(analysis: Analysis) -> set[str]:
 
 
 def _next_step(analysis: Analysis) -> str:
-    """What to do next."""
+    """Sentence on what to do next."""
     unsure, p = analysis.uncertainty, analysis.prediction
     undriven = p.voltage is not None and why_undriven(analysis.display, p.mode) is not None
     if undriven or p.vibration_amplitude == 0:

@@ -1,4 +1,4 @@
-"""What stands behind the first screen, ordered by question: for the page and, with --all, for the
+"""Details behind the first screen, ordered by question: for the page and, with --all, for the
 terminal. A number of the first screen is not said again."""
 
 from __future__ import annotations
@@ -123,7 +123,7 @@ def theories(analysis: Analysis) -> list[tuple[str, str, str, str]]:
 
 
 def friction_rows(analysis: Analysis) -> list[Row]:
-    """Where the finger is and what it touches; with all of an analysis what rival models give."""
+    """Rows of the finger's place and of what it touches; of a whole analysis rival models, too."""
     p, whole = analysis.prediction, analysis.whole
     place = place_rows(p, analysis.active_area)
     rivals = rival_rows(analysis) if whole else []
@@ -131,7 +131,7 @@ def friction_rows(analysis: Analysis) -> list[Row]:
 
 
 def _how_sure(analysis: Analysis, rows: list[Row]) -> Fold:
-    """What the friction depends on, what could be measured, what is doubtful."""
+    """Section on what the friction depends on, what could be measured, what is doubtful."""
     unsure, whole, short = analysis.uncertainty, analysis.whole, doubted(analysis)
     tables = [Table("Where and on what", NUMBERS, rows)]
     if unsure is not None:

@@ -21,7 +21,7 @@ MISSED_HEADING = "What measurements say and '{}' does not"
 
 
 def models(analysis: Analysis) -> list[tuple[str, str]]:
-    """Which model made what, as pairs."""
+    """Names of what was computed and of its models, as pairs."""
     p = analysis.prediction
     rows = [
         ("Resonance and mode shape", p.mode.model),
@@ -79,8 +79,9 @@ def theory_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
 
 
 def influence_rows(unsure: UncertainFriction, knowledge: Knowledge, most: int) -> list[list[str]]:
-    """What of a group makes a friction uncertain, the most important first: its path, what is drawn
-    of it, its share of the variance with all its company, and whose range or weights these are."""
+    """Rows of what in a group makes a friction uncertain, the most important first: path, what is
+    drawn of it, its share of the variance with all its company, and whose range or weights these
+    are."""
     group = [
         influence for influence in unsure.influences if influence.parameter.knowledge == knowledge
     ]
@@ -105,7 +106,7 @@ def spread_words(spread: tuple[str, ...], *, law: bool) -> str:
 
 
 def group_words(influence: GroupInfluence) -> str:
-    """What a group of inputs is, and what it carries of the width, as a heading."""
+    """Heading that names a group of inputs, and what it carries of the width."""
     what = {"measurable": "Could be measured", "unknown": "Nobody knows"}[influence.knowledge]
     return (
         f"{what}: {100 * influence.total:.0f} ± {si.percent(influence.error)} of the variance, "

@@ -22,7 +22,7 @@ FARAD, HENRY = si.Unit("F"), si.Unit("H")
 
 
 def place_rows(p: Prediction, judged: JudgedArea | None) -> list[Row]:
-    """Where the friction is meant, and what it is over the active area: quantity, value, remark."""
+    """Rows of the place meant and of friction over the active area: quantity, value, remark."""
     where = place_words(p.place)
     said = p.place_said.replace(f"{where}, ", "").replace(f", {where}", "")
     rows = [("Place of the finger", where, said)]
@@ -52,7 +52,7 @@ def speed_row(p: Prediction) -> Row:
 
 
 def reduction_row(p: Prediction) -> Row:
-    """What vibration takes away of the friction."""
+    """Row of what vibration takes away of the friction."""
     reduction, coefficient = f"{p.friction_reduction:.3f}", f"{p.friction_coefficient:.3g}"
     return "Friction reduction µ − µ′", reduction, f"of µ = {coefficient}"
 
@@ -107,7 +107,7 @@ def electronics_rows(load: ElectricalLoad | None) -> list[Row]:
 
 @dataclass(frozen=True)
 class Value:
-    """One value of a display's description: its path, its text, where it is from."""
+    """A value of a display's description: its path, its text, where it is from."""
 
     path: str
     text: str

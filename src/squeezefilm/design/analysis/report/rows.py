@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 
 def working_point(p: Prediction) -> str:
-    """What the key numbers are at, in words."""
+    """Words for the point at which the key numbers are."""
     driven = shown(p.vibration_amplitude, M, 3) if p.voltage is None else shown(p.voltage, V)
     return (
         f"at {driven} and {shown(p.frequency, HZ)}, finger of {shown(p.normal_force, N)} at "
@@ -105,7 +105,7 @@ def _solved(mode: WorkingMode) -> str:
 
 
 def surface_rows(analysis: Analysis) -> list[Row]:
-    """What is touched, and what the paper's criterion takes."""
+    """Rows of what is touched, and of what the paper's criterion takes."""
     p = analysis.prediction
     finger = f"{shown(p.normal_force, N)} at {shown(p.speed, SPEED)}"
     name = printable(p.surface.name)
@@ -131,7 +131,7 @@ def _reached(amplitude: float | None) -> str:
 
 
 def texture_rows(analysis: Analysis) -> list[Row]:
-    """How fast the amplitude can follow, and what grating that lets through."""
+    """Rows of how fast the amplitude can follow, and of the gratings which that lets through."""
     tau, table = analysis.envelope_time_constant, analysis.fidelity
     band = f"a bandwidth of {shown(analysis.envelope_bandwidth, HZ, 3)}"
     rows = [("Envelope time constant", shown(tau, S, 3), band)]
@@ -154,7 +154,7 @@ def _grating(analysis: Analysis, at: int) -> Row:
 
 
 def electrical_rows(load: ElectricalLoad | None) -> list[Row]:
-    """What the free plate takes from its amplifier at the drive's frequency, and of which kind."""
+    """Rows of what the free plate takes from its amplifier at the drive's frequency."""
     if load is None:
         said = "it takes a voltage, and an admittance solved near it"
         return [("Current", "not known", said)]
@@ -191,7 +191,7 @@ def sound_rows_at_ear(ears: EarExposure | None) -> list[Row]:
 
 
 def more_rows(analysis: Analysis) -> list[Row]:
-    """What the key numbers are made of, and what follows from them: for an appendix."""
+    """Rows of what the key numbers are made of and what follows from them: for an appendix."""
     p = analysis.prediction
     floats = _reached(analysis.own_curve.zero_friction_amplitude)
     rows = [

@@ -1,4 +1,4 @@
-"""What the command line prints of an analysis: the first screen, and the rest where asked."""
+"""Terminal output of an analysis: the first screen, and the rest where asked."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 SHOWN = ("ears",)
 SHOWN_WITH_ALL = ("ears", "sensitivities", "other_models", "felt")
-"""What of an analysis is computed for the terminal."""
+"""Parts of an analysis that are computed for the terminal."""
 
 
 def show_analysis(analysis: Analysis, *, whole: bool = False, sensitivities: bool = False) -> None:

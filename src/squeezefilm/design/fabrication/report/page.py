@@ -282,7 +282,7 @@ def drawing_sheet(made: Fabrication) -> Drawing:
 
 
 def _common(made: Fabrication) -> Iterable[str]:
-    """What a workshop must know of every display."""
+    """Notes that a workshop needs for every display."""
     groups = {electrode.connection for electrode in made.electrodes}
     if ANTIPHASE in groups:
         yield "A is driven with +V, B with −V. The bonded side of every ceramic is ground."

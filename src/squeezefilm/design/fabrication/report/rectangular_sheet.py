@@ -54,7 +54,7 @@ def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
 
 
 def electrode_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
-    """Where each ceramic lies and what its outer electrode is joined to, in millimetres."""
+    """Rows of where each ceramic lies and what its outer electrode is joined to, in millimetres."""
     rows = []
     for electrode in electrodes:
         shape = electrode.footprint
@@ -132,7 +132,7 @@ def _label(sheet: Sheet, electrode: Electrode, shape: Rectangle, sign: float) ->
 
 
 def _cut_marks(sheet: Sheet, plate: RectangularPlate, cut: Cut, sign: float) -> None:
-    """Where the section is taken: a short line and a letter on each side."""
+    """Mark where the section is taken: a short line and a letter on each side."""
     u, reach = sheet.unit, 6.0
     for end, way in ((0.0, -1.0), (plate.length if not cut.upright else plate.width, 1.0)):
         if cut.upright:

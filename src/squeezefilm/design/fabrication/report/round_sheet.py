@@ -64,7 +64,7 @@ def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
 
 
 def sector_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
-    """From where to where each electrode goes, and what it is joined to."""
+    """Rows of where each electrode begins and ends, and what it is joined to."""
     rows = []
     for electrode in electrodes:
         shape = electrode.footprint

@@ -80,7 +80,7 @@ def expected_rows(made: Fabrication) -> list[tuple[str, ...]]:
 
 
 def step_rows(checks: Iterable[Check]) -> list[tuple[str, ...]]:
-    """What is to be read in one step, with empty places for what is measured."""
+    """Rows of what is to be read in one step, with empty places for what is measured."""
     return [
         (check.what, said(check.value, check.unit), expected_said(check), "", "☐", check.remark)
         for check in checks
@@ -133,7 +133,7 @@ def layout_rows(made: Fabrication) -> tuple[tuple[str, ...], list[tuple[str, ...
 
 
 def lead_rows(made: Fabrication) -> list[tuple[str, ...]]:
-    """What is joined to what."""
+    """Rows of what is joined to what."""
     return [(one.name, ", ".join(one.electrodes), one.to) for one in leads_of(made.electrodes)]
 
 

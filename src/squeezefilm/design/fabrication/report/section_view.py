@@ -28,7 +28,7 @@ _LAYERS = {"substrate": "BODY", "ceramic": "CERAMICS", "glue": "GLUE"}
 
 @dataclass(frozen=True)
 class Cut:
-    """Where an assembly is cut: along x at y = `at` (m), or, `upright`, along y at x = `at`."""
+    """Place of a cut: along x at y = `at` (m), or, `upright`, along y at x = `at`."""
 
     upright: bool
     at: si.Metre
@@ -36,13 +36,13 @@ class Cut:
 
 @si.checked_numbers
 def stretch_for(height: si.Metre, scale: si.Dimensionless, room: float = 34.0) -> int:
-    """How many times larger thicknesses are drawn so that a height (m) fits the room (mm)."""
+    """Factor by which thicknesses are drawn larger so that a height (m) fits the room (mm)."""
     fits = (stretch for stretch in _STRETCHES if 1e3 * height * scale * stretch <= room)
     return next(fits, 1)
 
 
 def spans(part: Part, cut: Cut) -> list[tuple[si.Metre, si.Metre]]:
-    """From where to where a part is met along a cut (m)."""
+    """Stretches (m) on which a part is met along a cut."""
     shape = part.footprint
     if isinstance(shape, Sector):
         # Through the middle: both sides of it.

@@ -1,4 +1,4 @@
-"""What every sheet has, in millimetres of paper: its frame, tables, notes and title block."""
+"""Parts of every sheet, in millimetres of paper: its frame, tables, notes and title block."""
 
 from __future__ import annotations
 
@@ -48,12 +48,12 @@ LAYERS = {
     "DIMENSIONS": Layer(8, width=0.18e-3),
     "TEXT": Layer(7, width=0.18e-3),
 }
-"""By their names in the DXF."""
+"""Layers by their names in the DXF."""
 
 PAPER = (420.0, 297.0)
 """A3, landscape (mm)."""
 VIEWS = (14.0, 14.0, 252.0, 283.0)
-"""Where the views are: left, bottom, right, top (mm)."""
+"""Edges of the room for views: left, bottom, right, top (mm)."""
 COLUMN = (258.0, 412.0)
 """The left and right end of the column of tables (mm)."""
 NUMBER, SMALL, HEAD = 2.5, 2.0, 2.5
@@ -91,7 +91,7 @@ class Sheet:
 
     @property
     def unit(self) -> si.Metre:
-        """What a millimetre of paper is of the thing (m)."""
+        """Length of the thing that a millimetre of paper stands for (m)."""
         return 1e-3 / self.scale
 
     def at(self, x: float, y: float) -> tuple[float, float]:
@@ -256,7 +256,7 @@ class Sheet:
         return whole
 
     def drawing(self) -> Drawing:
-        """What was composed."""
+        """Drawing that was composed."""
         paper = (1e-3 * PAPER[0], 1e-3 * PAPER[1])
         left, _, right, top = VIEWS
         views = tuple(1e-3 * one for one in (left - 4.0, self.lowest, right + 4.0, top + 4.0))
@@ -375,7 +375,7 @@ def finished(
 
 
 def tolerance_said(display: Display, path: str) -> str:
-    """What the description says of how far a length may be off, behind its number: " ±0.1" (two
+    """Tolerance that the description gives a length, to stand behind its number: " ±0.1" (two
     standard deviations, or half of an even range), or both ends of another; "" where it says
     nothing."""
     origin = display.provenance.get(path)

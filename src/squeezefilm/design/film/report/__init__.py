@@ -1,1 +1,1 @@
-"""What `film` shows: a map over squeeze number and excursion."""
+"""Output of `film`: a map over squeeze number and excursion."""

@@ -1,4 +1,4 @@
-"""What is shown of films: the numbers of one, and the map over squeeze number and excursion."""
+"""Output for films: the numbers of one, and the map over squeeze number and excursion."""
 
 from __future__ import annotations
 

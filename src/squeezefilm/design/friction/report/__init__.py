@@ -1,1 +1,1 @@
-"""What `friction` shows: its figures and its terminal output."""
+"""Output of `friction`: its figures and its terminal output."""

@@ -1,4 +1,4 @@
-"""What the terminal shows of a friction: the number with its interval first, then why."""
+"""Terminal output of a friction: the number with its interval first, then why."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def _friction_rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
 
 
 def _ranking(unsure: UncertainFriction) -> None:
-    """What makes the friction uncertain, in two groups, and the weights of the laws."""
+    """Print what makes the friction uncertain, in two groups, and the weights of the laws."""
     console = plain_console()
     for group in unsure.groups:
         heading(console, group_words(group))

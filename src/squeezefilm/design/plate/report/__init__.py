@@ -1,1 +1,1 @@
-"""What `plate` shows of plates, discs and rings: page, figures, tables, volume for ParaView."""
+"""Output of `plate` for plates, discs and rings: page, figures, tables, volume for ParaView."""

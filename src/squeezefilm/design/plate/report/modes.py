@@ -36,8 +36,8 @@ _LABELS = 30
 
 
 def mode_list_rows(result: ModeList) -> list[tuple[str, ...]]:
-    """One row a mode: label, frequency, amplitude per volt at an antinode, the neighbour that
-    counts most, its distance in half-bandwidths, what it adds, and remarks."""
+    """A row a mode: label, frequency, amplitude per volt at an antinode, the neighbour that counts
+    most, its distance in half-bandwidths, what it adds, and remarks."""
     working = result.working_mode
     rows: list[tuple[str, ...]] = []
     for mode in result.modes:
@@ -76,7 +76,7 @@ def _percent(share: float) -> str:
 
 
 def mode_list_sentences(result: ModeList) -> list[tuple[str, str, str]]:
-    """What to know beside the table: a word for the kind, the sentence, a style."""
+    """Sentences to read beside the table: a word for the kind, the sentence, a style."""
     said = [("symmetry", rule, "cyan") for rule in result.rules]
     own = result.working_mode
     if result.forbidden is not None:
@@ -140,7 +140,7 @@ def _solved_said(mode: WorkingMode) -> str:
 
 
 def pair_rows(pair: RingPair) -> list[tuple[str, str, str, str]]:
-    """How far a pair is apart, and the worst that follows: ratio, share, speed of the crests."""
+    """Rows of a pair's distance and of the worst that follows: ratio, share, crests' speed."""
     return [
         (
             f"{shown(at.split, HZ, 3)} ({at.half_bandwidths:.3g} half-bandwidths)",

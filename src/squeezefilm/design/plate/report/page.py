@@ -1,5 +1,5 @@
-"""What `squeezefilm plate --out` writes: a page with numbers and figures, and the volume as a .vtu
-file for ParaView: shape, response and potential."""
+"""Files that `squeezefilm plate --out` writes: a page with numbers and figures, and the volume as a
+.vtu file for ParaView: shape, response and potential."""
 
 from __future__ import annotations
 

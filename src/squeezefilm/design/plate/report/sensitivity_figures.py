@@ -1,4 +1,4 @@
-"""What changes a plate, as a figure: a tornado of sensitivities."""
+"""Figure of what changes a plate: a tornado of sensitivities."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def working_rows(result: SolvedBody) -> list[Row]:
 
 
 def _ring_rows(result: RingAnalysis) -> list[Row]:
-    """What was measured of a stator, and where a disc or stator stands still."""
+    """Rows of what was measured of a stator, and of where a disc or stator stands still."""
     rows, half = [], result.working.half_wavelength
     if result.computed_per_volt is not None:
         computed = shown(result.computed_per_volt, PER_VOLT)
@@ -98,7 +98,7 @@ def drive_rows(result: SolvedBody) -> list[Row]:
 
 
 def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
-    """What was fitted of a stator, what the teeth leave uncertain, and what is assumed."""
+    """Sentences on the fit of a stator, what the teeth leave uncertain, and what is assumed."""
     a = fit.assumptions
     said = [
         f"Fitted: {shown(fit.ring_thickness, M, 4)} of metal under the teeth, so that "

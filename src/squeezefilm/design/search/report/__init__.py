@@ -1,1 +1,1 @@
-"""What a design search found: on a terminal, as figures, as a page, as files of displays."""
+"""Output of a design search: on a terminal, as figures, as a page, as files of displays."""

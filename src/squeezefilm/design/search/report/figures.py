@@ -198,7 +198,7 @@ def _thinned(designs: Sequence[Evaluated]) -> Sequence[Evaluated]:
 
 @style.drawn
 def screening(found: DesignSearch) -> Figure:
-    """What the screening said of the solved plates, against what solving them said."""
+    """Figure of what the screening said of the solved plates, against what solving them said."""
     pairs = found.screened_and_solved
     names = dict.fromkeys((*found.requirements.objectives, "resonance_frequency"))
     if not pairs:
@@ -250,7 +250,7 @@ def _screening_axes(
 
 @style.drawn
 def settings(found: DesignSearch) -> Figure:
-    """What was chosen along the front: each variable over the first objective."""
+    """Figure of what was chosen along the front: each variable over the first objective."""
     spaces = found.requirements.spaces
     of_front = sorted({member.evaluated.design.shape for member in found.front})
     free = {variable.name: variable for shape in of_front for variable in spaces[shape].free}

@@ -123,7 +123,7 @@ def design_page(search: DesignSearch, *, fabrication: str = "") -> str:
 
 
 def first_sentences(search: DesignSearch) -> Iterator[tuple[str, str]]:
-    """What one must know of a search, each with its kind: good, limit or doubt."""
+    """Sentences that one must know of a search, each with its kind: good, limit or doubt."""
     requirements, chosen = search.requirements, search.chosen
     if search.stopped:
         yield "doubt", "The search was stopped: these are the plates found until then."

@@ -1,4 +1,4 @@
-"""What the terminal shows of a design search, and of the requirements that there are."""
+"""Terminal output of a design search, and of the requirements that there are."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from squeezefilm.design.search.space import Choice, Variable
 from squeezefilm.design.search.stock import OWN
 
 ALWAYS = ("resonance_frequency", "vibration_amplitude", "temperature_rise")
-"""What is told of every plate beside its objectives."""
+"""Criteria told of every plate beside its objectives."""
 _LEAST = 0.001  # smaller changes of a friction are said to be so
 _TOLERANCES = {
     "thickness": "thickness of the sheet",
@@ -39,7 +39,7 @@ _LENGTHS = ("thickness", "ceramic_thickness", "sides")
 
 
 def setting_words(variable: Variable, design: Design, requirements: Requirements) -> str:
-    """What a design has for a variable, in words."""
+    """Words for what a design has for a variable."""
     value = design.settings[variable.name]
     if isinstance(variable, Choice):
         return material_words(variable.name, str(value), requirements)
@@ -59,7 +59,7 @@ def material_words(kind: str, name: str, requirements: Requirements) -> str:
 
 
 def chosen_words(requirements: Requirements, design: Design) -> str:
-    """What was chosen of a plate, in a line; the shape before it where there are several."""
+    """Line of what was chosen of a plate; the shape before it where there are several."""
     said = ", ".join(_chosen(requirements, design))
     if len(requirements.spaces) == 1:
         return said
@@ -83,7 +83,7 @@ def _chosen(requirements: Requirements, design: Design) -> Iterator[str]:
 
 
 def asked_sentences(requirements: Requirements) -> list[str]:
-    """What was asked for: finger, workspace, drive, objectives, limits, shapes."""
+    """Sentences on what was asked for: finger, workspace, drive, objectives, limits, shapes."""
     touch, room, drive = requirements.touch, requirements.workspace.room, requirements.drive
     finger = requirements.base.finger
     surface = requirements.base.surfaces[0].name
@@ -110,7 +110,7 @@ def asked_sentences(requirements: Requirements) -> list[str]:
 
 
 def counts_sentence(search: DesignSearch) -> str:
-    """How many designs were looked at, and what is left of them."""
+    """Sentence on how many designs were looked at, and what is left of them."""
     screened, several = len(search.screened), len(search.solved) > search.plates_solved
     feasible = sum(candidate.is_feasible for candidate in search.screened)
     failed = sum(bool(candidate.reason) for candidate in search.screened)
@@ -129,8 +129,8 @@ def counts_sentence(search: DesignSearch) -> str:
 
 
 def empty_front_sentences(search: DesignSearch) -> list[str]:
-    """What stands in the way where no plate meets the requirements: the two limits that conflict,
-    and the nearest plate; none where there is a front."""
+    """Sentences on what stands in the way where no plate meets the requirements: the two limits
+    that conflict, and the nearest plate; none where there is a front."""
     if search.front:
         return []
     said = []
@@ -151,7 +151,7 @@ def empty_front_sentences(search: DesignSearch) -> list[str]:
 
 
 def front_words(search: DesignSearch) -> str:
-    """How many plates the front has, and at how many voltages in all where these are more."""
+    """Words for how many plates the front has, and at how many voltages where these are more."""
     plates = many(search.plates_on_front, "plate")
     count = len(search.front)
     return plates if count == search.plates_on_front else f"{plates}, at {count} voltages in all,"
@@ -190,8 +190,8 @@ def row_of(requirements: Requirements, one: Evaluated) -> list[str]:
 
 
 def chosen_sentences(search: DesignSearch) -> list[str]:
-    """Which plate is chosen, why, what it is made of, which limits are nearest, how many of those
-    made keep them."""
+    """Sentences on which plate is chosen, why, what it is made of, which limits are nearest, how
+    many of those made keep them."""
     chosen = search.chosen
     if chosen is None:
         return []
@@ -217,14 +217,14 @@ def chosen_sentences(search: DesignSearch) -> list[str]:
 
 
 def margin_words(margin: float) -> str:
-    """How far a number stays from its limit, as a share of the limit."""
+    """Words for how far a number stays from its limit, as a share of the limit."""
     if math.isinf(margin) or math.isnan(margin):
         return "far from it"
     return f"{si.percent(margin, 1)} of it left" if margin >= 0 else f"{changed(-margin)} beyond it"
 
 
 def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]:
-    """How many of the plates that are made of a drawing keep the limits, and what they break."""
+    """Sentences on how many plates made of a drawing keep the limits, and what they break."""
     made = member.made
     if made is None:
         return ["How many plates made of its drawing keep the limits was not computed."]
@@ -246,8 +246,8 @@ def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]
 
 
 def effect_rows(requirements: Requirements, member: FrontMember) -> list[tuple[str, ...]]:
-    """What one standard deviation more of each tolerance does: its name and size, then the changes
-    of frequency and objectives."""
+    """Rows of what one standard deviation more of each tolerance does: its name and size, then the
+    changes of frequency and objectives."""
     if member.made is None:
         return []
     keys = _effect_keys(requirements)
@@ -285,7 +285,7 @@ def _effect(objective: str, value: float | None) -> str:
 
 
 def reference_sentences(search: DesignSearch) -> list[str]:
-    """What the display to compare with left on the table, or why nothing can be said of it."""
+    """Sentences on what the display to compare with left on the table, or why none can be said."""
     reference, requirements = search.reference, search.requirements
     if not requirements.compare_with:
         return []
@@ -317,7 +317,7 @@ def reference_sentences(search: DesignSearch) -> list[str]:
 
 
 def _left(search: DesignSearch, k: int, own: tuple[float, ...]) -> str:
-    """How much better one objective can be where no other is worse."""
+    """Words for how much better one objective can be where no other is worse."""
     goals = [criterion_of(objective) for objective in search.requirements.objectives]
     others = [j for j in range(len(goals)) if j != k]
     rows = search.objectives
@@ -336,7 +336,7 @@ def _left(search: DesignSearch, k: int, own: tuple[float, ...]) -> str:
 
 
 def rank_sentences(search: DesignSearch) -> list[str]:
-    """How well the screening ranked what was then solved."""
+    """Sentences on how well the screening ranked what was then solved."""
     said = [
         f"Screening and solving rank the solved plates by {criterion_of(name).said} with "
         f"Spearman's ρ = {value:.2f}."
@@ -346,8 +346,8 @@ def rank_sentences(search: DesignSearch) -> list[str]:
 
 
 def limit_sentences(search: DesignSearch) -> list[str]:
-    """What each limit does to the screened designs; those that none breaks in one sentence, those
-    that none was asked in another."""
+    """Sentences on what each limit does to the screened designs; those that none breaks in one
+    sentence, those that none was asked in another."""
     count = len(search.screened)
     said = [limit_in_words(limit, count) for limit in search.limits if limit.broken]
     idle = [limit for limit in search.limits if not limit.broken]

@@ -257,7 +257,7 @@ def _short(name: str) -> str:
 
 
 def shares_figure(effects: tuple[Effects, ...], varied: tuple[Varied, ...]) -> Figure:
-    """Of each answer the share of its variance that each value explains: alone, and with others."""
+    """Figure of each value's share of the variance of each answer: alone, and with others."""
     return _shares((effects[:MOST_ANSWERS], varied))
 
 

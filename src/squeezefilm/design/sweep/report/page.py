@@ -47,8 +47,8 @@ _MOST_ROWS = 20
 def wishes(
     asked: Sequence[tuple[str, si.Unit]], less: Sequence[str], more: Sequence[str]
 ) -> tuple[tuple[str, int], ...]:
-    """Of which answers less is better (1) or more (-1), by their columns' names; `asked` are those
-    there are, with their units.
+    """Directions, less is better (1) or more is (-1), of answers by their columns' names; `asked`
+    are those there are, with their units.
 
     Raises `InputError` for one that was not asked for, is named twice, or is of followed modes.
     """

@@ -1,4 +1,4 @@
-"""What the terminal shows of a sweep: its table, what failed, what was warned of."""
+"""Terminal output of a sweep: its table, what failed, what was warned of."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _ALIKE = 0.6  # below it another mode may have taken its place
 
 
 def sweep_columns(sweep: Sweep) -> list[tuple[str, list[str]]]:
-    """What was varied and what was asked for as columns: a heading with the unit, and a cell for
+    """Columns of what was varied and what was asked for: a heading with the unit, and a cell for
     each point."""
     every = list(itertools.product(*(range(len(axis)) for axis in sweep.axes)))
     columns = []
@@ -119,7 +119,7 @@ Row = tuple[str, str, str, str]
 
 
 def compared_rows(folder: Path | None, rows: str) -> tuple[Row, ...]:
-    """What differs between two rows of ``sweep.csv`` in a folder, counted from 1 (``"3,17"``).
+    """Rows of what differs between two rows of ``sweep.csv`` in a folder, from 1 (``"3,17"``).
 
     Raises `InputError` for a folder without a sweep, and for rows that it does not have.
     """

@@ -26,7 +26,7 @@ def mode_of(column: Column) -> str | None:
 
 
 def quantity_of(column: Column) -> str:
-    """What a column is of, without the mode."""
+    """Quantity of a column, without the mode."""
     name = without_units(column.name)
     return (name if mode_of(column) is None else name.rpartition(".")[2]).replace("_", " ")
 
@@ -40,7 +40,7 @@ def each_name(axis: Axis) -> list[Axis]:
 
 
 def step_words(axis: Axis, number: int) -> str:
-    """One step of an axis in words: ``1.5 mm``."""
+    """Words for a step of an axis: ``1.5 mm``."""
     return ", ".join(
         str(value) if unit is None else shown(float(value), unit)
         for value, unit in zip(axis.steps[number], axis.units, strict=True)

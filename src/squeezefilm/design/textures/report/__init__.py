@@ -1,1 +1,1 @@
-"""What `render` shows: page, figures, tables."""
+"""Output of `render`: page, figures, tables."""

@@ -196,7 +196,7 @@ def friction_of(result: RenderAnalysis, values: FloatArray, speed: float) -> Flo
 
 @style.drawn
 def ripple(result: RenderAnalysis) -> Figure:
-    """What the standing wave leaves of the amplitude along the way."""
+    """Figure of what the standing wave leaves of the amplitude along the way."""
     stroke, finger = result.stroke, result.finger
     half = result.prediction.mode.half_wavelength
     done = " The renderer makes up for it." if result.wave == "compensated" else ""

@@ -1,4 +1,4 @@
-"""What the terminal and the page show of a rendered texture: asked for against rendered."""
+"""Output for a rendered texture, in the terminal and on the page: asked for against rendered."""
 
 from __future__ import annotations
 
