@@ -54,7 +54,7 @@ _TAILS = ((1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2)
 
 @dataclass(frozen=True)
 class Predicted:
-    """One predicted number: `answer` and `conditions` as an `Observation` has them (SI), median,
+    """A predicted number: `answer` and `conditions` as an `Observation` has them (SI), median,
     interval at `level`, and the standard deviation of its draws."""
 
     answer: str
@@ -78,7 +78,7 @@ class BlindPrediction:
 
 @dataclass(frozen=True)
 class Score:
-    """One predicted number beside what was measured.
+    """A predicted number beside the measured one.
 
     `error` is predicted median less measured, relative to the measured value (absolute for µ′/µ);
     `inside` whether the interval holds the measured value; `log_score` the logarithm of the
@@ -93,7 +93,7 @@ class Score:
 
     @property
     def sentence(self) -> str:
-        """As one says it."""
+        """Sentence about it."""
         low, high = self.predicted.interval
         absolute = self.observation.answer == FRICTION
         error = f"{self.error:+.3f}" if absolute else f"{100 * self.error:+.2g} %"

@@ -1,4 +1,4 @@
-"""What a calibration found: parameters with their spreads, what is identified, friction's interval,
+"""Result of a calibration: parameters with their spreads, what is identified, friction's interval,
 and what to measure next."""
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from squeezefilm.physics.uncertainty.intervals import LEVEL
 
 @dataclass(frozen=True)
 class CalibratedValue:
-    """One parameter before and after: the prior's interval at `LEVEL`, the posterior's median,
+    """A parameter before and after: the prior's interval at `LEVEL`, the posterior's median,
     standard deviation and interval, all in `unit`; `left` is the share of the prior spread that is
     left."""
 
@@ -35,7 +35,7 @@ class CalibratedValue:
 
     @property
     def sentence(self) -> str:
-        """As one says it."""
+        """Sentence about it."""
         middle, low, high = (
             si.format_quantity(number, self.unit, 4) for number in (self.median, *self.interval)
         )

@@ -1,4 +1,4 @@
-"""What was measured beside what the model alone says of it, before and after a calibration.
+"""Measured values beside those of the model alone, before and after a calibration.
 
 Without the discrepancy that a calibration samples: with it every answer that was observed comes out
 near what was observed, and a model that is wrong would look right.

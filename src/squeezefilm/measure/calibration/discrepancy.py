@@ -1,4 +1,4 @@
-"""How far a right-looking model may be from a real bench, and how observations judge it.
+"""Distance of a right-looking model from a real bench, and how observations judge it.
 
 A solved plate is not the plate: glue is uneven, a mode nobody modelled is near, a law of contact
 is another one. Such errors are sampled beside the parameters (Kennedy and O'Hagan 2001,
@@ -69,12 +69,12 @@ KINDS: tuple[tuple[str, ...], ...] = (
 """Answers of a plate whose errors have one scale: of frequency, of electricity, of vibration, of
 body and shape."""
 SHARED: si.Dimensionless = 0.75
-"""How much of the variance of a frequency's error all frequencies of one plate have in common
+"""Share of the variance of a frequency's error that all frequencies of one plate have in common
 (assumed): a plate that is stiffer or heavier than modelled moves them together. What the mesh adds
 they have in common altogether."""
 SPREAD: float = 0.42
-"""Of the logarithm of a kind's scale, whose median is 1: between a half and twice in nine of ten
-benches (assumed)."""
+"""Spread of the logarithm of a kind's scale, whose median is 1: between a half and twice in nine of
+ten benches (assumed)."""
 ALIKE: si.Dimensionless = 0.5
 """The correlation of the scales' logarithms between kinds (assumed): a plate that is not as
 modelled in one kind is less trusted in all."""

@@ -1,4 +1,4 @@
-"""From a folder of recordings to a calibrated display, and to the scores of a prediction."""
+"""Calibration of a display by a folder of recordings, and scores of a prediction."""
 
 from __future__ import annotations
 
@@ -181,7 +181,7 @@ def _used(file: Path, kind: str, told: Any) -> UsedRecording:
 
 
 def usable(observation: Observation) -> str:
-    """Why a calibration cannot use an observation; empty where it can."""
+    """Reason why a calibration cannot use an observation; empty where it can."""
     if observation.answer not in (*PLATE_ANSWERS, MODE_FREQUENCY, FRICTION):
         return "a calibration has no use for it"
     try:

@@ -1,4 +1,4 @@
-"""How observations of µ′/µ judge draws of finger and law, with an error of the law itself.
+"""Likelihood of draws of finger and law by observations of µ′/µ, with an error of the law itself.
 
 The law's error is a continuous function of amplitude, force and speed: a Gaussian process over
 their logarithms with an exponential correlation, so that many points along one curve do not count
@@ -31,7 +31,7 @@ _ALIKE = 0.7  # as a difference of logarithms: at twice the amplitude the error 
 
 
 class Touching(NamedTuple):
-    """Under which conditions µ′/µ is observed or predicted: vibration amplitude (m, with the finger
+    """Conditions under which µ′/µ is observed or predicted: vibration amplitude (m, with the finger
     on), normal force (N) and speed (m/s); None where it is the display's own, the force as
     uncertain as it is there."""
 
@@ -41,7 +41,7 @@ class Touching(NamedTuple):
 
     @property
     def said(self) -> str:
-        """In words."""
+        """Conditions in words."""
         words = f"relative friction at {1e6 * self.amplitude:.3g} µm"
         if self.force is not None:
             words += f", {self.force:.3g} N"

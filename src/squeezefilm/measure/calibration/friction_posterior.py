@@ -1,4 +1,4 @@
-"""What observations of µ′/µ say of a finger and of the laws: weighted draws.
+"""Posterior of a finger and of the laws by observations of µ′/µ: weighted draws.
 
 Draws of everything that `physics.uncertainty.draws.Mixture` has uncertain (values, laws and
 mechanisms), first from the priors, then from a Gaussian about those that the observations speak for

@@ -1,5 +1,5 @@
-"""What the draws of a calibration tell: which values and combinations are identified, and which
-measurement would narrow the interval of friction most."""
+"""Identification by the draws of a calibration: which values and combinations are identified, and
+which measurement would narrow the interval of friction most."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Known:
 
     @property
     def standing(self) -> Standing:
-        """In one word or two."""
+        """Standing in one word or two."""
         if self.left <= IDENTIFIED:
             return "identified"
         return "not told" if self.left > NOT_TOLD else "narrowed"
@@ -47,7 +47,7 @@ class Combination:
 
     @property
     def sentence(self) -> str:
-        """As one says it."""
+        """Sentence about it."""
         to = f"to {si.percent(self.left, 1 if self.left < 0.1 else 0)} of their prior spread"
         if len(self.parts) == 1:
             return f"{self.parts[0][0]} alone is fixed {to}."
@@ -72,7 +72,7 @@ class Identification:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """As one says it."""
+        """Sentences about it."""
         said = []
         words = {
             "identified": "The data identify",
@@ -98,7 +98,7 @@ def identification(
     scores: si.DimensionlessArray,
     weights: si.DimensionlessArray | None = None,
 ) -> Identification:
-    """What draws of scores (draws, parameters), with `weights` (draws,), say of the parameters."""
+    """Identification of parameters by draws of scores (draws, parameters), weighted (draws,)."""
     if not paths:
         return Identification((), ())
     share = np.full(len(scores), 1 / len(scores)) if weights is None else weights / weights.sum()
@@ -146,7 +146,7 @@ ACCURACIES: dict[str, tuple[si.Dimensionless, str]] = {
 }
 """Relative standard errors (assumed), and the measurement in words."""
 FRICTION_ACCURACY: si.Dimensionless = 0.05
-"""Of a measured µ′/µ (assumed): between strokes of one finger."""
+"""Accuracy of a measured µ′/µ (assumed): between strokes of one finger."""
 _TRUTHS = 96
 _NEAREST = 0.06
 _TAILS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
@@ -163,7 +163,7 @@ class NextMeasurement:
 
     @property
     def sentence(self) -> str:
-        """As one says it."""
+        """Sentence about it."""
         return (
             f"{self.name} (to {self.accuracy}) is expected to leave {si.percent(self.left)} of the "
             "interval of friction"
@@ -182,7 +182,7 @@ class Candidate:
 
 
 def candidates(answers: Mapping[str, si.FloatArray]) -> list[Candidate]:
-    """Those of `ACCURACIES` among draws of answers and parameters by name."""
+    """Candidates of `ACCURACIES` among draws of answers and parameters by name."""
     options = []
     for name, values in answers.items():
         if name in ACCURACIES:

@@ -37,7 +37,7 @@ _MOST_LOST = 0.25
 _SOLVES = 0.95  # of the time; the rest is that of the posterior
 _SMALL = 0.3  # of a standard error; so much adds a twentieth to it
 WORKING = (Asked("resonance_frequency"), Asked("amplitude_per_volt"), Asked("quality_factor"))
-"""What friction needs of a plate."""
+"""Answers of a plate that friction needs."""
 
 
 @dataclass(frozen=True, eq=False)

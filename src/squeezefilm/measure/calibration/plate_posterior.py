@@ -1,4 +1,4 @@
-"""What observations of a plate say of its parameters: least squares, then draws of the posterior.
+"""Posterior of a plate's parameters by observations: least squares, then draws of the posterior.
 
 Everything happens in normal scores (`priors.NormalScores`) and in logarithms of the answers. The
 last scores are those of the discrepancy's scales, one for each of `KINDS`. The draws are by the
@@ -32,10 +32,10 @@ from squeezefilm.measure.calibration.solved_answers import Asked, asked_by
 from squeezefilm.measure.fits.estimate import Observation
 
 STEPS, BURN_IN = 2000, 500
-"""Of each walker: kept, and left out before."""
+"""Steps of each walker: kept, and left out before."""
 _DRAWS = 2000
 BOUND = ("resonance_frequency", "parallel_resonance_frequency", "coupling_coefficient")
-"""Of which each follows from the other two, by what a coupling coefficient is."""
+"""Frequencies of which each follows from the other two, by what a coupling coefficient is."""
 # Of ln k: a body that is nearly all ceramic stays below.
 _MOST_COUPLED = -0.01
 # In standard deviations: further out the covariances of errors cannot be told from singular ones.
@@ -146,9 +146,8 @@ class PlateProblem:
         return bound
 
     def moved(self, logs: si.FloatArray) -> si.DimensionlessArray:
-        """By how much errors of the answers (columns) move the answers (rows) at `logs` (points,
-        asked), shape (points, asked, asked): each its own but for a parallel resonance that is
-        `bound`."""
+        """Shift of the answers (rows) by errors of the answers (columns) at `logs` (points, asked),
+        shape (points, asked, asked): each its own but for a parallel resonance that is `bound`."""
         moved = np.tile(np.eye(len(self.asked)), (len(logs), 1, 1))
         if self._bound is not None:
             short, opened, coupling = self._bound

@@ -1,4 +1,4 @@
-"""Which values of a plate or disc a calibration may move, and how far: the display's own ranges.
+"""Values of a plate or disc that a calibration may move, and how far: the display's own ranges.
 
 A value that the description gives a spread keeps it. The others have an **assumed** range, by as
 much as such a value is seldom known; each stands in `ASSUMED` with its reason. What a ceramic's

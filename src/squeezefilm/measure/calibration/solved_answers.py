@@ -1,4 +1,4 @@
-"""What a bench could measure of an actuator, by the full solver, and kept on disk.
+"""Answers of an actuator that a bench could measure, by the full solver, and kept on disk.
 
 A calibration asks some hundred plates. Each answer is kept in the cache folder under all that it
 depends on, so that a calibration that was stopped goes on, and a second one costs nothing.
@@ -40,7 +40,7 @@ PLATE_ANSWERS = (
     "mass",
     "modal_mass",
 )
-"""In SI units: of the working mode, its circuit, and the body's mass (kg, ceramics included)."""
+"""Answers in SI units: of working mode, circuit, and the body's mass (kg, ceramics included)."""
 
 # What a bench's impedance sweep usually is: half-bandwidths on each side, points, noise.
 _BAND, _READ_POINTS, _READ_NOISE = 8.0, 161, 0.01
@@ -49,7 +49,7 @@ _KEPT: Kept[si.FloatArray] = Kept("plate_answers", si.FloatArray)
 
 
 class Asked(NamedTuple):
-    """One answer of an actuator: its name, and the nodal lines of another mode than the working
+    """An answer of an actuator: its name, and the nodal lines of another mode than the working
     one."""
 
     name: str
@@ -57,7 +57,7 @@ class Asked(NamedTuple):
 
     @property
     def said(self) -> str:
-        """In words."""
+        """Answer in words."""
         words = self.name.replace("_", " ")
         return words if self.lines is None else f"{words} ({self.lines[0]},{self.lines[1]})"
 
@@ -97,7 +97,7 @@ CONDITIONS: dict[str, si.Unit] = {
     LINES[0]: si.Unit("1"),
     LINES[1]: si.Unit("1"),
 }
-"""What may be said of the conditions, and in which unit."""
+"""Units of what may be said of the conditions."""
 
 
 def question(text: str) -> Observation:

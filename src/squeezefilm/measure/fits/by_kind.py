@@ -29,13 +29,13 @@ from squeezefilm.physics.plate.solid.solve import solve_modes
 from squeezefilm.physics.plate.solid.working import solid_mode
 
 OF_MANY_PEOPLE = kinds.FrictionDecays | kinds.FingertipImpedances | kinds.DetectionThresholds
-"""What is compared, and not fitted."""
+"""Kinds that are compared, and not fitted."""
 
 _NEAR: si.Dimensionless = 0.1
-"""How far from a scan's frequency (of it) modes may take part in what is seen."""
+"""Distance from a scan's frequency (of it) up to which modes may take part in what is seen."""
 _SAME: si.Dimensionless = 0.25
-"""How far from the solved resonance (of it) a line scan may still be of that mode: a solved plate
-is off by as much as its elastic constants and its glue."""
+"""Distance from the solved resonance (of it) up to which a line scan may still be of that mode: a
+solved plate is off by as much as its elastic constants and its glue."""
 # Shapes are much nearer than frequencies on one mesh.
 _TOLERANCE = 1e-2
 

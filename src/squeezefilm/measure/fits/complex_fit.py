@@ -19,7 +19,7 @@ from squeezefilm.measure.fits.least_squares import remembering
 from squeezefilm.measure.fits.misfit import adequacy_of
 
 Model = Callable[[si.FloatArray], tuple[si.ComplexArray, si.ComplexArray]]
-"""Of parameters (p,): the curve (points,) and its derivatives (p, points)."""
+"""Model of parameters (p,): the curve (points,) and its derivatives (p, points)."""
 
 _PASSES = 3
 # A floor under relative noise must be told by this much (twice the logarithm of the likelihood).
@@ -111,7 +111,7 @@ def _stacked(values: si.ComplexArray) -> si.FloatArray:
 def _prior_scale(
     model: Model, parameters: si.FloatArray, data: si.ComplexArray, weight: si.FloatArray
 ) -> float:
-    """What a prior of one standard deviation counts beside residuals of which the noise is not yet
+    """Weight of a prior of one standard deviation beside residuals of which the noise is not yet
     known: their spread, times the root of their correlation time."""
     residual = (data - model(parameters)[0]) * weight
     spread = float(np.sqrt(np.mean(_stacked(residual) ** 2)))

@@ -1,5 +1,5 @@
-"""What a fit says: a value with its interval, whether the model is adequate, what was observed; and
-a message in place of a fit whose arithmetic ends."""
+"""Results of a fit: a value with its interval, whether the model is adequate, what was observed;
+and a message in place of a fit whose arithmetic ends."""
 
 from __future__ import annotations
 
@@ -65,10 +65,10 @@ class FitResult(Result):
 @si.checked_numbers
 @dataclass(frozen=True)
 class Observation:
-    """One number that a calibration may use: an `answer` of the display by its name in the
-    library (`resonance_frequency`, …) in SI units, its standard error, and under which
-    `conditions` (SI, by name: voltage, normal_force, vibration_amplitude, finger_speed, x, y).
-    `recording` is the name of the file that it was read from, where there is one."""
+    """A number that a calibration may use: an `answer` of the display by its name in the library
+    (`resonance_frequency`, …) in SI units, its standard error, and under which `conditions` (SI, by
+    name: voltage, normal_force, vibration_amplitude, finger_speed, x, y). `recording` is the name
+    of the file that it was read from, where there is one."""
 
     answer: str
     value: float
@@ -107,7 +107,7 @@ def interval_around(
 
 
 def inverse_of(estimate: Estimate) -> Estimate:
-    """One over an estimate (1), such as Q from a loss factor: its interval's ends change places.
+    """Inverse of an estimate (1), such as Q from a loss factor: its interval's ends change places.
 
     What is not above zero, an end of the interval or the value itself (noise can make a loss
     seem a gain), has an infinite inverse.

@@ -21,7 +21,7 @@ from squeezefilm.measure.fits.estimate import Estimate, propagated
 from squeezefilm.measure.fits.misfit import correlation_factor
 
 Columns = Callable[[si.FloatArray], tuple[si.Array, si.Array]]
-"""From the bending numbers (p,) to the columns (points, m) and their derivatives (p, points, m)."""
+"""Function from bending numbers (p,) to columns (points, m) and derivatives (p, points, m)."""
 
 _Answer = TypeVar("_Answer")
 _MOST_STEPS = 200

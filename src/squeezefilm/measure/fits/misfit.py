@@ -16,7 +16,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.measure.fits.estimate import Adequacy
 
 STRUCTURED = 4.0
-"""So many standard deviations below that of noise, the ratio says that neighbours are alike."""
+"""Standard deviations by which the ratio must lie below that of noise if neighbours are alike."""
 
 TOLERATED: si.Dimensionless = 0.01
 """A misfit of this share of what was recorded still counts as a description of it."""
@@ -125,8 +125,8 @@ def adequacy_of(
 
 
 def _beyond_noise(residual: si.Array, noise: float) -> float:
-    """By how much the largest mean of five neighbours is beyond what noise of this mean size
-    makes of one: four of its standard deviations."""
+    """Excess of the largest mean of five neighbours over what noise of this mean size makes of one:
+    four of its standard deviations."""
     if residual.size < _NEAR:
         return 0.0
     means = np.abs(np.convolve(residual, np.ones(_NEAR) / _NEAR, mode="valid"))

@@ -1,4 +1,4 @@
-"""What a sweep of impedance must be to be fitted, and what can be read off it without a model."""
+"""Demands on a sweep of impedance that is to be fitted, and what is read off it without a model."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""What the description of a recording may say of any kind, how it names columns, and what the
-descriptions of friction say: strokes, curves, and what was published of many people."""
+"""Keys of a description that any kind of recording may have, names of columns, and the descriptions
+of friction: strokes, curves, and what was published of many people."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from squeezefilm.core.hard_limits import FINGER_SPEED, FORCE, FREQUENCY
 from squeezefilm.measure.recordings.kinds import Told
 
 MOST_VOLTAGE: si.Volt = 1e4
-"""Of a drive: past any amplifier for a plate."""
+"""Largest voltage of a drive: past any amplifier for a plate."""
 
 Convention = Literal["zero-to-peak", "peak-to-peak", "rms"]
-"""How the amplitude of a vibration is given; inside, all amplitudes are zero-to-peak."""
+"""Convention of a vibration's amplitude as given; inside, all are zero-to-peak."""
 CONVENTIONS: Mapping[Convention, float] = {
     "zero-to-peak": 1.0,
     "peak-to-peak": 0.5,
     "rms": 2**0.5,
 }
-"""What makes each a zero-to-peak amplitude, of a sine."""
+"""Factor that makes each a zero-to-peak amplitude, of a sine."""
 
 
 @dataclass(frozen=True)
@@ -170,7 +170,7 @@ class DescribedDecays(Described):
 
 @dataclass(frozen=True)
 class TouchColumns:
-    """What a fingertip adds to a vibration: a damping and a moving mass."""
+    """Columns of what a fingertip adds to a vibration: a damping and a moving mass."""
 
     damping: Column
     mass: Column

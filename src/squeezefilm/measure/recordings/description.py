@@ -1,4 +1,4 @@
-"""What stands in the small TOML file beside a recording: its kind, columns, units and
+"""Description of a recording in the small TOML file beside it: its kind, columns, units and
 conditions."""
 
 from __future__ import annotations

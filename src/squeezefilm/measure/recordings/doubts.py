@@ -1,5 +1,4 @@
-"""What is doubtful of a recording, a sentence each: nothing here is corrected, and nothing
-refused."""
+"""Doubts about a recording, a sentence each: nothing here is corrected, and nothing refused."""
 
 from __future__ import annotations
 

@@ -195,7 +195,7 @@ class FrictionBench:
 
 
 FrictionQuantity = Literal["friction_force", "friction_coefficient", "relative_friction"]
-"""What a friction curve holds: the force (N), µ, or µ′/µ."""
+"""Quantity of a friction curve: the force (N), µ, or µ′/µ."""
 
 
 @si.checked_numbers

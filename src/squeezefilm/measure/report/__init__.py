@@ -1,1 +1,1 @@
-"""What a bench measured: what was read, what was fitted to it."""
+"""Reports on what a bench measured: what was read, what was fitted to it."""

@@ -121,7 +121,7 @@ def covered_words(compared: FolderComparison) -> str:
 
 
 def coverage_rows(compared: FolderComparison) -> list[tuple[str, ...]]:
-    """By finger or paper, the share of points in two central intervals of the default."""
+    """Rows by finger or paper of the share of points in two central intervals of the default."""
     at = [LEVELS.index(level) for level in (0.5, 0.9)]
     return [
         (unit_name(compared, unit), str(points), *(si.percent(inside[k] / points) for k in at))
@@ -149,7 +149,7 @@ def people_words(compared: PopulationComparison) -> str:
 
 
 def conditions(compared: CurveComparison) -> str:
-    """On which display a curve was measured, and how."""
+    """Words for the display on which a curve was measured, and how."""
     c = compared.curve
     words = [
         compared.display,

@@ -27,7 +27,7 @@ _TICKS = (-0.1, -0.01, -0.001, 0.0, 0.001, 0.01, 0.1)
 
 @style.drawn
 def compared_figure(found: FolderCalibration) -> Figure:
-    """What the model alone says of every measured number, before and after."""
+    """Figure of what the model alone says of every measured number, before and after."""
     rows = found.calibration.compared
     far = [one for one in rows if one.after and abs(deviation(one)) > 2]
     title = (
@@ -70,8 +70,8 @@ def _before_after(axes: Axes, row: int, answer: ComparedAnswer) -> None:
 
 
 def deviation(answer: ComparedAnswer) -> float:
-    """By how many standard errors (measurement's and model's together) what was measured lies above
-    the calibrated model's median; NaN where the model has none."""
+    """Number of standard errors (measurement's and model's together) by which the measured value
+    lies above the calibrated model's median; NaN where the model has none."""
     if not answer.after:
         return float("nan")
     from scipy.special import ndtri

@@ -151,7 +151,7 @@ def _apart(off: float) -> str:
 
 
 def _by_kind(rows: Sequence[ComparedAnswer]) -> str:
-    """For each kind of answer how many were measured and how far the calibrated model is off."""
+    """Sentence on how many of each kind were measured and how far the calibrated model is off."""
     kinds: dict[str, list[ComparedAnswer]] = {}
     for answer in rows:
         # A friction is said with its conditions, which make no kind.

@@ -45,8 +45,8 @@ error of about 1 % of an axis.
 
 
 class _Compared(NamedTuple):
-    """One recording beside the models: who measured it, its name, what is said (first on what and
-    how it was measured), its table, and what draws its figure."""
+    """A recording beside the models: who measured it, its name, what is said (first on what and how
+    it was measured), its table, and what draws its figure."""
 
     told: Told
     name: str

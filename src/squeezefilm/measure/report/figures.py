@@ -144,7 +144,7 @@ FRICTION_WORDS: Mapping[str, str] = {
     "friction_coefficient": "coefficient of friction",
     "relative_friction": "µ′/µ",
 }
-"""What a friction curve holds, as an axis says it."""
+"""Words of an axis for what a friction curve holds."""
 
 
 def measured_points(axes: Axes, curve: kinds.FrictionCurve) -> None:

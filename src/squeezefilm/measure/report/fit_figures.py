@@ -1,4 +1,4 @@
-"""What was fitted beside what was recorded, and what is left."""
+"""Figures of what was fitted beside what was recorded, and of what is left."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Modelled(NamedTuple):
 
 
 class _Subject(NamedTuple):
-    """What a picture is drawn of."""
+    """Subject of a picture."""
 
     check: RecordingCheck
     fit: Any
@@ -64,7 +64,7 @@ def fit_figure(check: RecordingCheck, fit: Fit) -> Figure | None:
 
 
 def modelled(check: RecordingCheck, fit: Fit) -> Modelled | None:
-    """What a fit computed at the recording's points, over one abscissa; None where it has no such.
+    """Model of a fit at the recording's points, over one abscissa; None where it has no such.
 
     A fit has either `admittance`, a function of frequency, or arrays `model` and `residual` over a
     `frequency`, `position` or `time` of its own; that of several sweeps over theirs in a row.

@@ -1,5 +1,5 @@
-"""What a sweep says of a bare ceramic of any shape, and what is known of one before it is measured:
-the ratios of the library's ceramics."""
+"""Fits of a bare ceramic of any shape, and what is known of one before it is measured: the ratios
+of the library's ceramics."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ PARAMETERS = (
     "d15/d31",
     "eps11/eps33",
 )
-"""What is fitted of a disc, in this order: s at constant field, ε relative and at constant
+"""Names of what is fitted of a disc, in this order: s at constant field, ε relative and at constant
 stress."""
 
 WIDE = 1.0
@@ -134,9 +134,9 @@ class RecordedMode:
 
 
 DECISIVE = math.log(20.0)
-"""From which preference on a mode counts as told from the others: 20 to 1."""
+"""Preference on a mode from which it counts as told from the others: 20 to 1."""
 _FITTED = 12.0
-"""How much less likely, by its start beside what ceramics are, a mode may be and be fitted."""
+"""Excess over the best start's distance, as −ln likelihood, up to which a mode is fitted."""
 
 
 def recorded_mode(

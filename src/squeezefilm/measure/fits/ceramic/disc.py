@@ -40,7 +40,7 @@ _MODES = 4
 
 @dataclass(frozen=True, eq=False)
 class DiscConstants(CeramicConstants):
-    """What the sweep of a disc's first radial mode says of its ceramic: `CeramicConstants`, s12 at
+    """Constants of a ceramic by the sweep of a disc's first radial mode: `CeramicConstants`, s12 at
     constant field (m²/N), Poisson's ratio −s12/s11, and the planar coupling.
 
     `from_data` is, for every one of `PARAMETERS`, by how much the sweep narrowed its standard

@@ -1,4 +1,4 @@
-"""Which circuit a sweep of impedance asks for: how many branches, and which corrections beside."""
+"""Choice of a sweep's circuit: how many branches, and which corrections beside."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From an impedance sweep to resonances, coupling and a circuit of one or more branches."""
+"""Fit of an impedance sweep by resonances, coupling and a circuit of one or more branches."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _WORDS = {
 
 @dataclass(frozen=True)
 class Branch:
-    """One motional branch: its series resonance (Hz), Q, and R (Ω), L (H), C (F), and the parallel
+    """A motional branch: its series resonance (Hz), Q, and R (Ω), L (H), C (F), and the parallel
     resonance (Hz) above it with the coupling k = √(1 − fs²/fp²) that goes with the two."""
 
     series_resonance: Estimate

@@ -1,1 +1,1 @@
-"""What a friction bench recorded: strokes, and friction against amplitude."""
+"""Recordings of a friction bench: strokes, and friction against amplitude."""

@@ -164,7 +164,7 @@ def _touching(strokes: Strokes) -> tuple[Strokes, tuple[si.Metre, ...]]:
 
 @dataclass(frozen=True, eq=False)
 class _Design:
-    """What ln µ of a stroke is made of: columns by level, speed, force, time and direction."""
+    """Columns of ln µ of a stroke: columns by level, speed, force, time and direction."""
 
     levels: si.MetreArray
     number: si.IntArray
@@ -281,7 +281,7 @@ class _Fitted:
         )
 
     def _drift(self) -> Estimate:
-        """From the first stroke to the last."""
+        """Drift from the first stroke to the last."""
         design, row = self.design, np.zeros(self.design.matrix.shape[1])
         own = slice(design.drift_at, design.drift_at + design.drift)
         row[own] = design.matrix[-1, own] - design.matrix[0, own]

@@ -31,7 +31,7 @@ from squeezefilm.physics.uncertainty.uncertainty import FrictionBand, friction_b
 
 _SAMPLES = 64
 LEVELS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, LEVEL)
-"""Of the central intervals of which the coverage is counted, that of `FrictionBand` last."""
+"""Levels of the central intervals of which the coverage is counted, that of `FrictionBand` last."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -63,7 +63,7 @@ class CurveComparison(FitResult):
 
     @property
     def inside(self) -> tuple[bool | None, ...]:
-        """For each point True where it lies in `band`; where the band is not known it does not,
+        """Flags, True for each point that lies in `band`; where the band is not known it does not,
         None where nothing vibrates."""
         return tuple(
             None if a == 0 else bool(here)

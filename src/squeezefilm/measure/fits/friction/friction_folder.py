@@ -65,8 +65,8 @@ class FolderComparison:
 
     @property
     def coverage(self) -> dict[str, tuple[si.IntArray, int]]:
-        """By unit (finger or paper): how many of its points that vibrate lie in the default's
-        central interval of each of `LEVELS`, shape (levels,), and how many do vibrate."""
+        """Coverage by unit (finger or paper): how many of its points that vibrate lie in the
+        default's central interval of each of `LEVELS`, shape (levels,), and how many do vibrate."""
         counts: dict[str, tuple[si.IntArray, int]] = {}
         for compared in self.curves:
             moves = compared.curve.vibration_amplitude > 0

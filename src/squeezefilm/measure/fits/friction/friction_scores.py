@@ -1,5 +1,5 @@
-"""How near a model comes to measured friction: a score that no normalisation decides, beside
-shapes of which one amplitude is fitted.
+"""Scores of models beside measured friction: a score that no normalisation decides, beside shapes
+of which one amplitude is fitted.
 
 The friction at rest is fitted to each curve, whatever the model: an extrapolated one differs by
 25 to 35 % between models and would decide in place of the shape. Differences are over one friction
@@ -32,7 +32,7 @@ levitation model without a gap at rest."""
 
 @dataclass(frozen=True, eq=False)
 class ModelScore:
-    """One model beside a curve, with `fitted` numbers fitted to it: the friction at rest, and of
+    """A model beside a curve, with `fitted` numbers fitted to it: the friction at rest, and of
     `SHAPES` the amplitude too.
 
     `friction` is the model's at the curve's amplitudes and in its unit, shape (points,), NaN where
@@ -49,7 +49,7 @@ class ModelScore:
 
     @property
     def answered(self) -> int:
-        """At how many amplitudes the model has a friction."""
+        """Number of amplitudes at which the model has a friction."""
         return int(np.count_nonzero(np.isfinite(self.friction)))
 
     @property
@@ -60,7 +60,7 @@ class ModelScore:
 
 @dataclass(frozen=True)
 class TotalScore:
-    """One model over several units (a finger, or a paper whose fingers are not told apart), each
+    """A model over several units (a finger, or a paper whose fingers are not told apart), each
     counted once.
 
     `difference` is the root mean square over units; `log_score` the mean of the logarithmic density

@@ -1,4 +1,4 @@
-"""Whose finger a display is described for: a new person's, the mean of people, or this person's."""
+"""Choice of a display's finger: a new person's, the mean of people, or this person's."""
 
 from __future__ import annotations
 

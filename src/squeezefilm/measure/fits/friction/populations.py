@@ -1,4 +1,4 @@
-"""What was published of many people beside what is computed: decay amplitudes of friction and what
+"""Published measurements of people beside what is computed: decay amplitudes of friction and what
 fingertips add to a vibration, beside every model; thresholds of its modulation beside rival senses.
 
 At one speed a spatial period and a frequency are the same variable: senses that go by frequency
@@ -44,7 +44,7 @@ _PRESSED_AMPLITUDE: si.Metre = 1e-7
 
 @dataclass(frozen=True, eq=False)
 class PopulationComparison:
-    """One quantity of many people: `measured` (people or touches,), in `unit`, and what each model
+    """A quantity of many people: `measured` (people or touches,), in `unit`, and what each model
     gives, None where it gives nothing; nothing is fitted."""
 
     told: Told
@@ -155,9 +155,9 @@ RIVALS: Mapping[Rival, si.Dimensionless] = {"temporal": 1.0, "mixed": 0.5, "spat
 MEAN_FRICTION: si.Dimensionless = 0.5
 """Mean friction coefficient of the stimuli: assumed."""
 METHOD_RATIO: si.Dimensionless = 1.45
-"""What two intervals, three down and one up, the mean of the last six trials and the larger of two
-directions give, over the amplitude with d′ = 1: simulated by `tools/threshold_fit.py`, 1.4 to 1.6
-by what of the method is not published."""
+"""Ratio of what two intervals, three down and one up, the mean of the last six trials and the
+larger of two directions give, over the amplitude with d′ = 1: simulated by
+`tools/threshold_fit.py`, 1.4 to 1.6 by what of the method is not published."""
 _SAMPLES = 256
 
 
@@ -171,7 +171,7 @@ class DetectionComparison:
 
     @property
     def told(self) -> Told:
-        """Who measured, when and how."""
+        """Source: who measured, when and how."""
         return self.measured.told
 
     def summary(self) -> dict[str, Any]:

@@ -43,7 +43,7 @@ class Strokes:
     used: si.Dimensionless
 
     def column(self, name: str) -> si.FloatArray:
-        """One number of every stroke, by its name."""
+        """Column of one number of every stroke, by its name."""
         return np.array([getattr(row, name) for row in self.rows])
 
 

@@ -1,1 +1,1 @@
-"""What a vibrometer recorded: modes, shapes, losses, softening."""
+"""Recordings of a vibrometer: modes, shapes, losses, softening."""

@@ -1,4 +1,4 @@
-"""How a solved plate's face moves at its resonance, at the places of a scan; a line beside it."""
+"""Motion of a solved plate's face at its resonance, at the places of a scan; a line beside it."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class DrivenShape:
 
     @classmethod
     def of(cls, mode: SolidMode) -> DrivenShape:
-        """That of a solved mode at its own resonance."""
+        """Shape of a solved mode at its own resonance."""
         response, at = mode.driven_at()
         x, y = mode.modes.x, mode.modes.y
         there = response.motion(at, *(np.array([place]) for place in mode.lobe))[0, 0]

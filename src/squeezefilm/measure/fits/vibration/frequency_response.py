@@ -24,7 +24,7 @@ from squeezefilm.measure.recordings.kinds import FrequencyResponse
 
 @dataclass(frozen=True)
 class ModalCircle:
-    """One mode by the circle through its response (m/V): centre, diameter, and how round it is.
+    """A mode by the circle through its response (m/V): centre, diameter, and how round it is.
 
     `roundness` is the mean distance of the points from the circle over its radius; `points` lay
     within the stretch that was used. A negative `quality_factor` is that of a phase recorded with
@@ -98,7 +98,7 @@ _WIDEST = 3.0
 
 @dataclass(frozen=True)
 class FittedMode:
-    """One mode of a response: frequency (Hz), Q, modal constant and amplitude per volt at its
+    """A mode of a response: frequency (Hz), Q, modal constant and amplitude per volt at its
     resonance (m/V).
 
     `amplitude_per_volt` is |modal constant| · Q, of this mode alone; `phase` (rad) that of the
@@ -270,7 +270,7 @@ def _first_mode(f: si.HertzArray, H: si.ComplexArray) -> tuple[bool, tuple[float
 
 
 def _as_many_as_needed(band: _Band, H: si.ComplexArray, start: tuple[float, float]) -> SeparableFit:
-    """One mode more as long as what is left calls for it."""
+    """Fit one mode more as long as what is left calls for it."""
     best = fit_separable(band.columns, H, band.shape_of([start]))
     while best.shape.size // 2 < _TRIED_MODES:
         count = best.shape.size // 2 + 1

@@ -25,7 +25,7 @@ from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.solid.resonances import label_name
 
 SAME_SHAPE: si.Dimensionless = 0.95
-"""From this criterion on a scan is called the shape it is compared with."""
+"""Criterion from which a scan is called the shape that it is compared with."""
 
 _FEWEST_POINTS = 12
 # Shapes that a scan's places cannot tell apart.

@@ -145,8 +145,7 @@ def fit_line_scan(
 
 
 def _by_shape(fit: LineScanFit, shape: DrivenShape, w: si.Array, drift: bool) -> LineScanFit:
-    """What a solved shape says of a line that no even wave fits, from its displacement as it was
-    recorded."""
+    """Fit by a solved shape of a line that no even wave fits, from its displacement as recorded."""
     reach = fit.half_wavelength.value / 4
     by = line_by_shape(shape, fit.position, w, reach=reach, drift=drift)
     swing = shape.along(fit.position + by.offset.value)[0]
@@ -283,8 +282,7 @@ class _FittedLine:
         return line_fit if self.adequacy.adequate else self._by_points(line_fit)
 
     def _by_points(self, fit: LineScanFit) -> LineScanFit:
-        """What the points around each node and antinode say, in place of a wave that does not
-        fit."""
+        """Fit by the points around each node and antinode, in place of a wave that does not fit."""
         points = LinePoints(self.x, self.w, fit.half_wavelength.value)
         spacing, antinode = points.spacing, points.antinode
         if spacing is None or antinode is None:

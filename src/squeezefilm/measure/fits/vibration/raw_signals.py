@@ -205,7 +205,7 @@ def _as_instrument(
     signals: tuple[si.VoltArray, si.MetreArray, float],
     band: tuple[si.Hertz, si.Hertz],
 ) -> RawSignalsFit:
-    """With scale and delay by the whole recording's spectra within a band."""
+    """Fit with scale and delay by the whole recording's spectra within a band."""
     from scipy.signal.windows import tukey
 
     v, x, rate = signals

@@ -27,7 +27,7 @@ from squeezefilm.physics.plate.free_plate import FreePlate
 
 BackboneLaw = Literal["quadratic", "linear"]
 BACKBONE_LAWS: tuple[BackboneLaw, ...] = get_args(BackboneLaw)
-"""How the frequency follows the amplitude: with its square (Duffing), or in proportion."""
+"""Laws of the frequency over the amplitude: with its square (Duffing), or in proportion."""
 
 _FEWEST_POINTS = 30
 # Near a fold of the curve a small noise moves a point far: such points say little and bend much.

@@ -56,7 +56,7 @@ def is_4294a(path: Path) -> bool:
 
 @dataclass(frozen=True)
 class _Trace:
-    """One trace as it stands in the file: its letter, the rows and their lines."""
+    """A trace as it stands in the file: its letter, the rows and their lines."""
 
     letter: str
     rows: list[tuple[float, ...]]

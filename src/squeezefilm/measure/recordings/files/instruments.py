@@ -38,7 +38,7 @@ _SYMBOLS = {
 
 @dataclass(frozen=True)
 class Instrument:
-    """One entry of the table: see there."""
+    """An entry of the table: see there."""
 
     name: str
     head: str
@@ -55,7 +55,7 @@ class Instrument:
 
 @dataclass(frozen=True)
 class _Vocabulary:
-    """What a column holds by its name, and the unit meant where the name has none."""
+    """Meaning of a column by its name, and the unit meant where the name has none."""
 
     quantity: str
     names: re.Pattern[str]

@@ -49,7 +49,7 @@ def read_matlab(path: Path) -> RawTable:
 
 
 def _numbers(data: bytes, name: str) -> Read:
-    """In the child: the names of all variables and of the columns of numbers, and the columns."""
+    """Names of all variables and of the columns of numbers, and the columns (read in the child)."""
     variables = _variables(data, name)
     columns = [pair for label, value in variables for pair in _columns(label, value)]
     named = [label for label, _ in variables], [label for label, _ in columns]

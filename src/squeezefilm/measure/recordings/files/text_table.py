@@ -38,8 +38,8 @@ _SHOWN = 40
 
 @dataclass(frozen=True)
 class _Notation:
-    """What parts the cells of a line, what the decimals of a number, and how many cells there
-    are."""
+    """Notation of a table: what parts the cells of a line and what the decimals of a number, and
+    how many cells there are."""
 
     delimiter: str | None
     decimal: str

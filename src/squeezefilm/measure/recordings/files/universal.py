@@ -26,7 +26,7 @@ _DIRECTIONS = ("r1", "r2", "r3")
 
 @dataclass(frozen=True)
 class _Block:
-    """One data set: its type, and the line of the file in which it begins."""
+    """A data set: its type, and the line of the file in which it begins."""
 
     type: int
     line: int
@@ -53,7 +53,7 @@ def read_universal(path: Path, at: si.Hertz | None = None) -> RawTable:
 
 
 def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
-    """In the child: format, names of the columns and notes, and the columns' values."""
+    """Format, names of the columns and notes, and the columns' values (read in the child)."""
     path = Path(file)
     blocks = _blocks(path)
     functions = [one for one in blocks if one.type == 58]
