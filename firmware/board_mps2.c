@@ -2,10 +2,9 @@
  * in integers in place of amplifier and ADC, which no emulator has. It was never on a board.
  *
  * For a board of your own replace this file: UART, clock, watchdog, the carrier with its enable line,
- * and what the ADC shows of the pickup. SF_GAINS are the loops' settings (control.gains.loop_gains).
+ * and what the ADC shows of the pickup.
  */
 #include "squeezefilm_fw.h"
-#include "squeezefilm_loops.h"
 
 #define REGISTER(address) (*(volatile uint32_t *)(address))
 #define UART 0x40004000u
@@ -25,16 +24,18 @@
 #define TICK 200u      /* us */
 #define PATIENCE 500u  /* ms; a computer that emulates is held up longer than a board is */
 #define OUT_SIZE 4096u
-#define PLATE_LOSS 0x18000 /* a finger of half the plate's own loss on it, 2^16 */
-#define PLATE_SHIFT 20000  /* its resonance is below the one told, mHz */
+/* A plate of Q 300 at 29.98 kHz and 2 mV/V: pickup over drive and a tick over its time constant (2^24),
+ * mHz, and a loss with a finger of half its own on it (2^16). */
+#define PLATE_RATIO 33554
+#define PLATE_TAKE 1021710
+#define PLATE_HALF_BANDWIDTH 50000
+#define PLATE_FREQUENCY 29980000
+#define PLATE_LOSS 0x18000
 
 static sf_machine machine;
 static uint8_t out[OUT_SIZE];
 static uint32_t out_first, out_count;
-static const sf_loop_gains gains = SF_GAINS;
-static sf_loop_state loops;
 static int64_t re, im; /* of the plate, uV/16 */
-static sf_loop_command held;
 
 /* --- hardware ----------------------------------------------------------------------------- */
 
@@ -96,31 +97,28 @@ static void serve_uart(uint32_t now)
 
 /* --- plate -------------------------------------------------------------------------------- */
 
-/* A step of Euler; `take` is the step over the plate's time constant, 2^24. */
+/* A step of Euler. */
 static void move_plate(int64_t level, int64_t frequency)
 {
-    int64_t off = (frequency - gains.reference + PLATE_SHIFT) * 65536 / gains.half_bandwidth;
-    int64_t driven = gains.ratio * level / (1 << 20);
+    int64_t off = (frequency - PLATE_FREQUENCY) * 65536 / PLATE_HALF_BANDWIDTH;
+    int64_t driven = PLATE_RATIO * level / (1 << 20);
     int64_t x = driven - PLATE_LOSS * re / 65536 + off * im / 65536;
     int64_t y = -PLATE_LOSS * im / 65536 - off * re / 65536;
-    re += gains.take * x / (1 << 24);
-    im += gains.take * y / (1 << 24);
+    re += PLATE_TAKE * x / (1 << 24);
+    im += PLATE_TAKE * y / (1 << 24);
 }
 
-/* The loops take the machine's level as what the free plate would need; what they ask for stays within
- * the machine's limits of voltage and slew, and without the machine's level there is none. */
 static void carrier(void *board, int enabled, uint32_t level, uint32_t frequency)
 {
-    static int64_t applied;
-    int64_t most = applied + (int64_t)machine.limits.slew * TICK;
     (void)board;
-    (void)frequency;
-    if (most > machine.limits.voltage)
-        most = machine.limits.voltage;
-    applied = !enabled || level == 0 ? 0 : held.level < most ? held.level : most;
-    move_plate(applied, held.frequency);
-    if (level || loops.mode == SF_LOCKED)
-        held = sf_loop_step(&gains, &loops, (int32_t)(re / 16), (int32_t)(im / 16), level, applied);
+    move_plate(enabled ? level : 0, frequency);
+}
+
+static void phases(void *board, int32_t *in_phase, int32_t *ahead)
+{
+    (void)board;
+    *in_phase = (int32_t)(re / 16);
+    *ahead = (int32_t)(im / 16);
 }
 
 static uint32_t pickup(void *board)
@@ -145,12 +143,11 @@ static void main_loop(void)
 {
     static const sf_limits own = {
         200000000, 1000000000, 200000000, 4000000000, 1000, 1000000000, 1000, 3600000};
-    const sf_board board = {NULL, carrier, send, sensor, pickup, TICK};
+    static sf_loops loops = {&sf_held, phases, NULL, {0}, {0}, {0}, 0};
+    const sf_board board = {NULL, carrier, send, sensor, pickup, TICK, &loops};
     uint32_t now, ticked;
     begin_hardware();
     sf_boot(&machine, &own, 51, &board);
-    sf_loop_begin(&loops, &gains);
-    held.frequency = gains.highest_frequency;
     ticked = now = microseconds();
     for (;;) {
         sleep();

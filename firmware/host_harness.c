@@ -17,6 +17,8 @@ static uint32_t carrier_level, carrier_frequency;
 static int carrier_enabled;
 static sf_finger finger;
 static uint32_t pickup_level;
+static int32_t in_phase, ahead, warmth;
+static sf_loops loops;
 
 static void put(const void *bytes, size_t count)
 {
@@ -59,10 +61,24 @@ static uint32_t pickup(void *board)
     return pickup_level;
 }
 
+static void phases(void *board, int32_t *p, int32_t *q)
+{
+    (void)board;
+    *p = in_phase;
+    *q = ahead;
+}
+
+static int32_t temperature(void *board)
+{
+    (void)board;
+    return warmth;
+}
+
 static void boot(void)
 {
+    static const sf_loops none = {&sf_held, phases, temperature, {0}, {0}, {0}, 0};
     sf_limits own = {number(), 0, 0, 0, 0, 0, 0, 0};
-    sf_board board = {NULL, carrier, send, NULL, NULL, 0};
+    sf_board board = {NULL, carrier, send, NULL, NULL, 0, NULL};
     uint32_t seed;
     own.slew = number();
     own.continuous_voltage = number();
@@ -75,7 +91,9 @@ static void boot(void)
     if (number()) {
         board.sensor = sensor;
         board.pickup = pickup;
+        board.loops = &loops;
     }
+    loops = none;
     board.tick_period = number();
     sf_boot(&machine, &own, seed, &board);
 }
@@ -86,6 +104,9 @@ static void feed(void)
     finger.y = (int32_t)number();
     finger.touching = (int)number();
     pickup_level = number();
+    in_phase = (int32_t)number();
+    ahead = (int32_t)number();
+    warmth = (int32_t)number();
 }
 
 static void snapshot(void)
@@ -94,9 +115,12 @@ static void snapshot(void)
         machine.state, machine.fault, machine.level, machine.frequency, machine.heat,
         machine.used, machine.token, machine.session, machine.accepted, machine.refused,
         machine.damaged, machine.late_ticks, machine.playing, machine.queue_count, machine.dry,
-        machine.late, carrier_enabled, carrier_level, carrier_frequency,
+        machine.late, carrier_enabled, carrier_level, carrier_frequency, machine.revision,
+        machine.has_gains, machine.holding, loops.wanted,
     };
     put(values, sizeof values);
+    put(&loops.state, sizeof loops.state);
+    put(&loops.command, sizeof loops.command);
 }
 
 /* Puts the count of what was sent since `from` in the room that was left for it. */

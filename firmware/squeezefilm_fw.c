@@ -21,22 +21,23 @@
 
 enum {
     HELLO = 0x01, STOP, SET_LIMITS, ARM, START, SET_FREQUENCY, ENVELOPE, TILE_BEGIN, TILE_DATA,
-    POSITION, KEEP_ALIVE, CLEAR_FAULT, REPORT, FOLLOW, ASK_INFO, TIMED_ENVELOPE,
-    STATUS = 0x81, READING, INFO
+    POSITION, KEEP_ALIVE, CLEAR_FAULT, REPORT, FOLLOW, ASK_INFO, TIMED_ENVELOPE, NEGOTIATE, SET_LOOPS,
+    SWITCH_LOOPS, ASK_LOOPS,
+    STATUS = 0x81, READING, INFO, CAPABILITIES, LOOPS
 };
 
 /* --- bytes ------------------------------------------------------------------------------- */
 
 static uint16_t get16(const uint8_t *p) { return (uint16_t)(p[0] | (uint16_t)(p[1] << 8)); }
 
-static uint32_t get32(const uint8_t *p)
+uint32_t sf_get32(const uint8_t *p)
 {
     return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
 }
 
 static int32_t get_signed(const uint8_t *p)
 {
-    uint32_t bits = get32(p);
+    uint32_t bits = sf_get32(p);
     int32_t value;
     memcpy(&value, &bits, sizeof value);
     return value;
@@ -48,7 +49,7 @@ static void put16(uint8_t *p, uint32_t value)
     p[1] = (uint8_t)(value >> 8);
 }
 
-static void put32(uint8_t *p, uint32_t value)
+void sf_put32(uint8_t *p, uint32_t value)
 {
     put16(p, value);
     put16(p + 2, value >> 16);
@@ -229,7 +230,7 @@ static void count_loads(sf_machine *m, uint32_t elapsed)
     m->used = moved(m->used, (m->level > 0 ? 1000 : 0) - (int64_t)m->limits.duty, elapsed);
 }
 
-static void move(sf_machine *m, uint32_t elapsed, const sf_finger *finger)
+static void move(sf_machine *m, uint32_t elapsed, const sf_finger *finger, int ticked)
 {
     int64_t falling = elapsed, target = 0, level = m->level, step;
     count_loads(m, elapsed); /* the output was held since the last tick: count that, then move */
@@ -250,8 +251,10 @@ static void move(sf_machine *m, uint32_t elapsed, const sf_finger *finger)
                 fail(m, SF_DUTY);
         }
     }
-    if (m->state == SF_PLAYING)
-        target = wanted(m, finger);
+    if (m->state == SF_PLAYING) {
+        uint32_t asked = wanted(m, finger);
+        target = m->holding ? m->board.loops->code->level(m, asked, ticked) : asked;
+    }
     if (target > level) {
         step = (int64_t)m->limits.slew * (elapsed < LONGEST_RISE ? elapsed : LONGEST_RISE);
         level = target < level + step ? target : level + step;
@@ -272,7 +275,7 @@ static void send(sf_machine *m, uint8_t type, uint8_t *frame, size_t payload)
     frame[0] = SF_VERSION;
     frame[1] = type;
     put16(frame + 2, ++m->sent);
-    put32(frame + count, sf_crc32(frame, count));
+    sf_put32(frame + count, sf_crc32(frame, count));
     count = sf_cobs_encode(frame, count + 4, out);
     out[count++] = 0;
     if (m->board.send)
@@ -283,18 +286,18 @@ static void send_reading(sf_machine *m, const sf_finger *finger)
 {
     uint8_t frame[HEADER + 28 + 4];
     uint32_t pickup = m->board.pickup ? m->board.pickup(m->board.board) : 0;
-    put32(frame + 4, m->now);
-    put32(frame + 8, (uint32_t)finger->x);
-    put32(frame + 12, (uint32_t)finger->y);
+    sf_put32(frame + 4, m->now);
+    sf_put32(frame + 8, (uint32_t)finger->x);
+    sf_put32(frame + 12, (uint32_t)finger->y);
     frame[16] = finger->touching ? 1 : 0;
     frame[17] = (uint8_t)m->state;
     frame[18] = (uint8_t)m->fault;
     frame[19] = (uint8_t)((m->board.sensor ? 1 : 0) | (m->board.pickup ? 2 : 0) |
                           (m->dry ? 4 : 0) | (m->late ? 8 : 0));
     m->dry = m->late = 0;
-    put32(frame + 20, m->level);
-    put32(frame + 24, pickup);
-    put32(frame + 28, m->late_ticks);
+    sf_put32(frame + 20, m->level);
+    sf_put32(frame + 24, pickup);
+    sf_put32(frame + 28, m->late_ticks);
     send(m, READING, frame, 28);
 }
 
@@ -310,7 +313,8 @@ static int take_report(sf_machine *m)
 
 /* --- time -------------------------------------------------------------------------------- */
 
-static void advance(sf_machine *m, uint32_t now)
+/* `ticked`: by the timer, and not by a frame; the loops step with ticks alone. */
+static void advance(sf_machine *m, uint32_t now, int ticked)
 {
     uint32_t elapsed = now - m->now;
     sf_finger finger = {0, 0, 0};
@@ -319,8 +323,8 @@ static void advance(sf_machine *m, uint32_t now)
     due = take_report(m);
     if (m->board.sensor && (due || m->playing == SF_PLAY_FINGER))
         finger = m->board.sensor(m->board.board);
-    if (elapsed != 0 && m->has_limits)
-        move(m, elapsed, &finger);
+    if (m->has_limits && (elapsed != 0 || (ticked && m->holding)))
+        move(m, elapsed, &finger, ticked);
     if (m->board.carrier)
         m->board.carrier(m->board.board,
                          m->state == SF_ARMED || m->state == SF_PLAYING || m->level > 0,
@@ -331,10 +335,13 @@ static void advance(sf_machine *m, uint32_t now)
 
 uint32_t sf_tick(sf_machine *m, uint32_t now)
 {
-    if (m->state == SF_PLAYING && now - m->ticked > m->board.tick_period + m->board.tick_period / 2)
+    if (m->state == SF_PLAYING && now - m->ticked > m->board.tick_period + m->board.tick_period / 2) {
         m->late_ticks++;
+        if (m->holding)
+            m->board.loops->code->begin(m, SF_SKIP);
+    }
     m->ticked = now;
-    advance(m, now);
+    advance(m, now, 1);
     return m->level;
 }
 
@@ -345,16 +352,16 @@ void sf_trip(sf_machine *m) { fail(m, SF_TRIPPED); }
 static int set_limits(sf_machine *m, const uint8_t *p)
 {
     const sf_limits *own = &m->own;
-    int64_t voltage = sf_level(get32(p)), continuous = sf_level(get32(p + 8));
+    int64_t voltage = sf_level(sf_get32(p)), continuous = sf_level(sf_get32(p + 8));
     sf_limits asked;
     if (m->state != SF_OFF || m->level > 0)
         return SF_BAD_STATE;
-    asked.slew = get32(p + 4);
-    asked.heat = get32(p + 12);
-    asked.lowest_frequency = get32(p + 16);
-    asked.highest_frequency = get32(p + 20);
+    asked.slew = sf_get32(p + 4);
+    asked.heat = sf_get32(p + 12);
+    asked.lowest_frequency = sf_get32(p + 16);
+    asked.highest_frequency = sf_get32(p + 20);
     asked.duty = get16(p + 24);
-    asked.duty_window = get32(p + 26);
+    asked.duty_window = sf_get32(p + 26);
     if (voltage <= 0 || voltage > own->voltage || continuous < 0 || continuous > voltage ||
         continuous > own->continuous_voltage || asked.slew > own->slew ||
         (int64_t)asked.slew * RAMP < voltage || asked.heat > own->heat ||
@@ -369,6 +376,7 @@ static int set_limits(sf_machine *m, const uint8_t *p)
     m->limits = asked;
     m->has_limits = 1;
     m->tile_size = m->tile_filled = 0;
+    m->has_gains = m->holding = 0;
     return SF_ACCEPTED;
 }
 
@@ -391,8 +399,11 @@ static int tune(sf_machine *m, uint32_t frequency, int state)
         return SF_BAD_STATE;
     if (frequency < m->limits.lowest_frequency || frequency > m->limits.highest_frequency)
         return SF_BAD_VALUE;
-    if (m->state == SF_ARMED)
+    if (m->state == SF_ARMED) {
         m->ticked = m->now;
+        if (m->holding)
+            m->board.loops->code->begin(m, SF_RESUME);
+    }
     m->frequency = frequency;
     m->state = SF_PLAYING;
     return SF_ACCEPTED;
@@ -403,7 +414,7 @@ static int take_levels(const sf_machine *m, const uint8_t *p, uint32_t count, ui
 {
     uint32_t levels[SF_MOST_LEVELS];
     for (uint32_t i = 0; i < count; i++) {
-        int32_t level = sf_level(get32(p + 4 * i));
+        int32_t level = sf_level(sf_get32(p + 4 * i));
         if (level < 0 || (uint32_t)level > m->limits.voltage)
             return 0;
         levels[i] = (uint32_t)level;
@@ -431,7 +442,7 @@ static int play(sf_machine *m, const uint8_t *p)
  * played is left out: nothing is played twice, or backwards. */
 static int play_timed(sf_machine *m, const uint8_t *p)
 {
-    uint32_t start = get32(p), period = get16(p + 4), count = p[6], kept = 0, skip = 0, time;
+    uint32_t start = sf_get32(p), period = get16(p + 4), count = p[6], kept = 0, skip = 0, time;
     uint32_t levels[SF_MOST_LEVELS];
     int timed = m->playing == SF_PLAY_TIMED;
     int64_t ahead = until(start, m->now);
@@ -466,7 +477,7 @@ static int play_timed(sf_machine *m, const uint8_t *p)
 
 static int begin_tile(sf_machine *m, const uint8_t *p)
 {
-    uint32_t pitch = get32(p + 4), size = get16(p + 8);
+    uint32_t pitch = sf_get32(p + 4), size = get16(p + 8);
     if (m->state == SF_FAULT)
         return SF_BAD_STATE;
     if (pitch == 0 || size < 1 || size > SF_LONGEST_TILE)
@@ -536,9 +547,18 @@ static int clear_fault(sf_machine *m, int fault)
     return SF_ACCEPTED;
 }
 
+static int negotiate(sf_machine *m, uint32_t revision)
+{
+    if (revision == 0)
+        return SF_BAD_VALUE;
+    m->revision = revision < SF_REVISION ? revision : SF_REVISION;
+    return SF_ACCEPTED;
+}
+
 static int length_fits(uint8_t type, const uint8_t *p, size_t count)
 {
-    static const uint8_t lengths[] = {0, 4, 0, 31, 4, 4, 4, 0, 10, 0, 4, 0, 1, 4, 0, 0, 0};
+    static const uint8_t lengths[] = {0, 4, 0, 31, 4, 4, 4, 0, 10, 0, 4,
+                                      0, 1, 4, 0, 0, 0, 2, 4 * SF_GAINS, 1, 0};
     if (type == TIMED_ENVELOPE) {
         p += 4;
         count = count < 4 ? 0 : count - 4;
@@ -553,23 +573,29 @@ static int obey(sf_machine *m, uint8_t type, const uint8_t *p)
     switch (type) {
     case KEEP_ALIVE: return SF_ACCEPTED;
     case ASK_INFO: return SF_ACCEPTED;
-    case REPORT: return report(m, get32(p));
+    case REPORT: return report(m, sf_get32(p));
     case CLEAR_FAULT: return clear_fault(m, p[0]);
     case SET_LIMITS: return set_limits(m, p);
+    case NEGOTIATE: return negotiate(m, get16(p));
+    case ASK_LOOPS: return m->has_gains ? SF_ACCEPTED : SF_NO_LOOPS;
     default: break;
     }
     if (!m->has_limits)
         return SF_NO_LIMITS;
     switch (type) {
-    case ARM: return arm(m, get32(p));
-    case START: return tune(m, get32(p), SF_ARMED);
-    case SET_FREQUENCY: return tune(m, get32(p), SF_PLAYING);
+    case ARM: return arm(m, sf_get32(p));
+    case START: return tune(m, sf_get32(p), SF_ARMED);
+    case SET_FREQUENCY: return tune(m, sf_get32(p), SF_PLAYING);
     case ENVELOPE: return play(m, p);
     case TILE_BEGIN: return begin_tile(m, p);
     case TILE_DATA: return fill_tile(m, p);
     case POSITION: return go_to(m, get_signed(p));
     case FOLLOW: return follow(m);
     case TIMED_ENVELOPE: return play_timed(m, p);
+    case SET_LOOPS:
+    case SWITCH_LOOPS:
+        return m->board.loops ? m->board.loops->code->take(m, type == SET_LOOPS, p)
+                              : SF_NO_LOOPS;
     default: return SF_BAD_TYPE;
     }
 }
@@ -582,7 +608,7 @@ static int take(sf_machine *m, const uint8_t *frame, size_t payload)
     int fresh = m->opened && ahead >= 1 && ahead < 0x8000;
     if (frame[0] != SF_VERSION)
         return SF_BAD_VERSION;
-    if (type < HELLO || type > TIMED_ENVELOPE)
+    if (type < HELLO || type > ASK_LOOPS || (type > NEGOTIATE && m->revision < 2))
         return SF_BAD_TYPE;
     if (!length_fits(type, p, payload))
         return SF_BAD_LENGTH;
@@ -591,8 +617,10 @@ static int take(sf_machine *m, const uint8_t *frame, size_t payload)
             return SF_BAD_STATE;
         m->opened = 1;
         m->last = sequence;
-        m->session = get32(p);
+        m->session = sf_get32(p);
         m->report_period = 0;
+        m->revision = 1;
+        m->has_gains = m->holding = 0;
         return SF_ACCEPTED;
     }
     if (fresh)
@@ -615,13 +643,13 @@ static void answer(sf_machine *m, uint16_t sequence, int reason)
     frame[7] = (uint8_t)m->state;
     frame[8] = (uint8_t)m->fault;
     frame[9] = 0;
-    put32(frame + 10, m->token);
-    put32(frame + 14, m->level);
-    put32(frame + 18, m->accepted);
-    put32(frame + 22, m->refused);
-    put32(frame + 26, m->damaged);
-    put32(frame + 30, m->session);
-    put32(frame + 34, m->now);
+    sf_put32(frame + 10, m->token);
+    sf_put32(frame + 14, m->level);
+    sf_put32(frame + 18, m->accepted);
+    sf_put32(frame + 22, m->refused);
+    sf_put32(frame + 26, m->damaged);
+    sf_put32(frame + 30, m->session);
+    sf_put32(frame + 34, m->now);
     send(m, STATUS, frame, 34);
 }
 
@@ -629,20 +657,36 @@ static void send_info(sf_machine *m)
 {
     uint8_t frame[HEADER + 44 + 4];
     const sf_limits *own = &m->own;
-    put32(frame + 4, own->voltage);
-    put32(frame + 8, own->slew);
-    put32(frame + 12, own->continuous_voltage);
-    put32(frame + 16, own->heat);
-    put32(frame + 20, own->lowest_frequency);
-    put32(frame + 24, own->highest_frequency);
-    put32(frame + 28, own->duty);
-    put32(frame + 32, own->duty_window);
-    put32(frame + 36, m->board.tick_period);
+    sf_put32(frame + 4, own->voltage);
+    sf_put32(frame + 8, own->slew);
+    sf_put32(frame + 12, own->continuous_voltage);
+    sf_put32(frame + 16, own->heat);
+    sf_put32(frame + 20, own->lowest_frequency);
+    sf_put32(frame + 24, own->highest_frequency);
+    sf_put32(frame + 28, own->duty);
+    sf_put32(frame + 32, own->duty_window);
+    sf_put32(frame + 36, m->board.tick_period);
     frame[40] = m->board.sensor ? 1 : 0;
     frame[41] = m->board.pickup ? 1 : 0;
     put16(frame + 42, SF_LONGEST_TILE);
-    put32(frame + 44, SF_FIRMWARE_VERSION);
+    sf_put32(frame + 44, SF_FIRMWARE_VERSION);
     send(m, INFO, frame, 44);
+}
+
+/* What follows the status of a question that has an answer of its own. */
+static void send_more(sf_machine *m, uint8_t asked)
+{
+    uint8_t frame[HEADER + 36 + 4];
+    if (asked == ASK_INFO) {
+        send_info(m);
+    } else if (asked == NEGOTIATE) {
+        put16(frame + 4, m->revision);
+        frame[6] = m->board.loops ? 1 : 0;
+        send(m, CAPABILITIES, frame, 3);
+    } else if (asked == ASK_LOOPS) {
+        m->board.loops->code->report(m, frame + HEADER);
+        send(m, LOOPS, frame, 36);
+    }
 }
 
 static void keep(sf_machine *m, uint8_t byte)
@@ -686,7 +730,7 @@ void sf_receive(sf_machine *m, uint8_t byte, uint32_t now)
     m->crc = CRC_START;
     if (!whole)
         m->damaged++;
-    advance(m, now);
+    advance(m, now, 0);
     if (!whole)
         return;
     reason = take(m, m->frame, count - OVERHEAD);
@@ -697,8 +741,8 @@ void sf_receive(sf_machine *m, uint8_t byte, uint32_t now)
         m->refused++;
     }
     answer(m, get16(m->frame + 2), reason);
-    if (reason == SF_ACCEPTED && m->frame[1] == ASK_INFO)
-        send_info(m);
+    if (reason == SF_ACCEPTED)
+        send_more(m, m->frame[1]);
 }
 
 void sf_boot(sf_machine *m, const sf_limits *own, uint32_t seed, const sf_board *board)
@@ -706,7 +750,7 @@ void sf_boot(sf_machine *m, const sf_limits *own, uint32_t seed, const sf_board 
     memset(m, 0, sizeof *m);
     m->own = *own;
     m->token = seed ? seed : 0x9E3779B9u;
-    m->period = 1;
+    m->period = m->revision = 1;
     m->tile_pitch = 1;
     m->crc = CRC_START;
     m->board = *board;

@@ -6,6 +6,8 @@
 #define MOST_PICKUP ((int64_t)1 << 24)
 #define MOST (MOST_PICKUP * 16)
 #define FINE 8
+#define WHOLE (1 << 24)
+#define ANY 0x7FFFFFFF
 #define LARGEST_LOAD (64 * ONE)
 #define LEAST_LOAD (-(ONE / 2))
 
@@ -183,6 +185,26 @@ static int64_t hold(
             s->lost++;
     }
     return level;
+}
+
+int sf_loop_allowed(
+    const sf_loop_gains *g, int64_t lowest_frequency, int64_t highest_frequency, int64_t highest_level)
+{
+    static const struct { int32_t lowest, highest; } bounds[] = {
+        {0, WHOLE}, {1, WHOLE}, {1 << 16, ANY}, {1, 1 << 26}, {1, ANY}, {-ANY - 1, ANY},
+        {1, WHOLE}, {0, WHOLE}, {0, WHOLE}, {0, WHOLE},
+        {1, ANY}, {1, ANY}, {1, ANY},
+        {-ANY - 1, ANY}, {1, ANY}, {-ANY - 1, ANY},
+        {0, 0}, {1, ANY}, {1, ANY}, {1, WHOLE}, {0, WHOLE}, {0, 1 << 22}, {4, 1 << 20},
+    };
+    const int64_t *number = (const int64_t *)(const void *)g; /* as many, all alike */
+    for (int i = 0; i < SF_GAINS; i++)
+        if (number[i] < bounds[i].lowest || number[i] > bounds[i].highest)
+            return 0;
+    return g->keep + g->take == WHOLE && lowest_frequency <= g->lowest_frequency &&
+           g->lowest_frequency <= g->reference && g->reference <= g->highest_frequency &&
+           g->highest_frequency <= highest_frequency && g->search_level <= g->highest_level &&
+           g->highest_level <= highest_level;
 }
 
 void sf_loop_begin(sf_loop_state *s, const sf_loop_gains *g)

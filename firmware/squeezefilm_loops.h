@@ -13,6 +13,9 @@
 enum { SF_SEARCHING, SF_PROBING, SF_LOCKED, SF_NOT_FOUND, SF_WRONG_SIGN };
 enum { SF_LEVEL_HELD = 1, SF_FREQUENCY_HELD = 2 };
 
+/* How many gains there are; each fits 32 bits. */
+#define SF_GAINS 23
+
 typedef struct {
     int64_t keep, take, turnover, ratio, inverse, correction;
     int64_t half_bandwidth, track_share, rate_share, load_share;
@@ -30,6 +33,10 @@ typedef struct {
     int64_t level, frequency, flags;
 } sf_loop_command;
 
+/* Whether no step with these gains can overflow, turns the phase, or leaves these frequencies (mHz)
+ * and this level (uV). */
+int sf_loop_allowed(
+    const sf_loop_gains *g, int64_t lowest_frequency, int64_t highest_frequency, int64_t highest_level);
 /* A search that begins, at the highest frequency. */
 void sf_loop_begin(sf_loop_state *s, const sf_loop_gains *g);
 /* `p` and `q` are the pickup in phase with the drive and 90 degrees ahead, `wanted` and `applied` the

@@ -29,9 +29,9 @@ from squeezefilm.instruments.device.wire.streams import open_stream
 RATIO = 2e-3
 GAINS = loop_gains(
     IdentifiedPlate(30e3, 300.0, RATIO),
-    LoopAims(29.2e3, 30.2e3, 100.0, 0.5, interval=2e-4, tracking_bandwidth=300.0, floor=1e-4),
+    LoopAims(29.2e3, 30.2e3, 2.0, 0.5, interval=2e-4, tracking_bandwidth=300.0, floor=1e-4),
 )
-PARTS = ("squeezefilm_fw.c", "squeezefilm_loops.c", "board_mps2.c")
+PARTS = ("squeezefilm_fw.c", "squeezefilm_held.c", "squeezefilm_loops.c", "board_mps2.c")
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,6 @@ def image(tmp_path_factory: pytest.TempPathFactory) -> Path:
         "--specs=nano.specs",
         "-nostartfiles",
         f"-Wl,--gc-sections,-T,{SOURCES / 'mps2.ld'},-e,reset",
-        "-DSF_GAINS={" + ",".join(map(str, GAINS)) + "}",
     )
     sources = tuple(SOURCES / name for name in PARTS)
     built = tmp_path_factory.mktemp("board") / "board.elf"
@@ -132,6 +131,8 @@ def played(image: Path) -> list[int]:
         talk.ask(m.Stop(), 2.0)
         talk.ask(m.Hello(1))
         assert accepted(talk, m.limits_message(Limits(2.0, 2000.0, 2.0, 10.0, 29e3, 31e3)))
+        for message in (m.Negotiate(2), m.SetLoops(GAINS), m.SwitchLoops(1)):
+            assert accepted(talk, message)
         status = talk.ask(m.KeepAlive())
         assert status is not None
         assert accepted(talk, m.Arm(status.token))

@@ -7,6 +7,7 @@ import struct
 from dataclasses import dataclass, field
 
 from squeezefilm.core.drive_limits import Limits
+from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Frame
@@ -22,6 +23,11 @@ LIMITS = Limits(
     duty_window=0.1,
     insulation="0.5 mm glass",
 )
+GAINS = loop_gains(
+    IdentifiedPlate(30e3, 100.0, 0.01, 1.0, 1e-5),
+    LoopAims(29.5e3, 30.5e3, 60.0, 20.0, interval=5e-4, tracking_bandwidth=150.0, noise=1e-3),
+)
+"""For a pickup that shows 0.2 V in a search."""
 ODD_VOLTS = (float("nan"), float("inf"), -1.0, -0.0, 60.000004, 1e30, 5e-324, 0.0, 60.0)
 
 
@@ -65,6 +71,12 @@ class Adversary:
         if machine.state == 0:
             if machine.limits is None:
                 return self.random.choice((m.Hello(7), m.limits_message(LIMITS)))
+            if machine.loops.revision < 2 or machine.loops.gains is None:
+                dice = self.random.random()
+                if dice < 0.7:
+                    return m.Negotiate(2) if machine.loops.revision < 2 else m.SetLoops(GAINS)
+            elif not machine.loops.on and self.random.random() < 0.7:
+                return m.SwitchLoops(1)
             return m.Arm(machine.token) if self.random.random() < 0.8 else m.Hello(8)
         if machine.state == 1:
             return m.Start(self.random.choice((20_000_000, 60_000_000, 60_000_001)))
@@ -102,6 +114,15 @@ class Adversary:
         if kind is m.TimedEnvelope:
             payload = bytearray(self._timed(machine).payload())
             if pick.random() < 0.4:
+                payload[pick.randrange(len(payload))] = pick.randrange(256)
+            return bytes(payload)
+        if kind is m.Negotiate:
+            return m.Negotiate(pick.choice((0, 1, 2, 2, 2, 2, 2, 65535))).payload()
+        if kind is m.SwitchLoops:
+            return m.SwitchLoops(pick.choice((0, 1, 1, 1, 2))).payload()
+        if kind is m.SetLoops:
+            payload = bytearray(m.SetLoops(GAINS).payload())
+            for _ in range(pick.choice((0, 1, 1, 2, 4))):
                 payload[pick.randrange(len(payload))] = pick.randrange(256)
             return bytes(payload)
         if kind is m.Report:

@@ -160,7 +160,7 @@ class ArmMachine:
         self._core, self._out, self._top = arm.powered(4096, self._most)
         self._unread = bytearray()
         self._called(b"B" + struct.pack("<11I", *own, 51, 1, tick_period))
-        self._called(b"F" + struct.pack("<iiII", 1000, 0, 1, 5))
+        self._called(b"F" + struct.pack("<iiIIiii", 1000, 0, 1, 5, 0, 0, 0))
 
     def receive(self, data: bytes, now: int) -> bytes:
         """The answers to bytes that arrived at `now` (µs)."""

@@ -14,7 +14,8 @@ import pytest
 from .recording import Recording
 
 SOURCES = Path(__file__).parents[2] / "firmware"
-FIRMWARE = (SOURCES / "squeezefilm_fw.c", SOURCES / "host_harness.c")
+LOOPS_IN_TICK = (SOURCES / "squeezefilm_held.c", SOURCES / "squeezefilm_loops.c")
+FIRMWARE = (SOURCES / "squeezefilm_fw.c", SOURCES / "host_harness.c", *LOOPS_IN_TICK)
 LOOPS = (SOURCES / "squeezefilm_loops.c", SOURCES / "loops_main.c")
 STRICT = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Werror")
 

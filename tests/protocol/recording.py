@@ -6,20 +6,25 @@ sanitizers, or built for Arm in an emulator.
 
 from __future__ import annotations
 
+import cmath
 import functools
+import math
 import random
 import struct
 from collections import Counter
-from dataclasses import astuple
+from dataclasses import astuple, replace
 
-from squeezefilm.instruments.device.machine.device import TICK_PERIOD, Machine
+from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
+from squeezefilm.instruments.device.machine.device import TICK_PERIOD, Machine, next_token
+from squeezefilm.instruments.device.machine.held import HeldPlate
 from squeezefilm.instruments.device.machine.limits import DeviceLimits
 from squeezefilm.instruments.device.machine.playing import Mode
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Deframer
+from squeezefilm.instruments.device.wire.states import State
 
-from .adversary import LIMITS, Adversary
-from .test_frames import FINGER, check_the_session
+from .adversary import GAINS, LIMITS, Adversary
+from .test_frames import FINGER, PHASES, TEMPERATURE, check_the_session
 
 MODES = list(Mode)
 WIDE = DeviceLimits(voltage=100_000_000, highest_frequency=100_000_000)
@@ -29,7 +34,8 @@ class Finger:
     """A sensor and a pickup that both sides read."""
 
     def __init__(self) -> None:
-        self.x = self.y = self.pickup = 0
+        self.x = self.y = self.pickup = self.temperature = 0
+        self.phases = (0, 0)
         self.touching = False
 
     def sensor(self) -> tuple[int, int, bool]:
@@ -54,6 +60,8 @@ class Recording:
         self.twin = Machine(
             seed, own, finger and finger.sensor, finger and finger.read_pickup, period
         )
+        if finger is not None:
+            self.twin.loops = HeldPlate(lambda: finger.phases, lambda: finger.temperature)
         self.finger = finger
         self.script = bytearray(struct.pack("<B11I", ord("B"), *astuple(own), seed, has, period))
         self.record = bytearray()
@@ -90,19 +98,21 @@ class Recording:
     def look(self) -> None:
         """Compare the whole state here, and not only what it says."""
         self.script += b"S"
-        twin, playing = self.twin, self.twin.playing
+        twin, playing, loops = self.twin, self.twin.playing, self.twin.loops
         values = [
             twin.state, twin.fault, twin.level, twin.frequency, twin.loads.heat, twin.loads.used,
             twin.token, twin.session, twin.accepted, twin.refused, twin.damaged, twin.late_ticks,
             MODES.index(playing.mode), len(playing._queue), int(playing.dry), int(playing.late),
-            int(twin.enabled), twin.level, twin.frequency,
+            int(twin.enabled), twin.level, twin.frequency, loops.revision, loops.gains is not None,
+            loops.on, loops.wanted, *loops.state, *loops.command,
         ]  # fmt: skip
-        self.record += struct.pack("<19q", *values)
+        self.record += struct.pack("<38q", *values)
 
     def _feed(self) -> None:
         if self.finger is not None:
             x, y, touching = self.finger.sensor()
-            fed = struct.pack("<BiiII", ord("F"), x, y, touching, self.finger.pickup)
+            shown = (self.finger.pickup, *self.finger.phases, self.finger.temperature)
+            fed = struct.pack("<BiiIIiii", ord("F"), x, y, touching, *shown)
             self.script += fed
 
 
@@ -111,6 +121,7 @@ def page_session() -> Recording:
     """The session at the end of the protocol's page, whose answers are checked here as well."""
     finger = Finger()
     finger.x, finger.y, finger.touching, finger.pickup = FINGER
+    finger.phases, finger.temperature = PHASES, TEMPERATURE
     recording = Recording(1, finger=finger)
     check_the_session(recording)
     recording.look()
@@ -130,6 +141,7 @@ def adversarial(seed: int, steps: int) -> Recording:
             finger.x = pick.choice((0, -1000, 333, 777, 2**31 - 1, -(2**31), pick.randrange(9999)))
             finger.y, finger.touching = pick.randrange(-5000, 5000), pick.random() < 0.8
             finger.pickup = pick.randrange(2**32)
+            finger.phases, finger.temperature = plate(pick, twin), pick.randrange(-(2**31), 2**31)
         data = host.step(twin)
         cut = pick.randrange(len(data) + 1)
         for part in (data[:cut], data[cut:]):
@@ -145,10 +157,22 @@ def adversarial(seed: int, steps: int) -> Recording:
         recording.look()
         seen[twin.state] += 1
         seen[twin.playing.mode] += 1
+        if twin.loops.on and twin.state is State.PLAYING:
+            seen["loops", twin.loops.state.mode] += 1
         seen["dry"] += twin.playing.dry
         seen["late"] += twin.playing.late
         seen["late ticks"] += twin.late_ticks
     return recording
+
+
+def plate(pick: random.Random, twin: Machine) -> tuple[int, int]:
+    """A pickup that shows the drive at resonance, most of the time, or whatever it can."""
+    if pick.random() < 0.03:
+        return pick.choice((0, 2**31 - 1, -(2**31))), pick.choice((0, 2**31 - 1, -(2**31)))
+    gains = twin.loops.gains or GAINS
+    angle = 2 * math.pi * (gains.turn / 2**32 + pick.gauss(0, 0.01))
+    shown = twin.level * gains.ratio / 2**24 * pick.uniform(0.8, 1.0)
+    return round(shown * math.cos(angle)), round(shown * math.sin(angle))
 
 
 @functools.cache
@@ -227,6 +251,41 @@ def tile_sweep() -> Recording:
 
 
 @functools.cache
+def held_plate() -> Recording:
+    """Loops that find a plate, hold it under a finger, rest, and lose it: it breaks off, and a
+    search that ended is begun anew by the host."""
+    plate = IdentifiedPlate(30e3, 150.0, 0.01, 1.0)
+    gains = loop_gains(plate, LoopAims(29.7e3, 30.2e3, 60.0, 20.0))
+    limits = replace(LIMITS, continuous_voltage=60.0, duty=1.0)
+    finger = Finger()
+    recording, now = Recording(1, WIDE, finger), 0
+    opening = [m.Hello(1), m.limits_message(limits), m.Negotiate(2), m.SetLoops(gains)]
+    opening += [m.SwitchLoops(1), m.Arm(1), m.Start(30_000_000), m.Envelope(1000, (30.0,))]
+    later = {4000: m.Stop(), 4200: m.Arm(next_token(1)), 4210: m.Start(30_000_000)}
+    later |= {4220: m.Envelope(1000, (30.0,)), 5000: m.Envelope(1000, (0.0,))}
+    later |= {5200: m.Envelope(1000, (30.0,)), 9500: m.SwitchLoops(1)}
+    turn, z, sequence = cmath.exp(1j), 0j, 0
+    for tick in range(12_000):
+        says = opening if tick == 0 else [later.get(tick, m.AskLoops())] if tick % 10 == 0 else []
+        for message in says:
+            sequence += 1
+            recording.receive(message.frame(sequence).encoded(), now)
+        load = 0.4 if 2500 < tick < 7000 else 0.0
+        at = 40e3 if tick > 7000 else 29.9e3
+        rate = 1.0 + load + 1j * (recording.twin.frequency * 1e-3 - at) / 100.0
+        rest = 0.01 * recording.twin.level / rate
+        z = rest + (z - rest) * cmath.exp(-rate * 0.063)
+        shown = z * turn
+        finger.phases, finger.temperature = (round(shown.real), round(shown.imag)), tick
+        now += 100
+        recording.tick(now)
+        recording.seen["loops", recording.twin.loops.state.mode] += 1
+        if tick % 100 == 0:
+            recording.look()
+    return recording
+
+
+@functools.cache
 def longest_work() -> Recording:
     """What takes a device longest: every call that is long, with the longest frame, queue, tile."""
     finger = Finger()
@@ -253,3 +312,7 @@ def longest_work() -> Recording:
         recording.receive(junk, now)
     recording.look()
     return recording
+
+
+SESSIONS = (page_session, tile_sweep, longest_work, held_plate)
+"""Those that a test plays to whatever runs the firmware."""

@@ -17,12 +17,11 @@ from squeezefilm.instruments.device.wire.states import State
 
 from .builds import Library, Sanitized
 from .recording import (
+    SESSIONS,
     Recording,
     adversarial,
-    longest_work,
     mauled,
     noise,
-    page_session,
     tile_sweep,
 )
 from .test_frames import VECTORS
@@ -116,7 +115,7 @@ def test_frames_of_every_length(firmware: Library | Sanitized) -> None:
     assert firmware.record(recording) == recording.record
 
 
-@pytest.mark.parametrize("made", [page_session, tile_sweep, longest_work], ids=lambda m: m.__name__)
+@pytest.mark.parametrize("made", SESSIONS, ids=lambda m: m.__name__)
 def test_what_the_twin_did(firmware: Library | Sanitized, made: Callable[[], Recording]) -> None:
     recording = made()
     assert firmware.record(recording) == recording.record

@@ -13,13 +13,11 @@ from squeezefilm.instruments.device.machine.limits import DeviceLimits
 
 from .arm import Arm, ArmMachine, firmware_alone, instruction_counter
 from .recording import (
+    SESSIONS,
     Recording,
     adversarial,
-    longest_work,
     mauled,
     noise,
-    page_session,
-    tile_sweep,
 )
 from .test_device_check import checked, failed
 
@@ -54,7 +52,7 @@ def check(arm: Arm, recording: Recording) -> None:
     assert max(work.receive, work.tick) <= MOST_INSTRUCTIONS[arm.core]
 
 
-@pytest.mark.parametrize("made", [page_session, tile_sweep, longest_work], ids=lambda m: m.__name__)
+@pytest.mark.parametrize("made", SESSIONS, ids=lambda m: m.__name__)
 def test_what_the_twin_did_on_arm(arm: Arm, made: Callable[[], Recording]) -> None:
     check(arm, made())
 

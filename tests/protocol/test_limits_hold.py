@@ -9,18 +9,21 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, invariant, rule, run_state_machine_as_test
 
 from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.machine.held import HeldPlate
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Deframer
 from squeezefilm.instruments.device.wire.states import Fault, State
 
 from .adversary import Adversary
+from .recording import plate
 
 
 class Watch:
     """Watches the output with floats of its own, by what docs/development/protocol.md promises."""
 
     def __init__(self) -> None:
-        self.machine = Machine(3, sensor=self.finger, pickup=lambda: 7)
+        loops = HeldPlate(lambda: plate(random.Random(self.now), self.machine))
+        self.machine = Machine(3, sensor=self.finger, pickup=lambda: 7, loops=loops)
         self.now = self.heard = 0
         self.level = 0
         self.on = 0.0
@@ -163,5 +166,5 @@ def test_the_limits_hold_over_long_sessions_that_see_everything(seed: int) -> No
             watch.machine.trip()
         watch.wait(500)
     assert set(State) | set(Fault) <= set(watch.seen)
-    assert {("reason", number) for number in range(10)} <= set(watch.seen)
-    assert {m.Status, m.Reading, m.Info} <= set(watch.seen)
+    assert {("reason", number) for number in (*range(10), 11)} <= set(watch.seen)
+    assert {m.Status, m.Reading, m.Info, m.Capabilities, m.Loops} <= set(watch.seen)

@@ -184,7 +184,7 @@ def loop_gains(plate: IdentifiedPlate, aims: LoopAims) -> LoopGains:
         lowest_frequency=round(aims.lowest_frequency * 1e3),
         highest_frequency=round(aims.highest_frequency * 1e3),
         sweep=max(1, round(sweep * step * 256e3)),
-        turn=round(plate.phase / (2 * math.pi) * _TURN) % _TURN,
+        turn=(round(plate.phase / (2 * math.pi) * _TURN) + _TURN // 2) % _TURN - _TURN // 2,
         reference=round(plate.frequency * 1e3),
         turn_per_mhz=-round(plate.delay * 1e-3 * 256 * _TURN),
         lowest_level=round(aims.lowest_voltage * 1e6),
@@ -194,6 +194,52 @@ def loop_gains(plate: IdentifiedPlate, aims: LoopAims) -> LoopGains:
         soft=round(min(track * aims.noise / (_JITTER * (1 - keep)), _MOST_SOFT) * 1e6),
         heaviest=round(aims.heaviest_load * ONE),
         patience=50 + math.ceil(3 * plate.time_constant / step),
+    )
+
+
+_ANY = (1 << 31) - 1
+_BOUNDS = {
+    "keep": (0, _SHARE),
+    "take": (1, _SHARE),
+    "turnover": (ONE, _ANY),
+    "ratio": (1, 4 * _SHARE),
+    "inverse": (1, _ANY),
+    "correction": (-_ANY - 1, _ANY),
+    "half_bandwidth": (1, 1 << 24),
+    "track_share": (0, _SHARE),
+    "rate_share": (0, _SHARE),
+    "load_share": (0, _SHARE),
+    "lowest_frequency": (1, _ANY),
+    "highest_frequency": (1, _ANY),
+    "sweep": (1, _ANY),
+    "turn": (-_ANY - 1, _ANY),
+    "reference": (1, _ANY),
+    "turn_per_mhz": (-_ANY - 1, _ANY),
+    "lowest_level": (0, 0),
+    "highest_level": (1, _ANY),
+    "search_level": (1, _ANY),
+    "floor": (1, 1 << 24),
+    "soft": (0, 1 << 24),
+    "heaviest": (0, 64 * ONE),
+    "patience": (4, 1 << 20),
+}
+
+
+def within_bounds(
+    gains: LoopGains, lowest_frequency: int, highest_frequency: int, highest_level: int
+) -> bool:
+    """True where no step with these gains can overflow 64 bits, turns the phase, or leaves these
+    frequencies (mHz) and this level (µV): what a device asks of gains that a host sends it.
+
+    The twin of `sf_loop_allowed` in `firmware/squeezefilm_loops.c`.
+    """
+    pairs = zip(gains, _BOUNDS.values(), strict=True)
+    return (
+        all(low <= value <= high for value, (low, high) in pairs)
+        and gains.keep + gains.take == _SHARE
+        and lowest_frequency <= gains.lowest_frequency <= gains.reference
+        and gains.reference <= gains.highest_frequency <= highest_frequency
+        and gains.search_level <= gains.highest_level <= highest_level
     )
 
 

@@ -9,9 +9,11 @@ for an answer feed it while they wait.
 
 from __future__ import annotations
 
+import math
 import secrets
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +21,9 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE, Limits
 from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
 from squeezefilm.instruments.device.device_clock import DeviceClock
+from squeezefilm.instruments.device.machine.limits import level_of
 from squeezefilm.instruments.device.machine.playing import CLOCK, LONGEST_REPORT, SHORTEST_REPORT
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.arguments import (
@@ -33,6 +37,8 @@ from squeezefilm.instruments.device.wire.states import Fault, Reason, State
 
 MOST_READINGS = 10_000
 """Readings kept for those who have not read them yet."""
+LOOPS_PERIOD: si.Second = 20e-3
+"""Between two questions for the loops' state, while they hold."""
 _ZERO_LIMIT: si.Second = 0.2
 _HARMLESS = (Reason.STATE, Reason.SEQUENCE, Reason.FULL)
 _MICRO = 1e6
@@ -63,6 +69,9 @@ class DeviceHost:
         self.link = link
         self.session = secrets.randbits(32) if session is None else session
         self.info: m.Info | None = None
+        self.capabilities: m.Capabilities | None = None
+        self.loops: m.Loops | None = None
+        self._holds, self._asked_loops = False, -math.inf
         self._unread: deque[m.Reading] = deque(maxlen=MOST_READINGS)
         self._opened = False
         self._limits: Limits | None = None
@@ -89,7 +98,8 @@ class DeviceHost:
                 does not allow the limits.
         """
         self.link.drop()
-        self._opened = False
+        self._opened = self._holds = False
+        self.loops = None
         self.link.request(m.Stop())
         status = self.link.request(m.Hello(self.session))
         if status.session != self.session:
@@ -107,10 +117,64 @@ class DeviceHost:
                     "session; find its cause, then clear it with clear()"
                 )
             self.clear()
-        self.info = self._ask_info()
+        self.info = None
+        self._ask(m.AskInfo())
+        if self.info is None:
+            raise DeviceError(
+                "the device answers and does not say what it is (info); its firmware is older than "
+                "this program: update it"
+            )
         self._set_limits(limits, self.info)
         self._limits = limits
         return self.info
+
+    def hold(self, plate: IdentifiedPlate, aims: LoopAims) -> str:
+        """Give the device's loops their gains and switch them on; after `open` and before `arm`.
+
+        Steps are the device's ticks; frequencies and voltage stay within the limits. Levels are
+        then those that the free plate would need. Returns why the device cannot, in words, or "";
+        one that cannot plays without loops.
+
+        Raises `OutOfRangeError` where a loop would be faster than the device's ticks or the
+        resonance is outside the limits, and `DeviceError`.
+        """
+        self.capabilities = None
+        try:
+            self._ask(m.Negotiate(m.REVISION))
+        except DeviceError:
+            _, status = self.link.refusals[-1] if self.link.refusals else ("", None)
+            if status is None or status.reason != Reason.TYPE:
+                raise
+        if self.capabilities is None:
+            return (
+                "the device's firmware knows no loops (it speaks revision 1 of the messages), so "
+                "it plays without; update it to hold the resonance"
+            )
+        if self.info is None or self._limits is None or not self.capabilities.has_loops:
+            return "the device has no loops, which need a pickup with a phase; it plays without"
+        gains = loop_gains(plate, replace(aims, interval=self.info.tick_period / _MICRO))
+        limits = m.limits_message(self._limits)
+        most = min(gains.highest_level, level_of(limits.voltage))
+        gains = gains._replace(
+            lowest_frequency=max(gains.lowest_frequency, limits.lowest_frequency),
+            highest_frequency=min(gains.highest_frequency, limits.highest_frequency),
+            highest_level=most,
+            search_level=min(gains.search_level, most),
+        )
+        self.link.request(m.SetLoops(gains))
+        self.search()
+        return ""
+
+    def search(self) -> None:
+        """Switch the loops on with a new search, also where one found nothing. Raises
+        `DeviceError` for a device without loops or gains."""
+        self.link.request(m.SwitchLoops(1))
+        self._holds = True
+
+    def release(self) -> None:
+        """Switch the loops off; the carrier stays where they left it. Raises as `search`."""
+        self.link.request(m.SwitchLoops(0))
+        self._holds, self.loops = False, None
 
     def arm(self) -> None:
         """OFF → ARMED, with the newest token. Raises `DeviceError`."""
@@ -202,6 +266,9 @@ class DeviceHost:
             DeviceError: as `poll`.
         """
         self._hear()
+        if self._holds and self.link.clock() - self._asked_loops >= LOOPS_PERIOD:
+            self._asked_loops = self.link.clock()
+            self.link.send(m.AskLoops())
         self.link.keep_alive()
 
     def poll(self) -> list[m.Reading]:
@@ -236,6 +303,10 @@ class DeviceHost:
                 self._unread.append(message)
             elif isinstance(message, m.Info):
                 self.info = message
+            elif isinstance(message, m.Capabilities):
+                self.capabilities = message
+            elif isinstance(message, m.Loops):
+                self.loops = message
         newest = self.link.status
         if self._opened and newest is not None and newest.session != self.session:
             raise DeviceError(
@@ -261,20 +332,17 @@ class DeviceHost:
         highest = 1e6 if limits is None else limits.highest_frequency
         return round(1e3 * number("frequency", frequency, si.Unit("Hz"), lowest, highest))
 
-    def _ask_info(self) -> m.Info:
-        self.info = None
+    def _ask(self, question: m.AskInfo | m.Negotiate) -> None:
+        """Ask what the device is or can, and wait for what follows the status."""
+        which = "info" if isinstance(question, m.AskInfo) else "capabilities"
         for _ in range(3):
-            self.link.request(m.AskInfo())
+            self.link.request(question)
             end = self.link.clock() + _ZERO_LIMIT
-            while self.info is None and self.link.clock() < end:
+            while getattr(self, which) is None and self.link.clock() < end:
                 self._hear()
                 self.link.wait(1e-3)
-            if self.info is not None:
-                return self.info
-        raise DeviceError(
-            "the device answers and does not say what it is (info); its firmware is older than "
-            "this program: update it"
-        )
+            if getattr(self, which) is not None:
+                return
 
     def _set_limits(self, limits: Limits, info: m.Info) -> None:
         asked = m.limits_message(limits)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.machine.held import HeldPlate
 from squeezefilm.instruments.device.machine.limits import DeviceLimits
 from squeezefilm.instruments.device.machine.playing import CLOCK, until
 from squeezefilm.instruments.device.wire.states import State
@@ -65,6 +66,9 @@ class TwinDevice:
             lambda: self.plant.sensed(),
             (lambda: self.plant.pickup_level()) if heard else None,
             self._tick,
+            HeldPlate(lambda: self.plant.phases(), lambda: self.plant.millidegrees())
+            if heard
+            else HeldPlate(),
         )
         self.ticks = 0
         self._now = 0

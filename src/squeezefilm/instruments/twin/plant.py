@@ -254,6 +254,16 @@ class Plant:
         """Vibration amplitude per signal of the pickup (m/V), at the predicted resonance."""
         return self.point.pickup_calibration(self.settings.pickup)
 
+    def phases(self) -> tuple[int, int]:
+        """What the pickup shows now (µV): in phase with the drive, and 90° ahead, with noise."""
+        signal = heard(self._rest[0], self._ear)
+        return round(signal.real * 1e6), round(signal.imag * 1e6)
+
+    def millidegrees(self) -> int:
+        """The plate's temperature (1/1000 °C)."""
+        room = self.point.display.thermal.ambient_temperature
+        return round(1e3 * (room - 273.15 + self.temperature_rise))
+
     def pickup_level(self) -> int:
         """The amplitude at the pickup's input now (µV), with its noise; 0 without a pickup."""
         if self.settings.pickup.kind == "none":

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 
+from squeezefilm.instruments.device.machine.held import HeldPlate
 from squeezefilm.instruments.device.machine.limits import DeviceLimits, Loads
 from squeezefilm.instruments.device.machine.playing import (
     CLOCK,
@@ -50,8 +51,9 @@ class Machine:
     `seed` is where its tokens start (a device takes a random number); `own` are the firmware's
     limits, which no message passes. `sensor` gives the finger's position x and y (µm) and whether
     it touches, `pickup` the amplitude at the pickup's input (µV); both are called in a tick that
-    needs them. `tick_period` (µs) is how often `tick` is meant to be called. `excused` (µs) is by
-    how much longer the watchdog waits for the next accepted frame: 0 but where a twin says so.
+    needs them. `tick_period` (µs) is how often `tick` is meant to be called. `loops` hold the plate
+    where the device can and a host says so. `excused` (µs) is by how much longer the watchdog waits
+    for the next accepted frame: 0 but where a twin says so.
     """
 
     seed: int = 1
@@ -59,6 +61,7 @@ class Machine:
     sensor: Callable[[], Finger] | None = None
     pickup: Callable[[], int] | None = None
     tick_period: int = TICK_PERIOD
+    loops: HeldPlate = field(default_factory=HeldPlate)
     state: State = State.OFF
     fault: Fault = Fault.NONE
     level: int = 0
@@ -128,23 +131,26 @@ class Machine:
             since = (now - self._ticked) & CLOCK
             if since > self.tick_period + self.tick_period // 2:
                 self.late_ticks = (self.late_ticks + 1) & CLOCK
+                self.loops.skip()
         self._ticked = now & CLOCK
-        return self._advance(now)
+        return self._advance(now, ticked=True)
 
-    def _advance(self, now: int) -> int:
+    def _advance(self, now: int, ticked: bool = False) -> int:
         elapsed = (now - self._now) & CLOCK
         self._now = now & CLOCK
         due = self._reports.take(self._now)
         finger = None
         if self.sensor is not None and (due or self.playing.mode is Mode.FINGER):
             finger = self.sensor()
-        if elapsed != 0 and self.limits is not None:
-            self._move(elapsed, self.limits, finger)
+        if self.limits is not None and (elapsed != 0 or (ticked and self.loops.on)):
+            self._move(elapsed, self.limits, finger, ticked)
         if due:
             self._read(finger)
         return self.level
 
-    def _move(self, elapsed: int, limits: DeviceLimits, finger: Finger | None) -> None:
+    def _move(
+        self, elapsed: int, limits: DeviceLimits, finger: Finger | None, ticked: bool
+    ) -> None:
         # The output was held since the last tick: count that, then move.
         self.loads.count(self.level, elapsed, limits.continuous_voltage, limits.duty)
         falling = elapsed
@@ -165,6 +171,9 @@ class Machine:
         target = 0
         if self.state is State.PLAYING:
             target = self.playing.level(self._now, self.tile, finger)
+            if self.loops.on:
+                target = self.loops.level(target, self.level, ticked)
+                self.frequency = self.loops.command.frequency
         if target > self.level:
             rise = limits.slew * min(elapsed, LONGEST_RISE)
             self.level = min(target, self.level + rise)
@@ -173,14 +182,11 @@ class Machine:
 
     def _read(self, finger: Finger | None) -> None:
         x, y, touching = finger or (0, 0, False)
-        playing = self.playing
         flags = (
             m.SENSOR_PRESENT * (self.sensor is not None)
             | m.PICKUP_PRESENT * (self.pickup is not None)
-            | m.RAN_DRY * playing.dry
-            | m.CAME_LATE * playing.late
+            | self.playing.take_marks()
         )
-        playing.forget_marks()
         pickup = 0 if self.pickup is None else self.pickup()
         reading = m.Reading(
             self._now,
@@ -230,8 +236,14 @@ class Machine:
             self._now,
         )
         self._send(status)
-        if reason is Reason.ACCEPTED and frame.type == m.AskInfo.TYPE:
+        if reason is not Reason.ACCEPTED:
+            return
+        if frame.type == m.AskInfo.TYPE:
             self._send(self._info())
+        elif frame.type == m.Negotiate.TYPE:
+            self._send(self.loops.capabilities())
+        elif frame.type == m.AskLoops.TYPE:
+            self._send(self.loops.report(self._now))
 
     def _info(self) -> m.Info:
         return m.Info(
@@ -247,7 +259,7 @@ class Machine:
         if frame.version != VERSION:
             return Reason.VERSION
         kind = m.COMMANDS.get(frame.type)
-        if kind is None:
+        if kind is None or (frame.type > m.Negotiate.TYPE and self.loops.revision < 2):
             return Reason.TYPE
         message = kind.read(frame.payload)
         if message is None:
@@ -266,7 +278,8 @@ class Machine:
         if self.state not in (State.OFF, State.FAULT):
             return Reason.STATE
         self._opened, self._last, self.session = True, sequence, hello.session
-        self._reports.period = 0
+        self._reports.period, self.loops.revision = 0, 1
+        self.loops.drop()
         return Reason.ACCEPTED
 
     def _stop(self) -> Reason:
@@ -285,24 +298,36 @@ class Machine:
                 return self._clear(message.fault)
             case m.SetLimits():
                 return self._limit(message)
+            case m.Negotiate():
+                return self.loops.negotiate(message.revision)
+            case m.AskLoops():
+                return Reason.NO_LOOPS if self.loops.gains is None else Reason.ACCEPTED
         if self.limits is None:
             return Reason.NO_LIMITS
         match message:
             case m.Arm():
                 return self._arm(message.token)
+            case m.TileBegin() | m.TileData() if self.state is State.FAULT:
+                return Reason.STATE
             case m.TileBegin():
-                return self._begin_tile(message)
+                return self.tile.begin(message.origin, message.pitch, message.size)
             case m.TileData():
-                return self._fill_tile(message, self.limits)
+                levels = self.limits.levels(message.levels)
+                return self.tile.fill(message.first, len(message.levels), levels)
             case m.Start():
                 return self._tune(message.frequency, self.limits, State.ARMED)
+            case m.SetLoops():
+                return self.loops.set(message.gains, self.limits, at_rest=self._at_rest)
+            case m.SwitchLoops():
+                return self.loops.switch(message.on, faulted=self.state is State.FAULT)
         if self.state is not State.PLAYING:
             return Reason.STATE
         match message:
             case m.SetFrequency():
                 return self._tune(message.frequency, self.limits, State.PLAYING)
             case m.Envelope():
-                return self._play(message, self.limits)
+                levels = self.limits.levels(message.levels)
+                return self.playing.play_envelope(self._now, message.period, levels)
             case m.Position():
                 if not self.tile.ready:
                     return Reason.TILE
@@ -316,7 +341,8 @@ class Machine:
                 self.playing.play_finger()
                 return Reason.ACCEPTED
             case m.TimedEnvelope():
-                return self._play_timed(message, self.limits)
+                levels, period = self.limits.levels(message.levels), message.period
+                return self.playing.play_timed(self._now, self.level, message.start, period, levels)
         return Reason.TYPE  # pragma: no cover - every command is named above
 
     def _clear(self, fault: int) -> Reason:
@@ -327,18 +353,23 @@ class Machine:
         self.state, self.fault = State.OFF, Fault.NONE
         return Reason.ACCEPTED
 
+    @property
+    def _at_rest(self) -> bool:
+        return self.state is State.OFF and self.level == 0
+
     def _limit(self, asked: m.SetLimits) -> Reason:
-        if self.state is not State.OFF or self.level > 0:
+        if not self._at_rest:
             return Reason.STATE
         limits = self.own.narrowed(asked)
         if limits is None:
             return Reason.VALUE
         self.limits = limits
         self.tile = Tile()
+        self.loops.drop()
         return Reason.ACCEPTED
 
     def _arm(self, token: int) -> Reason:
-        if self.state is not State.OFF or self.level > 0:
+        if not self._at_rest:
             return Reason.STATE
         if token != self.token:
             return Reason.TOKEN
@@ -351,39 +382,9 @@ class Machine:
             return Reason.STATE
         if not limits.lowest_frequency <= frequency <= limits.highest_frequency:
             return Reason.VALUE
+        self.frequency = frequency
         if self.state is State.ARMED:
-            self._ticked = self._now
-        self.frequency, self.state = frequency, State.PLAYING
-        return Reason.ACCEPTED
-
-    def _play(self, message: m.Envelope, limits: DeviceLimits) -> Reason:
-        levels = limits.levels(message.levels)
-        if levels is None or message.period == 0:
-            return Reason.VALUE
-        self.playing.play_envelope(self._now, message.period, levels)
-        return Reason.ACCEPTED
-
-    def _play_timed(self, message: m.TimedEnvelope, limits: DeviceLimits) -> Reason:
-        levels = limits.levels(message.levels)
-        if levels is None:
-            return Reason.VALUE
-        return self.playing.play_timed(self._now, self.level, message.start, message.period, levels)
-
-    def _begin_tile(self, message: m.TileBegin) -> Reason:
-        if self.state is State.FAULT:
-            return Reason.STATE
-        if message.pitch == 0 or not 1 <= message.size <= m.LONGEST_TILE:
-            return Reason.VALUE
-        self.tile = Tile(message.origin, message.pitch, message.size)
-        return Reason.ACCEPTED
-
-    def _fill_tile(self, message: m.TileData, limits: DeviceLimits) -> Reason:
-        if self.state is State.FAULT:
-            return Reason.STATE
-        if not self.tile.fits(message.first, len(message.levels)):
-            return Reason.TILE
-        levels = limits.levels(message.levels)
-        if levels is None:
-            return Reason.VALUE
-        self.tile.levels += levels
+            self._ticked, self.state = self._now, State.PLAYING
+            if self.loops.on:
+                self.loops.begin(anew=False)
         return Reason.ACCEPTED

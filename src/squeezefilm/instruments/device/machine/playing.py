@@ -11,6 +11,11 @@ from collections import deque
 from dataclasses import dataclass, field
 from enum import Enum, auto
 
+from squeezefilm.instruments.device.wire.messages import (
+    CAME_LATE,
+    LONGEST_TILE,
+    RAN_DRY,
+)
 from squeezefilm.instruments.device.wire.states import Reason
 
 CLOCK = 0xFFFFFFFF
@@ -59,9 +64,21 @@ class Tile:
         """True where every amplitude has arrived."""
         return self.size > 0 and len(self.levels) == self.size
 
-    def fits(self, first: int, count: int) -> bool:
-        """True where `count` amplitudes from number `first` are the next ones and find room."""
-        return first == len(self.levels) and first + count <= self.size
+    def begin(self, origin: int, pitch: int, size: int) -> Reason:
+        """A new one, still empty."""
+        if pitch == 0 or not 1 <= size <= LONGEST_TILE:
+            return Reason.VALUE
+        self.origin, self.pitch, self.size, self.levels = origin, pitch, size, []
+        return Reason.ACCEPTED
+
+    def fill(self, first: int, count: int, levels: tuple[int, ...] | None) -> Reason:
+        """The next `count` amplitudes (µV; None: not within the limits), from number `first`."""
+        if first != len(self.levels) or first + count > self.size:
+            return Reason.TILE
+        if levels is None:
+            return Reason.VALUE
+        self.levels += levels
+        return Reason.ACCEPTED
 
     def level(self, x: int) -> int:
         """The amplitude (µV) at `x` µm; towards the table's own value where division rounds."""
@@ -107,7 +124,7 @@ class Playing:
     """What is played, and what is left of it. Not thread-safe.
 
     `dry`: a timed envelope's last amplitude was held past its period. `late`: one of its
-    amplitudes arrived after its time. Both stay until `forget_marks`.
+    amplitudes arrived after its time. Both stay until `take_marks`.
     """
 
     mode: Mode = Mode.NOTHING
@@ -126,15 +143,21 @@ class Playing:
         self.mode = Mode.NOTHING
         self._queue.clear()
 
-    def forget_marks(self) -> None:
-        """Clear `dry` and `late`."""
+    def take_marks(self) -> int:
+        """The flags of `dry` and `late` in a reading, which clears them."""
+        marks = RAN_DRY * self.dry | CAME_LATE * self.late
         self.dry = self.late = False
+        return marks
 
-    def play_envelope(self, now: int, period: int, levels: tuple[int, ...]) -> None:
-        """One amplitude (µV) every `period` µs from now; the last one holds."""
+    def play_envelope(self, now: int, period: int, levels: tuple[int, ...] | None) -> Reason:
+        """One amplitude (µV) every `period` µs from now; the last one holds. None for `levels`:
+        not within the limits."""
+        if levels is None or period == 0:
+            return Reason.VALUE
         self.stop()
         self.mode = Mode.ENVELOPE
         self._levels, self._period, self._began = levels, period, now
+        return Reason.ACCEPTED
 
     def play_place(self, x: int) -> None:
         """The tile at `x` µm."""
@@ -147,14 +170,14 @@ class Playing:
         self.mode = Mode.FINGER
 
     def play_timed(
-        self, now: int, level: int, start: int, period: int, levels: tuple[int, ...]
+        self, now: int, level: int, start: int, period: int, levels: tuple[int, ...] | None
     ) -> Reason:
         """Amplitudes (µV) from `start` on, in place of what was queued from there on.
 
         `level` is the output now (µV), which holds until the first one is due. Amplitudes at or
         before the newest that was played are left out: nothing is played twice, or backwards.
         """
-        if period == 0 or abs(until(start, now)) > MOST_AHEAD:
+        if levels is None or period == 0 or abs(until(start, now)) > MOST_AHEAD:
             return Reason.VALUE
         timed = self.mode is Mode.TIMED
         kept = sum(until(time, start) < 0 for time, _ in self._queue) if timed else 0

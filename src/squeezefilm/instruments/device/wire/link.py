@@ -43,6 +43,7 @@ WORDS: dict[Reason, str] = {
     Reason.NO_LIMITS: "no limits are set; open the device with limits first",
     Reason.TILE: "no complete tile is loaded, or its parts came out of order; load it again",
     Reason.FULL: "the device's queue is full; send later",
+    Reason.NO_LOOPS: "the device has no loops, or no gains for them; set those first",
 }
 """Why a frame was refused, and what to do."""
 _GOALS: dict[type[m.Message], State] = {

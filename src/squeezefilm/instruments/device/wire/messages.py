@@ -17,6 +17,7 @@ from typing import Annotated, Any, ClassVar, Self, TypeVar
 from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.control.plate_loop import LoopGains
 from squeezefilm.instruments.device.wire.arguments import amplitudes, binary32_below
 from squeezefilm.instruments.device.wire.frames import Frame
 
@@ -26,6 +27,8 @@ MOST_LEVELS = 56
 """Amplitudes that fit one frame."""
 LONGEST_TILE = 512
 """Amplitudes a device keeps of one tile."""
+REVISION = 2
+"""Of the messages; a session has 1 until its host asks for more."""
 
 # How a field stands on the wire, as `struct` names it.
 U8 = Annotated[int, "B"]
@@ -35,6 +38,7 @@ I32 = Annotated[int, "i"]
 Binary32 = Annotated[si.Volt, "f"]
 Levels = tuple[si.Volt, ...]
 """Amplitudes at a payload's end: their count in one byte, then one binary32 after the other."""
+Gains = Annotated[LoopGains, "23i"]
 
 COMMANDS: dict[int, type[Message]] = {}
 """What a host may send, by type."""
@@ -244,6 +248,47 @@ class TimedEnvelope(_Levels):
     levels: Levels
 
 
+@_message(0x11)
+class Negotiate(Message):
+    """Asks for the messages of a revision; capabilities follow the status. In every state.
+
+    The session then has the lower of that and the device's own. A device of revision 1 does not
+    know this message. The three below are of revision 2.
+    """
+
+    revision: U16
+
+
+@_message(0x12)
+class SetLoops(Message):
+    """The gains of the plate's loops, within the limits; OFF only, and off until switched on."""
+
+    gains: Gains
+
+    def payload(self) -> bytes:
+        """The payload's bytes. Raises `InputError` for a gain beyond 32 bits."""
+        return self._packed(*self.gains)
+
+    @classmethod
+    def read(cls, payload: bytes) -> Self | None:
+        """The message in a payload, or None if its length is wrong."""
+        if len(payload) != cls.LAYOUT.size:
+            return None
+        return cls(LoopGains(*cls.LAYOUT.unpack(payload)))
+
+
+@_message(0x13)
+class SwitchLoops(Message):
+    """Loops off for 0; for 1 on, with a new search, also where one had ended. Not in FAULT."""
+
+    on: U8
+
+
+@_message(0x14)
+class AskLoops(Message):
+    """Asks how the loops are, which follows the status. In every state."""
+
+
 @_message(0x81, ANSWERS)
 class Status(Message):
     """The device's answer to every frame whose CRC was right; `time` is its clock (µs)."""
@@ -301,10 +346,41 @@ class Info(Message):
     firmware_version: U32
 
 
+@_message(0x84, ANSWERS)
+class Capabilities(Message):
+    """The revision of the session's messages, and 1 where the device has loops."""
+
+    revision: U16
+    has_loops: U8
+
+
+@_message(0x85, ANSWERS)
+class Loops(Message):
+    """How the loops are: the device's clock (µs), mode, flags, locks lost and false (modulo 256),
+    carrier (mHz), detuning (half-bandwidths, 2^16), the pickup's amplitude as asked for and what
+    it has above that (µV), the drive's reserve (µV), the finger's loss over the plate's own (2^16),
+    the plate's temperature (1/1000 °C)."""
+
+    time: U32
+    mode: U8
+    flags: U8
+    lost: U8
+    false_locks: U8
+    frequency: U32
+    detuning: I32
+    target: I32
+    error: I32
+    reserve: I32
+    load: I32
+    temperature: I32
+
+
 SENSOR_PRESENT, PICKUP_PRESENT, RAN_DRY, CAME_LATE = 1, 2, 4, 8
 """Flags of a reading."""
+LOOPS_ON, LEVEL_HELD, FREQUENCY_HELD, TEMPERATURE_KNOWN = 1, 2, 4, 8
+"""Flags of the loops' answer."""
 
-Answer = Status | Reading | Info
+Answer = Status | Reading | Info | Capabilities | Loops
 
 
 def limits_message(limits: Limits) -> SetLimits:

@@ -39,3 +39,4 @@ class Reason(IntEnum):
     NO_LIMITS = 8
     TILE = 9
     FULL = 10
+    NO_LOOPS = 11

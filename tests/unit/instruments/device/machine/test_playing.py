@@ -14,6 +14,7 @@ from squeezefilm.instruments.device.machine.playing import (
     Tile,
     until,
 )
+from squeezefilm.instruments.device.wire.messages import RAN_DRY
 from squeezefilm.instruments.device.wire.states import Reason
 
 # The device's clock wraps within a block that begins here.
@@ -49,7 +50,7 @@ def test_a_block_plays_from_its_time_and_the_output_holds_until_then(start: int)
     assert not playing.dry
     assert level(playing, start + 300) == 30
     assert playing.dry
-    playing.forget_marks()
+    assert playing.take_marks() == RAN_DRY
     assert not playing.dry
 
 
