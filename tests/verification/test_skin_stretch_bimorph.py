@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from squeezefilm.actuators.skin_stretch.bimorph import Bimorph, solid_bender
+from squeezefilm.actuators.skin_stretch.bimorph import Bimorph, _boxes, solid_bender
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic, PiezoConstants
 
 CONSTANTS = PiezoConstants(
@@ -112,3 +112,42 @@ def test_series_is_half_the_deflection_and_a_quarter_of_the_charge() -> None:
     assert series.deflection_per_volt == pytest.approx(parallel.deflection_per_volt / 2, rel=1e-9)
     assert series.capacitance == pytest.approx(parallel.capacitance / 4, rel=1e-9)
     assert series.stiffness == pytest.approx(parallel.stiffness, rel=1e-9)
+
+
+def test_cells_end_where_the_beam_has_its_layers_and_clamp() -> None:
+    """Wide beams have a layer as thick as they are at the free side, narrow ones none; ceramics
+    much thicker than the beam is wide are cut a width from their middle."""
+    slim = dataclasses.replace(USUAL, width=2.4 * USUAL.thickness)
+    stout = dataclasses.replace(USUAL, width=0.4 * USUAL.ceramic_thickness)
+    for beam, layered, pieces in (
+        (USUAL, False, 1),
+        (slim, False, 1),
+        (WIDE, True, 1),
+        (stout, False, 2),
+    ):
+        box = _boxes(beam, 0)
+        half, own, shim = beam.width / 2, beam.ceramic_thickness, beam.shim_thickness
+        assert box.y.edges == pytest.approx(
+            (0.0, half - beam.thickness, half) if layered else (0.0, half)
+        )
+        assert box.z.edges[-1] == pytest.approx(beam.thickness)
+        for edge in (own, own + shim):
+            assert np.min(np.abs(np.array(box.z.edges) - edge)) < 1e-12
+        assert len(box.z.edges) == 2 * pieces + 2
+        cut = {own - beam.width, own + shim + beam.width} if pieces == 2 else set()
+        for edge in cut:
+            assert np.min(np.abs(np.array(box.z.edges) - edge)) < 1e-12
+        assert (box.x.edges[0], box.x.edges[-2], box.x.edges[-1]) == (
+            0.0,
+            0.5 * beam.length,
+            beam.length,
+        )
+        assert max(box.x.edges[1:-2]) < 0.3 * beam.length
+        # Ceramic, shim, ceramic: only the shim is of no ceramic.
+        np.testing.assert_array_equal(box.medium[0, 0], [0] * pieces + [1] + [0] * pieces)
+        np.testing.assert_array_equal(box.ceramic[0, 0], [0] * pieces + [-1] + [1] * pieces)
+        more = _boxes(beam, 2)
+        for mesh, finer in ((box.x, more.x), (box.y, more.y), (box.z, more.z)):
+            assert [order + 2 for order in mesh.orders] == list(finer.orders)
+    bare = _boxes(dataclasses.replace(USUAL, shim_thickness=0.0), 0)
+    np.testing.assert_array_equal(bare.ceramic[0, 0], [0, 1])

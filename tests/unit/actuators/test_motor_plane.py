@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from squeezefilm.actuators.motor import parts, plane_kernel
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
 from squeezefilm.actuators.motor.averaged import averaged
 from squeezefilm.actuators.motor.in_time import simulate
-from squeezefilm.actuators.motor.plane import simulate_plane
+from squeezefilm.actuators.motor.plane import _resting, simulate_plane
 
 from .test_motor import PRELOAD, WORKING, motor, plate
 
@@ -132,6 +134,38 @@ def test_the_path_of_the_last_periods_is_kept() -> None:
     assert found.time[-1] == pytest.approx(10 / planar().resonance_frequency)
     steps = np.diff(found.path[::32], axis=0) * planar().resonance_frequency
     np.testing.assert_allclose(steps, found.period_velocity[-2:], atol=0.01)
+    # Held amplitudes are what they are held at.
+    assert found.period_amplitude.shape == (10, 2)
+    held = [BOTH.amplitude, BOTH.second * found.period_amplitude[0, 0]]
+    np.testing.assert_allclose(found.period_amplitude, np.tile(held, (10, 1)), rtol=1e-9)
+    assert found.period_height.shape == found.period_normal.shape == (10,)
+
+
+def test_a_march_begins_at_rest_on_the_feet_with_the_modes_as_they_are_held() -> None:
+    ready = planar()
+    omega, phase, amplitude = np.array([2e5, 2.1e5]), np.array([0.3, -1.1]), np.array([1e-6, 2e-6])
+
+    def held(time: float) -> np.ndarray:
+        return np.asarray(amplitude * np.cos(omega * time + phase))
+
+    stator: Any = SimpleNamespace(
+        mass=np.ones(2), held=True, amplitude=amplitude, omega=omega, phase=phase
+    )
+    slider: Any = SimpleNamespace(preload=PRELOAD)
+    march = _resting(ready, stator, slider, (0.02, -0.01))
+    np.testing.assert_allclose(march.q, held(0.0))
+    np.testing.assert_allclose(march.dq, (held(1e-9) - held(-1e-9)) / 2e-9, rtol=1e-6)
+    height, rise, x, y, *velocity = march.slider
+    assert (rise, x, y, velocity) == (0.0, 0.0, 0.0, [0.02, -0.01])
+    feet = ready.feet
+    assert feet.k_nn.sum() * -height == pytest.approx(PRELOAD)
+    np.testing.assert_allclose(march.depth, feet.across @ march.q - height)
+    np.testing.assert_allclose(march.last[:, 0], feet.along @ march.q)
+    np.testing.assert_allclose(march.last[:, 1], ready.sideways @ march.q)
+    stator.held = False
+    free = _resting(ready, stator, slider, (0.0, 0.0))
+    assert not np.any(free.q)
+    assert not np.any(free.dq)
 
 
 def test_kernels_agree_on_the_works_they_count() -> None:

@@ -9,6 +9,7 @@ from scipy.stats import qmc
 from squeezefilm.core.distributions import Normal
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.quantities import Unit
+from squeezefilm.measure.calibration import plate_posterior
 from squeezefilm.measure.calibration.discrepancy import (
     ALIKE,
     BELIEVED,
@@ -102,6 +103,30 @@ def test_a_contradiction_is_a_misfit_and_widens() -> None:
         for seen_, one in ((right, narrow), (wrong, wide))
     ]
     assert spread[1] > spread[0]
+
+
+def test_draws_are_those_of_the_linear_problem(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every step of every walker after the burn-in, with the discrepancy's spread about them."""
+    monkeypatch.setattr(plate_posterior, "BURN_IN", 20)
+    posed = problem(seen("resonance_frequency", (1.0, -0.5), 1e-3))
+    told: list[tuple[str, float]] = []
+    # As large a seed as anybody gives.
+    found = sampled_posterior(
+        posed, seed=2**32 + 5, steps=50, progress=lambda *said: told.append(said)
+    )
+    walkers = 32
+    assert found.scores.shape == (50 * walkers, 2)
+    assert found.scales.shape == (50 * walkers, len(KINDS))
+    assert len(np.unique(found.scores[:, 0])) > 3 * walkers
+    assert told[1:] == [(f"posterior, {10 * part} %", part / 10) for part in range(10)]
+    assert 1 < found.effective < len(found.scores)
+    np.testing.assert_allclose(found.best, best_fit(posed, seed=1), atol=1e-4)
+    # Across the sum that was observed, the priors' own spread is left.
+    along, across = (found.scores @ np.array([[1, 1], [1, -1]]) / np.sqrt(2)).T
+    believed = BELIEVED["resonance_frequency"] / (0.05 * np.sqrt(2))
+    assert along.std() == pytest.approx(believed, rel=0.5)
+    assert along.mean() == pytest.approx(0.5 / np.sqrt(2), abs=0.1)
+    assert across.std() == pytest.approx(1.0, rel=0.25)
 
 
 @pytest.mark.slow

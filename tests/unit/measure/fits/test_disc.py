@@ -17,6 +17,7 @@ from radial_mode import (
     predict_radial_mode,
 )
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.constants import (
     DECISIVE,
     PARAMETERS,
@@ -25,6 +26,8 @@ from squeezefilm.measure.fits.ceramic.constants import (
     _evidence,
     ceramic_prior,
     compliances,
+    coupling_read,
+    permittivity_read,
 )
 from squeezefilm.measure.fits.ceramic.disc import (
     DiscConstants,
@@ -34,7 +37,7 @@ from squeezefilm.measure.fits.ceramic.disc import (
 )
 from squeezefilm.measure.fits.complex_fit import Prior
 from squeezefilm.measure.fits.estimate import Adequacy
-from squeezefilm.measure.fits.sweep_reading import sweep_peaks
+from squeezefilm.measure.fits.sweep_reading import SweepPeaks, sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
 
@@ -233,3 +236,29 @@ def test_evidence_is_the_prior_over_what_the_data_leave() -> None:
         expected[number] = np.log(cell * np.sum(shape * of_prior)) - 30 * np.log(spread)
     found = _evidence(fits, prior)
     assert found[0] - found[3] == pytest.approx(expected[0] - expected[3], abs=0.02)
+
+
+def test_a_body_without_losses_tells_its_coupling_and_permittivity() -> None:
+    """Of two modes over a clamped capacitance, by the frequencies where Y and 1/Y have their poles
+    and by all points."""
+    square, shares, geometry = 0.12, (0.8, 0.15), 0.28
+    resonances = np.array([65e3, 170e3])
+
+    def motion(f: np.ndarray) -> np.ndarray:
+        parts = [
+            share / (1 - (f / own) ** 2) for share, own in zip(shares, resonances, strict=True)
+        ]
+        return np.sum(parts, axis=0) + 1 - sum(shares)
+
+    for number, own in enumerate(resonances, 1):
+        # Between the poles of this mode alone: those below stand still, those above give way.
+        clamped = 1 - square * sum(shares[:number])
+        opened = own * math.sqrt(1 + square * shares[number - 1] / clamped)
+        read = coupling_read(SweepPeaks(own, 1.0, opened, 1.0), shares, number)
+        assert read == pytest.approx(square)
+    assert coupling_read(SweepPeaks(65e3, 1.0, 200e3, 1.0), (0.5, 0.2), 1) == 0.9
+    f = np.linspace(30e3, 60e3, 40)
+    y = 2j * np.pi * f * 1700 * VACUUM_PERMITTIVITY * geometry * (1 + square * (motion(f) - 1))
+    assert permittivity_read(
+        ImpedanceSweep(f, y), square, motion(f) + 0j, geometry
+    ) == pytest.approx(1700)

@@ -10,7 +10,12 @@ from squeezefilm.measure.fits.estimate import (
     inverse_of,
     propagated,
 )
-from squeezefilm.measure.fits.least_squares import fit_nonlinear, fit_separable, linear_fit
+from squeezefilm.measure.fits.least_squares import (
+    SeparableFit,
+    fit_nonlinear,
+    fit_separable,
+    linear_fit,
+)
 
 T = np.linspace(0.0, 2.0, 60)
 
@@ -88,3 +93,17 @@ def test_a_product_has_the_error_of_its_factors() -> None:
     found = propagated(lambda n: n[0] * n[1], np.array([2.0, 5.0]), covariance, 1000, "m")
     assert isinstance(found, Estimate)
     assert found.standard_error == pytest.approx(np.hypot(5 * 0.01, 2 * 0.02), rel=1e-4)
+
+
+def test_numbers_in_one_row_are_split_as_they_were_put_together() -> None:
+    shape = np.array([1.0, 2.0])
+    for weights in (np.array([3.0, 4.0, 5.0]), np.array([3.0 + 6j, 4.0 + 7j, 5.0 + 8j])):
+        count = 2 + weights.size * (2 if np.iscomplexobj(weights) else 1)
+        fit = SeparableFit(shape, weights, np.eye(count), weights, weights, 4, 1.0)
+        assert fit.numbers.tolist() == [float(number) for number in range(1, count + 1)]
+        again = fit.split(fit.numbers)
+        np.testing.assert_array_equal(again[0], shape)
+        np.testing.assert_array_equal(again[1], weights)
+        wider = fit.with_widening(3.0).with_widening(2.0)
+        np.testing.assert_allclose(wider.covariance, 4.0 * np.eye(count))
+        assert wider.widening == 2.0

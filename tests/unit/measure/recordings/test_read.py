@@ -110,6 +110,16 @@ def test_a_response_of_velocity_over_volts_by_an_instrument_s_scale(tmp_path: Pa
     assert found.recording.voltage is None
     assert any(what == "assumed" for what, _ in found.facts)
     assert any("coherence is 0.50" in doubt for doubt in found.doubts)
+    assert found.recording.place is None
+    for given in ("x", "y"):
+        alone = said.replace("[columns]", f'{given} = "3 mm"\n[columns]')
+        with pytest.raises(ConfigError, match="x and y go together") as caught:
+            read_recording(written(tmp_path, data, alone, f"{given}.csv"))
+        assert caught.value.key == given
+    both = said.replace("[columns]", 'x = "3 mm"\ny = "4 mm"\n[columns]')
+    told = check_recording(written(tmp_path, data, both, "c.csv"))
+    assert told.recording.place == (3e-3, 4e-3)
+    assert ("place", "x, y = 3 mm, 4 mm") in told.facts
 
 
 def test_scans_of_a_line_and_of_a_face(tmp_path: Path) -> None:
