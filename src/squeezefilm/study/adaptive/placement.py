@@ -207,14 +207,12 @@ def information(
     total = np.zeros((answers, stimuli))
     joint = np.empty((answers, stimuli))
     told[:] = 0.0
-    whole = 0.0
     for first in range(0, cells, nuisance):
         share = 0.0
         for cell in range(first, first + nuisance):
             share += weights[cell]
         if share <= 0.0:
             continue
-        whole += share
         joint[:] = 0.0
         for answer in range(answers):
             here = joint[answer]
@@ -232,7 +230,7 @@ def information(
     for at in range(stimuli):
         rest, guessed = 1.0, 0.0
         for answer in range(answers):
-            p = total[answer, at] / whole
+            p = total[answer, at]
             rest -= p
             guessed += _term(p)
-        told[at] = told[at] / whole + guessed + _term(rest)
+        told[at] += guessed + _term(rest)

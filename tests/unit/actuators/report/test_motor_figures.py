@@ -1,7 +1,9 @@
 """Figures of a motor: the curves have their ends, the step says where it ends."""
 
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -14,6 +16,7 @@ from squeezefilm.actuators.motor.closed_loop import TrackedForce
 from squeezefilm.actuators.motor.curves import motor_map, speed_force_curve
 from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.actuators.motor.plane import simulate_plane
+from squeezefilm.actuators.report import motor as report
 from squeezefilm.actuators.report.motor import (
     foot_figure,
     force_step_figure,
@@ -73,3 +76,28 @@ def test_the_force_over_frequency_has_gaps_where_feet_stand_on_nodes() -> None:
     x, y = right.lines[0].get_data()
     assert list(x) == [-1, 0, 1]
     assert np.isnan(y).tolist() == [False, True, False]
+
+
+@pytest.mark.parametrize(
+    ("more", "names"),
+    [
+        ({"plane": None, "tracked": None}, []),
+        ({"plane": object(), "tracked": object()}, ["plane", "force-step"]),
+    ],
+)
+def test_the_page_has_a_figure_of_all_that_was_computed(
+    more: dict[str, Any], names: list[str]
+) -> None:
+    found: Any = mock.MagicMock(**more)
+    drawing = [name for name in vars(report) if name.endswith("_figure")]
+    stand_ins = {
+        name: mock.Mock(return_value=name)
+        for name in (*drawing, "write_page", "motor_rows", "how_sure")
+    }
+    with mock.patch.multiple(report, **stand_ins):
+        assert report.write_motor(found, Path("out")) == "write_page"
+    (given, folder), shown = stand_ins["write_page"].call_args
+    assert (given, folder) == (found, Path("out"))
+    assert (shown["key_numbers"], shown["more"]) == ("motor_rows", "how_sure")
+    always = ["speed-force", "map", "frequency-and-place", "foot"]
+    assert list(shown["figures"]) == [*always, *names]

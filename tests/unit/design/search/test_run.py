@@ -88,6 +88,15 @@ def test_the_front_is_feasible_and_nobody_beats_it(whole: DesignSearch) -> None:
     assert 0 < found.hypervolume < 1
 
 
+def test_a_search_whose_designs_cannot_be_built_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    def unbuilt(_: Requirements, designs: tuple[Design, ...], level: Level) -> list[Evaluated]:
+        return [Evaluated(one, level, {}, reason="too short for its ceramics") for one in designs]
+
+    monkeypatch.setattr(run, "evaluate_all", unbuilt)
+    with pytest.raises(InputError, match="can be built, for example: too short for its ceramics"):
+        _search(screened=8, solved=0)
+
+
 @pytest.mark.usefixtures("by_formula")
 def test_a_plate_is_one_task_with_voltages_over_the_whole_range(
     whole: DesignSearch, solved_tasks: list[tuple[Design, ...]]

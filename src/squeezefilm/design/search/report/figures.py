@@ -193,7 +193,7 @@ def _rows(found: DesignSearch, designs: Sequence[Evaluated]) -> si.FloatArray:
 
 def _thinned(designs: Sequence[Evaluated]) -> Sequence[Evaluated]:
     """Every so many designs where there are more than can be told apart."""
-    return designs[:: -(-len(designs) // _MOST_POINTS) or 1]
+    return designs[:: 1 + len(designs) // (_MOST_POINTS + 1)]
 
 
 @style.drawn

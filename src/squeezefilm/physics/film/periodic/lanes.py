@@ -125,6 +125,12 @@ def _div(typingctx: Any, a: Any, b: Any) -> Any:
     return eight(eight, eight), _binary("fdiv")
 
 
+def _turned(count: int) -> Any:
+    """The lanes in the order that begins after `count` of them."""
+    order = [(lane + count) % LANES for lane in range(LANES)]
+    return ir.Constant(ir.VectorType(_INT, LANES), order)
+
+
 def _total(typingctx: Any, a: Any) -> Any:
     """The sum of the eight lanes."""
 
@@ -132,9 +138,7 @@ def _total(typingctx: Any, a: Any) -> Any:
         vector = args[0]
         empty = ir.Constant(_VECTOR, ir.Undefined)
         for half in (4, 2, 1):
-            order = [lane + half if lane < half else lane for lane in range(LANES)]
-            mask = ir.Constant(ir.VectorType(_INT, LANES), order)
-            vector = builder.fadd(vector, builder.shuffle_vector(vector, empty, mask))
+            vector = builder.fadd(vector, builder.shuffle_vector(vector, empty, _turned(half)))
         return builder.extract_element(vector, ir.Constant(_INT, 0))
 
     return types.float64(eight), codegen
@@ -147,9 +151,7 @@ def _peak(typingctx: Any, a: Any) -> Any:
         vector = args[0]
         empty = ir.Constant(_VECTOR, ir.Undefined)
         for half in (4, 2, 1):
-            order = [lane + half if lane < half else lane for lane in range(LANES)]
-            mask = ir.Constant(ir.VectorType(_INT, LANES), order)
-            other = builder.shuffle_vector(vector, empty, mask)
+            other = builder.shuffle_vector(vector, empty, _turned(half))
             vector = builder.select(builder.fcmp_ordered(">", other, vector), other, vector)
         return builder.extract_element(vector, ir.Constant(_INT, 0))
 

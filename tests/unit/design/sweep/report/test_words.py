@@ -102,10 +102,21 @@ def test_many_points_are_cut_and_many_numbers_turned(capsys: pytest.CaptureFixtu
     assert "…" in text
     assert "19 V" in text
     assert "20 V" not in text
-    many = [Column(f"number{k}", ONE, np.arange(3.0) + 10 * k) for k in range(9)]
-    assert "number8 80 81 82" in said(capsys, made((THICK,), *many))
-    wide = [Column(f"number{k}", ONE, np.arange(100.0)) for k in range(9)]
-    assert "3 more columns stand in the files" in said(capsys, made((volts,), *wide))
+    few = axis("voltage", [float(k) for k in range(40)], V)
+    assert "…" not in said(capsys, made((few,), Column("relative_friction", ONE, np.arange(40.0))))
+
+    def table(points: int, numbers: int) -> str:
+        steps = axis("voltage", [float(k) for k in range(points)], V)
+        columns = [
+            Column(f"number{k}", ONE, np.arange(float(points)) + 10 * k) for k in range(numbers)
+        ]
+        return said(capsys, made((steps,), *columns))
+
+    assert "number8 80 81 82 83 84 85 86" in table(7, 9)
+    assert "number5 50 51" not in table(7, 6)
+    assert "more columns" not in table(8, 6)
+    assert "3 more columns stand in the files" in table(8, 9)
+    assert "number6" not in table(8, 9)
 
 
 def test_modes_that_were_followed_are_counted(capsys: pytest.CaptureFixture[str]) -> None:

@@ -14,6 +14,9 @@ from squeezefilm.core.hard_limits import SOLID_MEMORY
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.elements import slab_count as counting
+from squeezefilm.physics.plate.elements import slabs
+from squeezefilm.physics.plate.elements.box_model import BoxModel
+from squeezefilm.physics.plate.elements.cross_section import CrossSection
 from squeezefilm.physics.plate.elements.krylov import modes_near
 from squeezefilm.physics.plate.elements.slab_count import slab_count
 from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
@@ -51,6 +54,26 @@ def test_the_count_of_every_slice_is_that_of_the_assembled_model(seed: int) -> N
         np.testing.assert_array_equal(count.elements, inside)
         assert count.squares == sum(size**2 for size in inside)
         assert count.products == sum(size**3 for size in inside)
+
+
+def test_slices_that_differ_in_the_numbers_of_their_ceramics_are_assembled_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    made: list[int] = []
+    assembled = slabs.cross_section
+
+    def counted(model: BoxModel, element: int) -> CrossSection:
+        made.append(element)
+        return assembled(model, element)
+
+    monkeypatch.setattr(slabs, "cross_section", counted)
+    # A long ceramic and, beside it, two short ones after another.
+    places = ((10e-3, 2e-3, 60e-3), (12e-3, 49e-3, 10e-3), (40e-3, 49e-3, 10e-3))
+    patches = tuple(CeramicPatch(x, y, length, 14e-3, 0.5e-3) for x, y, length in places)
+    other = dataclasses.replace(SHEET, patches=patches)
+    solved = plate_model(other, 30e3, COARSE, all_classes(other)[0])
+    assert {one.electrodes for one in solved.slabs.sections} == {(), (0,), (0, 1), (0, 2)}
+    assert len(made) == len(set(solved.slabs.patterns)) == 3
 
 
 def test_glass_with_small_ceramics_fits_into_four_gigabytes() -> None:
