@@ -54,7 +54,7 @@ def _without_docstring(name: str) -> list[str]:
 
 def test_everything_public_has_a_docstring() -> None:
     modules = _modules()
-    assert len(modules) > 700
+    assert len(modules) > 500
     assert [name for module in modules for name in _without_docstring(module)] == []
 
 

@@ -105,7 +105,7 @@ NOT_CALLED = {
     physics.film.planar.balance.Balance physics.film.planar.balance.Balancer
     physics.film.planar.balance.Balancer.solve physics.film.planar.balance.Film
     physics.film.planar.balance.derivative physics.film.planar.balance.resampled
-    physics.film.planar.balance.times physics.film.planar.cut.cut_ellipse_grid
+    physics.film.planar.balance.times physics.film.planar.grid.cut_ellipse_grid
     physics.film.planar.gap.gap_values physics.film.planar.gap.require_periodic
     physics.film.planar.grid.PlanarGrid physics.film.planar.grid.disc_grid
     physics.film.planar.grid.ellipse_grid physics.film.planar.grid.graded_line
@@ -119,7 +119,7 @@ NOT_CALLED = {
     physics.plate.ring.elements.RingMesh physics.plate.ring.elements.harmonic_system
     physics.plate.ring.ceramic_disc.DiscSystem physics.plate.ring.ceramic_disc.disc_system
     physics.plate.elements.block_ldl.PartialLDL physics.plate.elements.block_ldl.partial_ldl
-    physics.plate.elements.mirrored_element.MirroredElement physics.plate.elements.slab_cells.Cell
+    physics.plate.elements.slab_cells.MirroredElement physics.plate.elements.slab_cells.Cell
     physics.plate.elements.slab_cells.Group physics.plate.elements.slab_cells.Group.inside
     physics.plate.elements.slab_cells.Group.node physics.plate.elements.slab_cells.mirrors
     physics.plate.elements.box_model.BoxModel physics.plate.elements.box_model.Electrode
@@ -140,8 +140,8 @@ NOT_CALLED = {
     physics.plate.elements.lobatto.LineMesh.interpolation
     physics.plate.elements.lobatto.LineMesh.located physics.plate.elements.lobatto.hierarchic_values
     physics.plate.elements.lobatto.lagrange_basis physics.plate.elements.lobatto.line_matrices
-    physics.plate.elements.lobatto.lobatto_nodes physics.plate.solid.mode_table.collected_modes
-    physics.plate.solid.mode_table.energy_shares_of physics.plate.elements.lobatto.gauss_points
+    physics.plate.elements.lobatto.lobatto_nodes physics.plate.solid.solve.collected_modes
+    physics.plate.solid.solve.energy_shares_of physics.plate.elements.lobatto.gauss_points
     physics.plate.ring.elements.graded_edges physics.plate.elements.lobatto.lagrange
     physics.plate.elements.sparse_modes.nearest_modes physics.plate.elements.sparse_modes.entries
     physics.plate.elements.sparse_modes.gathered physics.plate.elements.sparse_modes.shifted_inverse

@@ -8,7 +8,7 @@ import pytest
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.design.analysis.published_claims import Claim, read_claims
 from squeezefilm.validation.command import ClaimResult, judge, reproduce
-from squeezefilm.validation.contact import DIRECTION_VALUES
+from squeezefilm.validation.frozen import DIRECTION_VALUES
 from squeezefilm.validation.values import CLAIM_VALUES, ClaimValue
 
 

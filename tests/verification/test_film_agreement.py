@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.film_march import settle_to_periodic, uniform_gap
 
-from squeezefilm.physics.film.closed.linear import relative_damping, relative_stiffness
+from squeezefilm.physics.film.closed import relative_damping, relative_stiffness
 from squeezefilm.physics.film.gas import FilmGas
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.profile import flexural_profile

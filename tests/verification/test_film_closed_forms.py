@@ -11,7 +11,7 @@ from scipy.special import ive
 from tests.verification.trapped_film import trapped_load
 
 from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeError
-from squeezefilm.physics.film.closed import limits, linear
+from squeezefilm.physics.film import closed
 from squeezefilm.physics.film.gap import PaperGap
 from squeezefilm.physics.film.gas import slip_law
 from squeezefilm.physics.film.periodic.small import small_vibration
@@ -88,8 +88,8 @@ def test_reference_solution_agrees_with_published_load() -> None:
 
 def force_of(planform, sigma):
     """The complex force −fk − i fd over p0 A ε."""
-    fk = linear.relative_stiffness(sigma, planform)
-    return -fk - 1j * linear.relative_damping(sigma, planform)
+    fk = closed.relative_stiffness(sigma, planform)
+    return -fk - 1j * closed.relative_damping(sigma, planform)
 
 
 def test_strip_is_the_textbook_formula_where_that_is_stable() -> None:
@@ -118,22 +118,22 @@ def test_disc_is_the_bessel_formula() -> None:
     np.testing.assert_allclose(force_of("disc", sigma), expected, rtol=1e-13)
 
 
-@pytest.mark.parametrize("planform", get_args(linear.Planform))
-def test_force_is_stable_and_monotone_over_24_decades(planform: linear.Planform) -> None:
-    fk = linear.relative_stiffness(EVERY_SIGMA, planform)
-    fd = linear.relative_damping(EVERY_SIGMA, planform)
+@pytest.mark.parametrize("planform", get_args(closed.Planform))
+def test_force_is_stable_and_monotone_over_24_decades(planform: closed.Planform) -> None:
+    fk = closed.relative_stiffness(EVERY_SIGMA, planform)
+    fd = closed.relative_damping(EVERY_SIGMA, planform)
     assert np.all(np.diff(fk[fk < 1 - 1e-12]) > 0)
     assert np.all(fd > 0)
     assert np.all(fk <= 1)
-    extreme = linear.relative_stiffness(np.array([0.0, 1e-300, 1e300]), planform)
+    extreme = closed.relative_stiffness(np.array([0.0, 1e-300, 1e300]), planform)
     np.testing.assert_array_equal(extreme, [0, 0, 1])
-    assert linear.relative_damping(0.0, planform) == 0
+    assert closed.relative_damping(0.0, planform) == 0
 
 
 @pytest.mark.parametrize("planform", ["strip", "disc"])
-def test_force_is_continuous_where_the_form_changes(planform: linear.Planform) -> None:
-    switch = linear._SWITCH
-    for f in (linear.relative_stiffness, linear.relative_damping):
+def test_force_is_continuous_where_the_form_changes(planform: closed.Planform) -> None:
+    switch = closed._SWITCH
+    for f in (closed.relative_stiffness, closed.relative_damping):
         below, above = f(switch, planform), f(np.nextafter(switch, 1e9), planform)
         assert above == pytest.approx(below, rel=1e-13)
 
@@ -145,8 +145,8 @@ def test_low_squeeze_limits_err_by_the_square_of_sigma(planform, stiffness, damp
     # fk → σ²/120 of a strip, σ²/48 of a disc; fd → σ/12 and σ/8.
     sigma = np.array([0.02, 0.04])
     for exact, limit in (
-        (linear.relative_stiffness, sigma**2 / stiffness),
-        (linear.relative_damping, sigma / damping),
+        (closed.relative_stiffness, sigma**2 / stiffness),
+        (closed.relative_damping, sigma / damping),
     ):
         error = limit / exact(sigma, planform) - 1
         assert np.log2(error[1] / error[0]) == pytest.approx(2, abs=0.01)
@@ -155,15 +155,15 @@ def test_low_squeeze_limits_err_by_the_square_of_sigma(planform, stiffness, damp
 @pytest.mark.parametrize(("planform", "edge"), [("strip", 2.0), ("disc", 2.0)])
 def test_high_squeeze_limit_is_an_edge_layer_along_the_perimeter(planform, edge: float) -> None:
     sigma = np.array([1e8, 1e10])
-    lost = 1 - linear.relative_stiffness(sigma, planform)
+    lost = 1 - closed.relative_stiffness(sigma, planform)
     np.testing.assert_allclose(lost, edge / np.sqrt(2 * sigma), rtol=1e-4)
-    np.testing.assert_allclose(linear.relative_damping(sigma, planform), lost, rtol=3e-4)
+    np.testing.assert_allclose(closed.relative_damping(sigma, planform), lost, rtol=3e-4)
 
 
 @pytest.mark.parametrize(("planform", "expected"), [("strip", 10.13418), ("disc", 6.23324)])
 def test_crossover_is_where_stiffness_equals_damping(planform, expected: float) -> None:
     def excess(sigma: float) -> float:
-        return linear.relative_stiffness(sigma, planform) - linear.relative_damping(sigma, planform)
+        return closed.relative_stiffness(sigma, planform) - closed.relative_damping(sigma, planform)
 
     assert brentq(excess, 0.1, 100.0, xtol=1e-12) == pytest.approx(expected, abs=6e-6)
 
@@ -173,14 +173,14 @@ def test_low_squeeze_film_is_the_incompressible_damper() -> None:
     for frequency in (0.01, 0.1):
         sigma = 12 * eta * 2 * np.pi * frequency * length**2 / (p0 * h**2)
         omega = 2 * np.pi * frequency
-        damping = linear.relative_damping(sigma) * p0 * area / (h * omega)
+        damping = closed.relative_damping(sigma) * p0 * area / (h * omega)
         expected = eta * area * length**2 / h**3
         assert damping == pytest.approx(expected, rel=1e-5)
 
 
 def test_trapped_film_is_a_gas_spring() -> None:
     # Boyle: d(p A)/dh = p0 A/h.
-    assert linear.relative_stiffness(1e14) * 1e5 * 1e-4 / 5e-6 == pytest.approx(2e6, rel=1e-6)
+    assert closed.relative_stiffness(1e14) * 1e5 * 1e-4 / 5e-6 == pytest.approx(2e6, rel=1e-6)
 
 
 def second_order_load(epsilon: float, sigma: float, n: float, knudsen: float = 0.0) -> float:
@@ -237,19 +237,19 @@ def test_mean_pressure_is_the_time_mean_of_the_pressure() -> None:
     (a, b), (a_edge, b_edge) = least_and_wave(X[:, None]), least_and_wave(0.5)
     trapped = a / a_edge * np.sqrt(a_edge**2 + 1.5 * b_edge**2)
     mean = (trapped / (a + b * np.cos(T))).mean(axis=1)
-    np.testing.assert_allclose(limits.paper_mean_pressure(X, *numbers(STATOR)), mean, rtol=1e-12)
+    np.testing.assert_allclose(closed.paper_mean_pressure(X, *numbers(STATOR)), mean, rtol=1e-12)
 
 
 def test_printed_mean_pressure_is_right_without_vibration_in_space() -> None:
     # Without vibration in space (k1 → 0) the misprints vanish.
     flat = (0.04, 0.3, 1e-9, 20.0)
-    printed = limits.paper_mean_pressure_printed(0.1, *flat)
-    assert printed == pytest.approx(limits.paper_mean_pressure(0.1, *flat), rel=1e-12)
+    printed = closed.paper_mean_pressure_printed(0.1, *flat)
+    assert printed == pytest.approx(closed.paper_mean_pressure(0.1, *flat), rel=1e-12)
 
 
 def test_smooth_flat_contact_is_salbus_limit() -> None:
     gap = PaperGap(1e-6, 1e-6, 0.0, 350e-6, 1e3, 10e-3)
-    assert limits.contact_mean_pressure(gap) == pytest.approx(trapped_load(0.5), rel=1e-8)
+    assert closed.contact_mean_pressure(gap) == pytest.approx(trapped_load(0.5), rel=1e-8)
 
 
 def test_profile_solves_the_averaged_reynolds_equation_off_centre() -> None:
@@ -264,7 +264,7 @@ def test_profile_solves_the_averaged_reynolds_equation_off_centre() -> None:
         return gap.amplitude_ratio * np.cos(gap.wave_phase(x))
 
     def psi2(x):
-        return limits.mean_pressure_profile(x, gap) ** 2 * (a(x) ** 2 - b(x) ** 2)
+        return closed.mean_pressure_profile(x, gap) ** 2 * (a(x) ** 2 - b(x) ** 2)
 
     def slope(f):
         return (f(X + step) - f(X - step)) / (2 * step)
@@ -280,7 +280,7 @@ def test_general_profile_joins_the_symmetric_one() -> None:
     X = np.linspace(-0.5, 0.5, 301)
     nudged = PaperGap(0.6e-6, 2e-6, 50e-6, 350e-6, 18.7e-3, 10e-3, wave_offset=1e-18)
     np.testing.assert_allclose(
-        limits.mean_pressure_profile(X, nudged), limits.mean_pressure_profile(X, STATOR), rtol=1e-12
+        closed.mean_pressure_profile(X, nudged), closed.mean_pressure_profile(X, STATOR), rtol=1e-12
     )
 
 
@@ -294,18 +294,18 @@ def test_contact_mean_is_converged_quadrature(gap: PaperGap) -> None:
     means = []
     for count in (400_000, 800_000):
         X = (np.arange(count) + 0.5) / count - 0.5
-        means.append(float(np.mean(limits.mean_pressure_profile(X, gap) - 1)))
+        means.append(float(np.mean(closed.mean_pressure_profile(X, gap) - 1)))
     expected = means[1] + (means[1] - means[0]) / 3
-    assert limits.contact_mean_pressure(gap) - 1 == pytest.approx(expected, rel=2e-10, abs=1e-13)
+    assert closed.contact_mean_pressure(gap) - 1 == pytest.approx(expected, rel=2e-10, abs=1e-13)
 
 
 def test_contact_mean_is_the_same_one_by_one_and_vectorised() -> None:
     amplitudes = np.array([0.0, 0.5e-6, 2e-6, 8e-6])
-    together = limits.contact_mean_pressure(STATOR.with_amplitude(amplitudes))
-    alone = [limits.contact_mean_pressure(STATOR.with_amplitude(a)) for a in amplitudes]
+    together = closed.contact_mean_pressure(STATOR.with_amplitude(amplitudes))
+    alone = [closed.contact_mean_pressure(STATOR.with_amplitude(a)) for a in amplitudes]
     np.testing.assert_allclose(together, alone, rtol=1e-12)
     assert together[0] == 1
-    assert limits.mean_pressure_profile(
+    assert closed.mean_pressure_profile(
         np.linspace(-0.5, 0.5, 7), STATOR.with_amplitude(amplitudes)
     ).shape == (4, 7)
 
@@ -314,21 +314,21 @@ def test_mirrored_contact_has_the_same_mean() -> None:
     left, right = (
         PaperGap(0.6e-6, 2e-6, 50e-6, 350e-6, 18.7e-3, 10e-3, s * 2e-3, s * 0.1e-3) for s in (-1, 1)
     )
-    assert limits.contact_mean_pressure(left) == pytest.approx(
-        limits.contact_mean_pressure(right), rel=1e-12
+    assert closed.contact_mean_pressure(left) == pytest.approx(
+        closed.contact_mean_pressure(right), rel=1e-12
     )
 
 
 def test_pressure_refuses_a_closed_gap_and_a_point_outside() -> None:
     with pytest.raises(OutOfRangeError, match="roughness"):
-        limits.paper_mean_pressure(0.0, 0.5, 0.5, 1.0, 1.0)
+        closed.paper_mean_pressure(0.0, 0.5, 0.5, 1.0, 1.0)
     with pytest.raises(InputError, match="X = "):
-        limits.mean_pressure_profile(np.array([0.6]), STATOR)
+        closed.mean_pressure_profile(np.array([0.6]), STATOR)
     with pytest.raises(InputError, match="centred"):
-        limits.mean_pressure_profile(np.array([0.0]), SHIFTED, "paper2008-printed")
+        closed.mean_pressure_profile(np.array([0.0]), SHIFTED, "paper2008-printed")
     with pytest.raises(InputError, match="is not known"):
-        limits.contact_mean_pressure(STATOR, "paper2007")
+        closed.contact_mean_pressure(STATOR, "paper2007")
     with pytest.raises(ConvergenceError, match="settle"):
-        limits.contact_mean_pressure(
+        closed.contact_mean_pressure(
             PaperGap(1e-13, 5e-6, 50e-6, 350e-6, 5e-3, 10e-3), tolerance=1e-16
         )

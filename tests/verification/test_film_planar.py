@@ -12,10 +12,10 @@ from squeezefilm.core.errors import ConvergenceError, GeometryError, InputError
 from squeezefilm.core.hard_limits import PLANAR_MEMORY
 from squeezefilm.physics.film.gas import FilmGas, Gas
 from squeezefilm.physics.film.planar.balance import Balancer, Film, derivative, resampled
-from squeezefilm.physics.film.planar.cut import cut_ellipse_grid
 from squeezefilm.physics.film.planar.film import solve_planar
 from squeezefilm.physics.film.planar.gap import PlanarGap
 from squeezefilm.physics.film.planar.grid import (
+    cut_ellipse_grid,
     disc_grid,
     ellipse_grid,
     graded_line,

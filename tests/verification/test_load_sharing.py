@@ -30,7 +30,7 @@ from squeezefilm.physics.contact.sharing.pad import (
 )
 from squeezefilm.physics.contact.sharing.paper import relative_friction
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.film.closed.linear import relative_damping, relative_stiffness
+from squeezefilm.physics.film.closed import relative_damping, relative_stiffness
 from squeezefilm.physics.film.gap import PaperGap, squeeze_number
 from squeezefilm.physics.film.periodic.film import solve_uniform
 

@@ -7,7 +7,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError, UnreachableError
 from squeezefilm.physics.contact.sharing import paper
-from squeezefilm.physics.film.closed.limits import contact_mean_pressure, mean_pressure_profile
+from squeezefilm.physics.film.closed import contact_mean_pressure, mean_pressure_profile
 from squeezefilm.physics.film.gap import (
     PaperGap,
     frequency_for_squeeze_number,

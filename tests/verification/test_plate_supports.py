@@ -17,10 +17,9 @@ from squeezefilm.physics.plate.layout import (
     turned,
 )
 from squeezefilm.physics.plate.solid.guess import bare_frequency, pieced_frequency
-from squeezefilm.physics.plate.solid.mode_table import energy_shares_of
 from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.solid.response import harmonic_response
-from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.solid.solve import energy_shares_of, solve_modes
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480, quality_factor=1000)
 CERAMIC = Piezoceramic("PZT", 67.9e9, 0.2897, 23e9, 7700, -180e-12, 1900, 75)

@@ -23,7 +23,7 @@ from squeezefilm.design.analysis.published_claims import (
     read_claims,
 )
 from squeezefilm.validation import actuators  # noqa: F401 # each enters what it computes
-from squeezefilm.validation.contact import DIRECTION_VALUES
+from squeezefilm.validation.frozen import DIRECTION_VALUES
 from squeezefilm.validation.values import CLAIM_VALUES, ClaimValue, paper_design
 
 _VALUES: Kept[ClaimValue] = Kept("claims", ClaimValue)

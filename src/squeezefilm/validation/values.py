@@ -27,7 +27,7 @@ from squeezefilm.design.plate.sensitivity import (
 from squeezefilm.physics.chain.friction import friction_law
 from squeezefilm.physics.contact.sharing.paper import relative_friction, vibration_amplitude_for
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.physics.film.closed.limits import contact_mean_pressure, mean_pressure_profile
+from squeezefilm.physics.film.closed import contact_mean_pressure, mean_pressure_profile
 from squeezefilm.physics.film.gap import (
     PaperGap,
     frequency_for_squeeze_number,

@@ -13,8 +13,7 @@ import pytest
 from squeezefilm.design.analysis.published_claims import Claim, read_claims
 from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.validation.command import judge
-from squeezefilm.validation.contact import DIRECTION_VALUES
-from squeezefilm.validation.frozen import FROZEN
+from squeezefilm.validation.frozen import DIRECTION_VALUES, FROZEN
 from squeezefilm.validation.values import ClaimValue
 
 ASKED = [one for one in read_claims().all_claims if one.model]

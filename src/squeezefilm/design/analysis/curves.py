@@ -18,7 +18,7 @@ from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.friction_models import FrictionModel
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Surface
-from squeezefilm.physics.film.closed.limits import mean_pressure_profile
+from squeezefilm.physics.film.closed import mean_pressure_profile
 from squeezefilm.physics.film.gap import PaperGap
 from squeezefilm.physics.plate.solid.working import response_frequencies
 

@@ -13,19 +13,18 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.chain.amplitude_search import least_amplitude
 from squeezefilm.physics.chain.friction_models import (
     DEFAULT_MODEL,
     MODEL_KINDS,
     FrictionModel,
 )
 from squeezefilm.physics.chain.friction_table import FrictionTable, tabulated
-from squeezefilm.physics.chain.pad_law import PadLaw
+from squeezefilm.physics.chain.pad_law import PadLaw, least_amplitude
 from squeezefilm.physics.chain.pad_place import PadPlace
 from squeezefilm.physics.contact.sharing import paper
 from squeezefilm.physics.contact.sharing.pad import Limit
 from squeezefilm.physics.display import Display, Surface
-from squeezefilm.physics.film.closed.limits import PaperModel, contact_mean_pressure
+from squeezefilm.physics.film.closed import PaperModel, contact_mean_pressure
 from squeezefilm.physics.film.gap import PaperGap
 
 TABLE_SPEEDS: si.MetrePerSecondArray = np.append(0.0, np.geomspace(1e-3, 2.0, 47))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
@@ -13,10 +13,9 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
-from squeezefilm.core.errors import InputError, OutOfRangeError
+from squeezefilm.core.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.core.hard_limits import FINGER_SPEED
 from squeezefilm.core.materials import Gas
-from squeezefilm.physics.chain.amplitude_search import HIGHEST_AMPLITUDE
 from squeezefilm.physics.chain.friction_models import (
     MODEL_KINDS,
     FrictionLimits,
@@ -49,6 +48,47 @@ from squeezefilm.physics.plate.loaded_mode import mean_square_wave
 
 if TYPE_CHECKING:
     from squeezefilm.physics.contact.sharing.kernel import CompiledPad
+
+HIGHEST_AMPLITUDE: si.Metre = 50e-6
+
+
+def least_amplitude(
+    friction: Callable[[float], float],
+    wanted: si.Dimensionless,
+    model: str,
+    highest: Annotated[si.Metre, si.Above(2e-8)] = HIGHEST_AMPLITUDE,
+) -> si.Metre:
+    """The least amplitude (m) at which `friction` of an amplitude falls to `wanted`.
+
+    Raises `UnreachableError` where none up to `highest` (m, 50 µm) does.
+    """
+    from scipy.optimize import brentq
+
+    if wanted == 1:
+        return 0.0
+
+    def excess(amplitude: float) -> float:
+        return friction(amplitude) - wanted
+
+    # What is asked for may be within the rounding of what a still surface has.
+    if excess(0.0) <= 0:
+        return 0.0
+    low, least = 0.0, 1.0
+    for high in np.geomspace(2e-8, highest, 24):
+        try:
+            left = excess(float(high))
+        except OutOfRangeError:
+            # So strong a vibration closes the gap at some ridge: it is no way to get there.
+            break
+        if left <= 0:
+            return float(brentq(excess, low, high, xtol=1e-20, rtol=1e-12))
+        low, least = float(high), min(least, left + wanted)
+    raise UnreachableError(
+        f"relative_friction = {wanted:.4g} is not reached by any vibration amplitude up to "
+        f"{si.format_quantity(highest, si.Unit('m'))}: the model '{model}' "
+        f"gives {least:.4g} at the least; press less, take a smoother surface or ask for less"
+    )
+
 
 _RIPPLE_POSITIONS = 24
 PascalPerMetreComplex = Annotated[complex, si.Unit("Pa/m")]
@@ -250,7 +290,8 @@ class PadLaw:
     def _even_swings(self) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
         """The same of an even wave, wherever the pad is."""
         points = pad_points(self.finger, self.contact_side)
-        wave = np.abs(np.cos(np.pi * (points.along + self.position) / self.half_wavelength))
+        phase = np.pi * (points.along + self.position) / self.half_wavelength
+        wave: si.DimensionlessArray = np.abs(np.cos(phase))
         kinds, alike = np.unique(np.round(wave, 9), return_inverse=True)
         return kinds, np.bincount(alike, weights=points.shares).astype(float)
 

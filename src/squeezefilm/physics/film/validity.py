@@ -11,7 +11,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.core.materials import Gas
-from squeezefilm.physics.film.closed.linear import relative_stiffness
+from squeezefilm.physics.film.closed import relative_stiffness
 from squeezefilm.physics.film.gap import PaperGap
 
 INERTIA_LIMIT: si.Dimensionless = 2.0

@@ -9,7 +9,7 @@ from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.contact.asperities import CompiledAsperities
 from squeezefilm.physics.contact.asperity_kernel import asperity_mean
 
-# As `physics.film.closed.linear` has it, whose formula for arrays takes a tenth of a millisecond
+# As `physics.film.closed` has it, whose formula for arrays takes a tenth of a millisecond
 # for one.
 _SWITCH = 900.0
 
@@ -31,7 +31,7 @@ class CompiledFinger(NamedTuple):
 
 @compiled(error_model="numpy")
 def strip_force(sigma: float) -> complex:
-    """fk + i fd of a strip at a squeeze number: see `physics.film.closed.linear`."""
+    """fk + i fd of a strip at a squeeze number: see `physics.film.closed`."""
     if sigma > _SWITCH:
         z = cmath.sqrt(1j * sigma) / 2.0
         decay = cmath.exp(-2.0 * z)

@@ -13,7 +13,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import UnreachableError
-from squeezefilm.physics.film.closed.limits import PaperModel, contact_mean_pressure
+from squeezefilm.physics.film.closed import PaperModel, contact_mean_pressure
 from squeezefilm.physics.film.gap import PaperGap
 
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.film.closed.linear import relative_damping, relative_stiffness
+from squeezefilm.physics.film.closed import relative_damping, relative_stiffness
 from squeezefilm.physics.film.gas import Gas
 from squeezefilm.physics.film.periodic.profile import GapProfile, Harmonics
 from squeezefilm.physics.film.periodic.solution import HARMONICS, Asked, Field, Found

@@ -15,9 +15,8 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.physics.film.gas import ISOTHERMAL, FilmGas, require_film
-from squeezefilm.physics.film.planar.balance import Film
+from squeezefilm.physics.film.planar.balance import Film, row_block
 from squeezefilm.physics.film.planar.gap import GapFunction, PlanarGap, require_periodic
-from squeezefilm.physics.film.planar.kernel import row_block
 from squeezefilm.physics.film.planar.ladder import RUNGS, Climb, Ladder, PlanarShape, climb_to
 
 

@@ -17,10 +17,10 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import PLANAR_MEMORY, require_within
 from squeezefilm.physics.film.periodic.nested import steadied
 from squeezefilm.physics.film.planar.balance import Balance, Balancer, Film, resampled
-from squeezefilm.physics.film.planar.cut import cut_ellipse_grid
 from squeezefilm.physics.film.planar.gap import PlanarGap, gap_values
 from squeezefilm.physics.film.planar.grid import (
     PlanarGrid,
+    cut_ellipse_grid,
     disc_grid,
     ellipse_grid,
     graded_line,

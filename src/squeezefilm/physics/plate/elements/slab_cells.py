@@ -1,19 +1,217 @@
-"""The cells that a row of slices is cut into: stretches that repeat are eliminated once."""
+"""The cells that a row of slices is cut into: stretches that repeat are eliminated once.
+
+An element's inner slices are eliminated by halves, since it is its own mirror image along x.
+Reflection turns u and takes node a to node p − a. The sums and the differences of what mirrored
+nodes have (with that sign) do not meet in the stiffness of a uniform element, so it falls into two
+matrices of half the size: a quarter of the work of eliminating it in one. In each, what is inside
+one element along y meets nothing of another: those are eliminated one by one, and what they share
+after them.
+"""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from squeezefilm.physics.plate.elements.block_ldl import PartialLDL
-from squeezefilm.physics.plate.elements.mirrored_element import MirroredElement
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.plate.elements.block_ldl import LDLSteps, PartialLDL, Rows, partial_ldl
 from squeezefilm.physics.plate.elements.slabs import Slabs
 
 Matrix = NDArray[Any]
+
+
+class SliceMatrices(NamedTuple):
+    """What an element of order p and any length is made of: its slice's matrices (`P0` with the
+    shift in it, as `cross_section` names them) and the integrals along x as `line_matrices` gives
+    them; `signs` is −1 for the slice's u and 1 for all else. `groups` has for each of several
+    elements along y the unknowns inside it, and those on its two sides."""
+
+    P2: Matrix
+    P1: Matrix
+    P0: Matrix
+    mass: Matrix
+    slope: Matrix
+    stiffness: Matrix
+    signs: Matrix
+    groups: tuple[tuple[si.IntArray, si.IntArray], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class MirroredElement:
+    """The inner slices of an element eliminated onto its two end slices.
+
+    `halves` are the sums and the differences of mirrored slices, each with those of the ends last;
+    `kept` says which unknowns of a middle slice (of an even order) belong to each.
+    """
+
+    order: int
+    signs: Matrix
+    halves: tuple[LDLSteps, LDLSteps]
+    kept: tuple[Matrix, Matrix]
+
+    @property
+    def negative(self) -> int:
+        """The number of negative pivots, if counted."""
+        return sum(half.negative for half in self.halves)
+
+    def forward(self, inside: Matrix) -> tuple[tuple[Matrix, Matrix], Matrix]:
+        """The reduced right sides of both halves, and what to subtract from that of the ends."""
+        n, order = self.signs.size, self.order
+        slices = inside.reshape(order - 1, n, inside.shape[1])
+        # The mirror image of an inner slice, with u turned.
+        image = slices[::-1] * self.signs[:, None]
+        pairs, reduced, updates = (order - 1) // 2, [], []
+        size = (pairs * n, inside.shape[1])
+        for sign, half, kept in zip((1, -1), self.halves, self.kept, strict=True):
+            part = (slices[:pairs] + sign * image[:pairs]).reshape(size) * np.sqrt(0.5)
+            if order % 2 == 0:
+                part = np.concatenate([part, slices[pairs][kept]])
+            y, update = half.forward(part)
+            reduced.append(y)
+            updates.append(update * np.sqrt(0.5))
+        both, differ = updates[0] + updates[1], updates[0] - updates[1]
+        return (reduced[0], reduced[1]), np.concatenate([both, self.signs[:, None] * differ])
+
+    def backward(self, reduced: tuple[Matrix, Matrix], outside: Matrix) -> Matrix:
+        """The solution in the inner slices, given `forward`'s reduced sides and the solution at the
+        first and the last slice."""
+        n, order = self.signs.size, self.order
+        first, image = outside[:n], self.signs[:, None] * outside[n:]
+        pairs = (order - 1) // 2
+        found = [
+            half.backward(y, (first + sign * image) * np.sqrt(0.5))
+            for sign, half, y in zip((1, -1), self.halves, reduced, strict=True)
+        ]
+        out = np.empty((order - 1, n, first.shape[1]), dtype=found[0].dtype)
+        size = (pairs, n, first.shape[1])
+        even, odd = (part[: pairs * n].reshape(size) * np.sqrt(0.5) for part in found)
+        out[:pairs] = even + odd
+        out[order - 1 - pairs :] = ((even - odd) * self.signs[:, None])[::-1]
+        if order % 2 == 0:
+            for part, kept in zip(found, self.kept, strict=True):
+                out[pairs][kept] = part[pairs * n :]
+        return out.reshape((order - 1) * n, first.shape[1])
+
+
+def mirrored_element(made: SliceMatrices, *, count: bool = False) -> tuple[MirroredElement, Matrix]:
+    """Eliminate the inner slices of an element of uniform cross-section; the second result is the
+    matrix that is left over the first and the last slice.
+
+    Right for media that are their own mirror image along x: then P1 couples u with what is not u,
+    and the other slice matrices u with u. `count` counts negative pivots.
+    """
+    n, order = made.signs.size, made.mass.shape[0] - 1
+    kept = np.flatnonzero(made.signs > 0), np.flatnonzero(made.signs < 0)
+    plus, even = _half(made, 1, kept[0], count)
+    minus, odd = _half(made, -1, kept[1], count)
+    signs = made.signs
+    schur = np.empty((2 * n, 2 * n), dtype=even.dtype)
+    schur[:n, :n] = (even + odd) / 2
+    schur[:n, n:] = (even - odd) / 2 * signs
+    schur[n:, :n] = schur[:n, n:].T
+    schur[n:, n:] = schur[:n, :n] * signs * signs[:, None]
+    return MirroredElement(order, signs, (plus, minus), kept), schur
+
+
+_Place = tuple[int, si.IntArray, si.IntArray]
+"""A slice, some of its unknowns, and their rows in the matrix of a half."""
+
+
+def _half(made: SliceMatrices, sign: int, own: si.IntArray, count: bool) -> tuple[LDLSteps, Matrix]:
+    """The inner slices' sums (`sign` 1) or differences (−1) eliminated: pairs, then the unknowns
+    `own` of a middle slice. With the matrix that is left of the ends."""
+    n, order = made.signs.size, made.mass.shape[0] - 1
+    pairs, everything = (order - 1) // 2, np.arange(n)
+    inner: list[_Place] = [(a, everything, everything + (a - 1) * n) for a in range(1, pairs + 1)]
+    pivots = pairs * n
+    if order % 2 == 0:
+        inner.append((order // 2, own, pivots + np.arange(own.size)))
+        pivots += own.size
+    ends: _Place = (0, everything, pivots + everything)
+    inside = np.zeros(n, dtype=bool)
+    for group, _ in made.groups:
+        inside[group] = True
+    shared = [_part(place, ~inside) for place in inner]
+    steps: list[tuple[Rows, Rows, PartialLDL]] = []
+    # What the elements along y share, and the ends: eliminated last, and what is left.
+    rows = np.concatenate([place[2] for place in (*shared, ends)])
+    position = np.full(pivots + n, -1)
+    position[rows] = np.arange(rows.size)
+    rest = _matrix(made, sign, [*shared, ends], len(shared) + 1)
+    for group, sides in made.groups if inner else ():
+        chosen, beside = np.zeros((2, n), dtype=bool)
+        chosen[group], beside[sides] = True, True
+        first = [_part(place, chosen) for place in inner]
+        later = [*(_part(place, beside) for place in inner), _part(ends, chosen | beside)]
+        eliminated, met = (np.concatenate([p[2] for p in part]) for part in (first, later))
+        if not eliminated.size:
+            continue
+        A = _matrix(made, sign, [*first, *later], len(first))
+        ldl, left = partial_ldl(A, eliminated.size, count=count)
+        rest[np.ix_(position[met], position[met])] += left
+        steps.append((_rows(eliminated), _rows(met), ldl))
+    if rows.size > n:
+        ldl, rest = partial_ldl(rest, rows.size - n, count=count)
+        steps.append((_rows(rows[:-n]), _rows(rows[-n:]), ldl))
+    return LDLSteps(pivots, pivots + n, tuple(steps)), rest
+
+
+def _rows(numbers: si.IntArray) -> Rows:
+    """Rows that follow each other as a slice: taken without copying."""
+    first, last = int(numbers[0]), int(numbers[-1])
+    return slice(first, last + 1) if last - first == numbers.size - 1 else numbers
+
+
+def _part(place: _Place, wanted: Matrix) -> _Place:
+    """Of a place the unknowns that are wanted (a truth value for each of the slice)."""
+    a, unknowns, rows = place
+    return a, unknowns[wanted[unknowns]], rows[wanted[unknowns]]
+
+
+def _matrix(made: SliceMatrices, sign: int, places: list[_Place], filled: int) -> Matrix:
+    """The half's matrix over the unknowns of places, one after the other: what the first `filled`
+    of them have of all; what the others have of each other is left at 0."""
+    stops = np.cumsum([0, *(place[1].size for place in places)])
+    spans = [slice(a, b) for a, b in itertools.pairwise(stops.tolist())]
+    order = made.mass.shape[0] - 1
+    A = np.zeros((int(stops[-1]), int(stops[-1])), dtype=made.P0.dtype)
+    for i, (a, some, _) in enumerate(places[:filled]):
+        for k in range(i, len(places)):
+            b, others, _ = places[k]
+            block = _block(made, (a, some), (b, others), sign)
+            # A middle slice is its own image: it stands once, not half and half.
+            block *= np.sqrt(0.5) ** ((2 * a == order) + (2 * b == order))
+            A[spans[i], spans[k]] = block
+            if i != k:
+                A[spans[k], spans[i]] = block.T
+    return A
+
+
+def _block(
+    made: SliceMatrices, own: tuple[int, si.IntArray], other: tuple[int, si.IntArray], sign: int
+) -> Matrix:
+    """What unknowns of a slice have of others of slice b and of b's image, with u turned in it."""
+    (a, some), (b, others) = own, other
+    image = made.mass.shape[0] - 1 - b
+    turned = sign * made.signs[others]
+
+    def factor(line: Matrix, i: int, j: int, k: int, m: int) -> Matrix:
+        return np.asarray(line[i, j] + turned * line[k, m])
+
+    def cut(matrix: Matrix) -> Matrix:
+        every = some.size == others.size == made.signs.size
+        return matrix if every else matrix[np.ix_(some, others)]
+
+    out = cut(made.P0) * factor(made.mass, a, b, a, image)
+    out += cut(made.P2) * factor(made.stiffness, a, b, a, image)
+    out += cut(made.P1) * factor(made.slope, a, b, a, image)
+    out += cut(made.P1.T) * factor(made.slope, b, a, image, a)
+    return out
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,12 +20,16 @@ from numpy.typing import NDArray
 from squeezefilm.physics.plate.elements.block_ldl import PartialLDL, partial_ldl
 from squeezefilm.physics.plate.elements.cross_section import code_parts
 from squeezefilm.physics.plate.elements.lobatto import line_matrices
-from squeezefilm.physics.plate.elements.mirrored_element import (
+from squeezefilm.physics.plate.elements.slab_cells import (
+    Cell,
+    Group,
     MirroredElement,
+    Place,
     SliceMatrices,
+    cut,
     mirrored_element,
+    mirrors,
 )
-from squeezefilm.physics.plate.elements.slab_cells import Cell, Group, Place, cut, mirrors
 from squeezefilm.physics.plate.elements.slabs import Slabs, relabelled
 
 Matrix = NDArray[Any]

@@ -9,14 +9,20 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import itertools
 import time
-from typing import Annotated
+from collections.abc import Iterable
+from typing import Annotated, NamedTuple, TypeVar
+
+import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.blas_threads import one_blas_thread
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import FREQUENCY
 from squeezefilm.core.progress import Deadline, ShareProgress
+from squeezefilm.physics.plate.elements.box_model import Medium
+from squeezefilm.physics.plate.elements.slabs import Slabs
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.coarse_modes import (
     CoarseModes,
@@ -25,11 +31,200 @@ from squeezefilm.physics.plate.solid.coarse_modes import (
     coarse_modes,
 )
 from squeezefilm.physics.plate.solid.guess import estimated_frequency
-from squeezefilm.physics.plate.solid.mode_table import collected_modes
-from squeezefilm.physics.plate.solid.modes import Label, PlateModes, check_band
-from squeezefilm.physics.plate.solid.refined_modes import RefinedModes, refined_modes, with_label
+from squeezefilm.physics.plate.solid.model import PlateModel
+from squeezefilm.physics.plate.solid.modes import (
+    MODEL,
+    Label,
+    PlateModes,
+    check_band,
+    label_of,
+    surface_shapes,
+)
+from squeezefilm.physics.plate.solid.refined_modes import (
+    UNREFINED,
+    RefinedModes,
+    effective_coupling,
+    extrapolated,
+    refined_modes,
+    with_label,
+)
 from squeezefilm.physics.plate.solid.size import expected_seconds
-from squeezefilm.physics.plate.solid.symmetry import all_classes, drive_classes, told_of
+from squeezefilm.physics.plate.solid.symmetry import (
+    Symmetry,
+    all_classes,
+    drive_classes,
+    drive_signs,
+    told_of,
+)
+
+_Row = TypeVar("_Row")
+
+
+def energy_shares_of(slabs: Slabs, vectors: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
+    """The share of each medium, and of springs, in a mode's elastic energy (modes × media), and the
+    loss factor that these shares and each medium's and spring's own loss make."""
+    model = slabs.model
+    energy, lost = [], []
+    used = set(np.unique(model.medium).tolist())
+    for number, medium in enumerate(model.media):
+        if number not in used:
+            energy.append(np.zeros(vectors.shape[1]))
+            lost.append(energy[-1])
+            continue
+
+        def only(other: Medium, own: Medium = medium) -> tuple[float, float]:
+            return float(other is own), 0.0
+
+        sections = slabs.weighted_sections(only, springs=0.0)
+        energy.append(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
+        lost.append(energy[-1] * (medium.loss or 0.0))
+    if model.foundations:
+        for total, springs in ((energy, 1.0), (lost, model.spring_losses)):
+            sections = slabs.weighted_sections(lambda m: (0.0, 0.0), springs=springs)
+            total.append(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
+    table, whole = np.stack(energy, axis=1), np.sum(energy, axis=0)
+    return table / whole[:, None], np.sum(lost, axis=0) / whole
+
+
+class _Columns(NamedTuple):
+    """What `PlateModes` has of each mode, here of those of one class."""
+
+    frequencies: si.HertzArray
+    errors: si.HertzArray
+    mesh_frequencies: si.HertzArray
+    labels: list[Label | None]
+    parities: list[Symmetry]
+    shapes: si.FloatArray
+    modal_forces: si.FloatArray
+    drive_forces: si.FloatArray
+    open_frequencies: si.HertzArray
+    open_errors: si.HertzArray
+    couplings: si.DimensionlessArray
+    coupling_errors: si.DimensionlessArray
+    energy_shares: si.DimensionlessArray
+    quality_factors: si.DimensionlessArray
+    fields: list[tuple[PlateModel, si.FloatArray]]
+
+
+def collected_modes(
+    plate: RectangularPlate,
+    pieces: list[RefinedModes],
+    tolerance: float,
+    band: tuple[float, float] | None,
+) -> PlateModes:
+    """The modes of all classes in ascending order, those outside a band left out.
+
+    Raises `InputError` where none is left.
+    """
+    tables = [_table(piece, drive_signs(plate)) for piece in pieces]
+    order = _order([frequency for table in tables for frequency in table.frequencies], band)
+
+    def taken(columns: Iterable[Iterable[_Row]]) -> list[_Row]:
+        rows = list(itertools.chain.from_iterable(columns))
+        return [rows[i] for i in order]
+
+    frequencies = np.array(taken(table.frequencies for table in tables))
+    errors = np.array(taken(table.errors for table in tables))
+    over = int(np.sum(errors > tolerance * frequencies))
+    coarse = any(piece.level == UNREFINED for piece in pieces)
+    model = pieces[0].solved.model
+    materials = [medium.name for medium in model.media]
+    if model.foundations:
+        materials.append("supports")
+    x, y, _ = surface_shapes(pieces[0].solved, pieces[0].vectors[:, :0])
+    return PlateModes(
+        plate=plate,
+        frequencies=frequencies,
+        errors=errors,
+        mesh_frequencies=np.array(taken(table.mesh_frequencies for table in tables)),
+        labels=tuple(taken(table.labels for table in tables)),
+        parities=tuple(taken(table.parities for table in tables)),
+        x=x,
+        y=y,
+        shapes=np.array(taken(table.shapes for table in tables)),
+        modal_forces=np.array(taken(table.modal_forces for table in tables)),
+        drive_forces=np.array(taken(table.drive_forces for table in tables)),
+        open_frequencies=np.array(taken(table.open_frequencies for table in tables)),
+        open_errors=np.array(taken(table.open_errors for table in tables)),
+        coupling_errors=np.array(taken(table.coupling_errors for table in tables)),
+        couplings=np.array(taken(table.couplings for table in tables)),
+        quality_factors=np.array(taken(table.quality_factors for table in tables)),
+        materials=tuple(materials),
+        energy_shares=np.array(taken(table.energy_shares for table in tables)),
+        model=MODEL,
+        status=(
+            f"the frequencies of all {len(order)} modes within {100 * tolerance:.2g} % (estimated)"
+            if over == 0
+            else f"{over} of {len(order)} modes have an estimated error above {tolerance:.1e}; "
+            + ("the time was up" if coarse else "no finer mesh was used")
+        ),
+        unknowns=max(piece.solved.slabs.unknowns for piece in pieces),
+        _fields=tuple(taken(table.fields for table in tables)),
+        left_coarse=coarse,
+    )
+
+
+def _order(every: list[si.Hertz], band: tuple[float, float] | None) -> list[int]:
+    """The numbers of the frequencies in a band, ascending by frequency."""
+    order = sorted(range(len(every)), key=every.__getitem__)
+    if band is not None:
+        order = [i for i in order if band[0] <= every[i] <= band[1]]
+    if not order:
+        low, high = band or (0.0, 0.0)
+        raise InputError(
+            f"no mode lies between {low:.6g} Hz and {high:.6g} Hz; widen the band, or ask for the "
+            "modes near a frequency",
+            quantity="band",
+        )
+    return order
+
+
+def _table(piece: RefinedModes, signs: si.FloatArray) -> _Columns:
+    """The modes of one class; `signs` are those of the drive."""
+    frequency, error = extrapolated(piece.coarse_values, piece.values, piece.level)
+    solved = piece.solved
+    vectors = piece.vectors * (1 / np.sqrt(solved.copies))
+    x, y, surface = surface_shapes(solved, vectors)
+    G, _ = solved.slabs.electrode_columns
+    own = np.array(solved.sign_of) * np.array(solved.share_of)
+    forces = -(G.T @ vectors).T[:, list(solved.electrode_of)] * own[None, :]
+    # Ratios need few digits: they are taken from the coarse mesh.
+    rough, some = piece.found, piece.found.vectors[:, piece.index]
+    shares, losses = energy_shares_of(rough.solved.slabs, some)
+    omega = piece.shunted
+    shunted = omega.real / np.sqrt(piece.values)
+    frequency, error = frequency * shunted, error * shunted
+    losses = losses + 2 * omega.imag / omega.real
+    coupling, coupling_error = effective_coupling(piece)
+    opened, open_error = extrapolated(piece.coarse_open_values, piece.open_values, piece.level)
+    # A product for each mode, as results were recorded: `forces @ signs` may differ in the last
+    # digit. (So may a mode that is alone in its class: BLAS adds in another order along its row.)
+    driven = np.array([row @ signs for row in forces])
+    turn = np.array([_turn(top, one) for top, one in zip(surface, driven, strict=True)])
+    return _Columns(
+        frequencies=frequency,
+        errors=error,
+        mesh_frequencies=np.sqrt(piece.values) / (2 * np.pi),
+        labels=[label_of(top, x, y) for top in surface],
+        parities=[piece.found.parity] * frequency.size,
+        shapes=turn[:, None, None] * surface[..., 2],
+        modal_forces=turn[:, None] * forces,
+        drive_forces=np.abs(driven),
+        open_frequencies=opened,
+        open_errors=open_error,
+        couplings=coupling,
+        coupling_errors=coupling_error,
+        energy_shares=shares,
+        quality_factors=1 / np.maximum(losses, 1e-30),
+        fields=[(solved, sign * one) for sign, one in zip(turn, vectors.T, strict=True)],
+    )
+
+
+def _turn(top: si.FloatArray, driven: float) -> float:
+    """The sign of a mode is free: the drive pushes it up, or its largest value does."""
+    largest = top[:, :, 2].flat[int(np.argmax(np.abs(top[:, :, 2])))]
+    return -1.0 if driven < -1e-9 or (abs(driven) <= 1e-9 and largest < 0) else 1.0
+
 
 # So many modes of a class are looked at around the guess of a mode that is asked for by its lines.
 _WIDTHS = (8, 24)

@@ -12,7 +12,7 @@ from squeezefilm.physics.contact.finger.load import compiled_finger
 from squeezefilm.physics.contact.finger.load_kernel import felt, strip_force
 from squeezefilm.physics.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.film.closed.linear import relative_damping, relative_stiffness
+from squeezefilm.physics.film.closed import relative_damping, relative_stiffness
 from squeezefilm.physics.film.gap import squeeze_number
 
 AIR = load_display("biet2008-plate").gas

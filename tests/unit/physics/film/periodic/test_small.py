@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import ConvergenceError
-from squeezefilm.physics.film.closed.linear import relative_damping, relative_stiffness
+from squeezefilm.physics.film.closed import relative_damping, relative_stiffness
 from squeezefilm.physics.film.gas import slip_law
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform

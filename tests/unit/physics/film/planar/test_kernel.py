@@ -7,7 +7,7 @@ import pytest
 
 from squeezefilm.physics.film.gas import Gas
 from squeezefilm.physics.film.mobility import mobility
-from squeezefilm.physics.film.planar.kernel import (
+from squeezefilm.physics.film.planar.balance import (
     Balances,
     Faces,
     Storage,
