@@ -77,6 +77,7 @@ def response(frequency: FloatArray = F, **given: object) -> kinds.FrequencyRespo
 def test_responses_and_sweeps_of_them() -> None:
     right, h = response(), response().displacement_per_volt
     assert_said(right)
+    assert_said(response(F[:19]), "^19 points are few for a resonance")
     assert_said(response(coherence=np.full(F.size, 0.91)))
     assert_said(response(coherence=np.full(F.size, 0.89)), r"^the coherence is 0\.89 in the middle")
     rises = r"^the phase rises by 1\d\d deg through the resonance"
