@@ -1,1 +1,1 @@
-"""What every part stands on: quantities, errors, configuration, results, files, the report kit."""
+"""Ground of every part: quantities, errors, configuration, results, files, the report kit."""

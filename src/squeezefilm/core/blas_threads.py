@@ -1,4 +1,4 @@
-"""One BLAS thread while many small dense blocks are worked on.
+"""Limit of one BLAS thread while many small dense blocks are worked on.
 
 OpenBLAS spreads even small products over all cores and lets them wait for each other; measured
 here, the plate solver then runs up to a hundred times slower. NumPy and SciPy each bring their own

@@ -1,5 +1,5 @@
-"""What a calibrated display's file keeps of its calibration: how its values vary together, and when
-it was made, on what, and how it went.
+"""Record of a calibration in a calibrated display's file: how its values vary together, and when it
+was made, on what, and how it went.
 
 `JointSpread` is computed with, as the values' own spreads are; `CalibrationRecord` is for people,
 and for the lab.

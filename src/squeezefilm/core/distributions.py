@@ -1,4 +1,4 @@
-"""How sure a value is: the distributions that a description may give beside a value."""
+"""Distributions that a description may give beside a value: how sure it is."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a display may be driven with: limits that are refused, never clipped.
+"""Limits of a display's drive: limits that are refused, never clipped.
 
 They are set on the device, and the device holds them: the host's copy only tells a mistake earlier.
 """

@@ -129,7 +129,7 @@ class RecordError(SqueezefilmError):
 
 
 class WorkersError(SqueezefilmError):
-    """Those who were to answer cannot be reached, cannot be used, or are gone; says what to do."""
+    """Workers that were to answer cannot be reached or used, or are gone; says what to do."""
 
 
 class LoopError(SqueezefilmError):

@@ -21,7 +21,7 @@ _ONE, _M, _HZ, _S, _N, _PA = (si.Unit(symbol) for symbol in ("1", "m", "Hz", "s"
 
 @dataclass(frozen=True, slots=True)
 class HardLimit:
-    """From `least` to `most` of what `name` says, in `unit`; `reason` is what people are told."""
+    """Range from `least` to `most` of `name`, in `unit`; `reason` is what people are told."""
 
     name: str
     least: float

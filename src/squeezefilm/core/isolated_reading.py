@@ -32,10 +32,10 @@ from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.hard_limits import READING_MEMORY, READING_TIME
 
 Read = tuple[Any, list[si.FloatArray]]
-"""What a function in the child returns: facts (anything that JSON holds), and arrays."""
+"""Result of a function in the child: facts (anything that JSON holds), and arrays."""
 
 _PATIENCE: si.Second = 4 * READING_TIME.most
-"""How long a child may take for one file by the clock on the wall."""
+"""Longest time for one file by the clock on the wall."""
 _LEAVE: si.Second = 2.0
 _FLOATS = np.dtype("<f8")
 _LONGEST_HEAD = 16_000_000

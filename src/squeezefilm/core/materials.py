@@ -1,4 +1,4 @@
-"""What plates, ceramics and gas are made of. Pure data with range checks; no physics of its own
+"""Materials of plates and ceramics, and gas. Pure data with range checks; no physics of its own
 beyond conversions between the ways in which the same constant is given."""
 
 from __future__ import annotations

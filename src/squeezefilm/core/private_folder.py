@@ -44,7 +44,7 @@ def is_shared(folder: Path, variable: str) -> bool:
 
 
 def _shared_by(known: os.stat_result) -> str:
-    """Who else can write there, in words; empty where nobody can."""
+    """Words for who else can write there; empty where nobody can."""
     if known.st_uid not in (os.geteuid(), 0):
         return "it belongs to another user"
     if known.st_mode & stat.S_IWOTH:

@@ -66,7 +66,7 @@ def within(tell: ShareProgress, first: float, last: float) -> ShareProgress:
 
 
 NO_HURRY = Pace()
-"""As long as it takes, told to nobody."""
+"""Pace of work that takes as long as it takes, told to nobody."""
 
 
 def said_with_time_left(

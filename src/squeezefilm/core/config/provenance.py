@@ -1,4 +1,4 @@
-"""Where a value comes from: text beside the value in the TOML file, kept beside it in memory.
+"""Source of a value: text beside the value in the TOML file, kept beside it in memory.
 
 A value in TOML is either plain, ``thickness = "2 mm"``, or a table that says where it comes from:
 ``thickness = { value = "2 mm", source = "paper, section 3.1", evidence = "published" }``. How sure

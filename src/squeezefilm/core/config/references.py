@@ -1,4 +1,4 @@
-"""What a file names in place of writing it out: the file that it was copied from, and materials.
+"""References of a file in place of writing it out: the file that it was copied from, and materials.
 
 Both are resolved in the tree that TOML gave, before anything is checked: what comes after sees one
 file with everything in it, and every value with its own source.

@@ -1,4 +1,4 @@
-"""What is wrong with a text that is no TOML, where, and what to write in its place.
+"""Explanation of what is wrong with a text that is no TOML, where, and what to write instead.
 
 The parser says what it expected; a person wants to know what to write. The line that it stopped at
 is looked at for the slips that people make.

@@ -12,7 +12,7 @@ from squeezefilm.core.formats.drawing import Arc, Dimension, Drawing, Item, Ordi
 MILLIMETRES = 4
 """$INSUNITS of a drawing in millimetres."""
 APPLICATION = "SQUEEZEFILM"
-"""Under which a dimension keeps the key of the value that it shows."""
+"""Name under which a dimension keeps the key of the value that it shows."""
 
 # What ezdxf says of itself, with the moment.
 _MADE = re.compile(r"^(\d+(?:\.\d+)+\S*) @ \d{4}-\d\d-\d\dT\S+$", re.MULTILINE)

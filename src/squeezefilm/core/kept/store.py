@@ -116,15 +116,15 @@ def _ours(folder: Path) -> list[Path]:
 T = TypeVar("T")
 
 MOST_SMALL, MOST_LARGE = 20_000, 32
-"""Of more the older half is deleted: small ones of some 4 kB, and large ones of some 5 MB."""
+"""Counts above which the older half is deleted: of small ones (4 kB) and large ones (5 MB)."""
 
 _IN_PASSING: ContextVar[bool] = ContextVar("in_passing", default=False)
 
 
 @contextmanager
 def in_passing() -> Iterator[None]:
-    """While results are computed that nobody asks for again: no large one is written, so that a
-    hundred of them do not push out the few that somebody works on. What is there is read."""
+    """Compute what nobody asks for again: no large result is written, so that a hundred of them do
+    not push out the few that somebody works on. What is there is read."""
     before = _IN_PASSING.set(True)
     try:
         yield

@@ -1,1 +1,1 @@
-"""What every page, figure and terminal table is made with: style, numbers, tables, progress."""
+"""Parts of every page, figure and terminal table: style, numbers, tables, progress."""

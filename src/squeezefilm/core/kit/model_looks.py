@@ -1,4 +1,4 @@
-"""One colour, one line and one name for each model of film and friction, in every figure."""
+"""A colour, a line and a name for each model of film and friction, in every figure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What pages are made of: the style sheet, for light, dark and print, the head, sections, tables.
+"""Parts of pages: the style sheet, for light, dark and print, the head, sections, tables.
 
 No file and no font comes from elsewhere.
 """

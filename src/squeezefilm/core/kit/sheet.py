@@ -49,7 +49,7 @@ def sheet_figure(drawing: Drawing) -> Figure:
 
 
 def views_figure(drawing: Drawing) -> Figure:
-    """Its views only, for a page that has tables and notes of its own."""
+    """Figure of a drawing's views only, for a page that has tables and notes of its own."""
     return _figure((drawing, drawing.views))
 
 

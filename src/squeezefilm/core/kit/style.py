@@ -1,4 +1,4 @@
-"""How figures look: one palette with a light and a dark value, one size, no global state.
+"""Look of figures: one palette with a light and a dark value, one size, no global state.
 
 A figure is drawn in the light colours. Each colour is a role with its own hex value, so that the
 page can put a CSS variable in its place and the same SVG follows a dark screen.

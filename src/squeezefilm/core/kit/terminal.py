@@ -1,4 +1,4 @@
-"""What the command line prints: progress while it works, tables of what came out."""
+"""Terminal output: progress while it works, tables of what came out."""
 
 from __future__ import annotations
 

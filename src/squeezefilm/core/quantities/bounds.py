@@ -16,25 +16,25 @@ ROWS = (tuple, list, collections.abc.Sequence)
 
 @dataclass(frozen=True, slots=True)
 class _Bound:
-    """In an annotation: how a number, or every number, lies to a value (SI)."""
+    """Bound in an annotation: how a number, or every number, lies to a value (SI)."""
 
     value: float
 
 
 class Above(_Bound):
-    """In an annotation: the number, or every number, is above this (SI)."""
+    """Bound in an annotation: the number, or every number, is above this (SI)."""
 
 
 class AtLeast(_Bound):
-    """In an annotation: the number, or every number, is at least this (SI)."""
+    """Bound in an annotation: the number, or every number, is at least this (SI)."""
 
 
 class Below(_Bound):
-    """In an annotation: the number, or every number, is below this (SI)."""
+    """Bound in an annotation: the number, or every number, is below this (SI)."""
 
 
 class AtMost(_Bound):
-    """In an annotation: the number, or every number, is at most this (SI)."""
+    """Bound in an annotation: the number, or every number, is at most this (SI)."""
 
 
 _WORDS = {Above: "above", AtLeast: "at_least", Below: "below", AtMost: "at_most"}
@@ -42,7 +42,7 @@ _WORDS = {Above: "above", AtLeast: "at_least", Below: "below", AtMost: "at_most"
 
 
 class Limit(Protocol):
-    """In an annotation: whatever refuses what is outside of it in its own words."""
+    """Bound in an annotation: whatever refuses what is outside of it in its own words."""
 
     def refuse_outside(self, asked: Any, quantity: str) -> None:
         """Raise `InputError` that names the quantity."""

@@ -1,4 +1,4 @@
-"""What a person probably meant by a text that is no quantity, and how to write it.
+"""Guesses at what a text that is no quantity was meant to be, and how to write it.
 
 Nothing here is taken in a person's place: a text with a slip is refused, and the message says what
 to write. `core.quantities.units` asks for the rewritings and offers those that it can read itself.
@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from decimal import Decimal, localcontext
 
 Meant = tuple[str, tuple[str, ...]]
-"""Why a text was refused, and what to write in its place: one text, or a choice."""
+"""Reason why a text was refused, and what to write in its place: one text, or a choice."""
 
 _NUMBER = re.compile(
     r"\s*(?P<number>[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(?P<rest>.*?)\s*"
