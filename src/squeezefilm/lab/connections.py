@@ -123,7 +123,7 @@ class PageProtocol(WebSocketsSansIOProtocol):
 MOST_UNREAD = 256
 """Messages that may wait for one page."""
 SLOWEST_PAGE: si.Second = 10.0
-"""For a page to take one message."""
+"""Longest time for a page to take one message."""
 BEAT: si.Second = 0.5
 """A page that there is nothing to tell hears so often that the lab is alive."""
 Message = dict[str, Any]
@@ -132,7 +132,7 @@ _TOO_SLOW = "this page did not read what the lab said to it; reload it"
 
 
 class OpenPage:
-    """One page and the messages on their way to it."""
+    """A page and the messages on their way to it."""
 
     def __init__(self, page: WebSocket) -> None:
         self.is_participant = page.url.path == "/ws/participant"
@@ -189,7 +189,7 @@ class _Held:
 
 
 class Playing:
-    """What plays or may play, each by a key, with how it is stopped.
+    """Things that play or may play, each by a key, with how it is stopped.
 
     `tell` sends a message to the experimenters' pages; they are told of every change. Its methods
     are called on the server's loop.
@@ -210,7 +210,7 @@ class Playing:
             self._changed()
 
     def forget(self, key: str) -> None:
-        """It cannot play any more."""
+        """Forget what cannot play any more."""
         if self._held.pop(key, None) is not None:
             self._changed()
 
@@ -220,7 +220,7 @@ class Playing:
             one.stop()
 
     def message(self) -> Message:
-        """What a page is told."""
+        """Message that a page gets."""
         now = [
             {"key": key, "text": one.text, "plays": one.plays} for key, one in self._held.items()
         ]

@@ -27,7 +27,7 @@ MOST_OPEN = 180
 MOST_OF_ADDRESS = 32
 """Connections that one tablet may have at once."""
 SLOWEST_HANDSHAKE: si.Second = 5.0
-"""For a whole TLS handshake."""
+"""Longest time of a whole TLS handshake."""
 
 _RESERVED = 160  # descriptors for files, databases, devices and the processes that compute
 _FEWEST = 16
@@ -37,7 +37,7 @@ _LOG = logging.getLogger("squeezefilm.lab")
 
 
 class Connection(socket.socket):
-    """One accepted connection; the door hears when it is closed, by whomever."""
+    """An accepted connection; the door hears when it is closed, by whomever."""
 
     def __init__(
         self, accepted: socket.socket, address: str, closed: Callable[[Connection], None]
@@ -174,7 +174,7 @@ class Door:
 
 
 def room_for(doors: int) -> int:
-    """How many connections each of a number of doors may have, by the descriptors there are.
+    """Number of connections that each of a number of doors may have, by the descriptors there are.
 
     The limit on descriptors is raised where it is too low for all and the system lets us.
     """

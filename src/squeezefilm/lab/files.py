@@ -35,7 +35,7 @@ def named(folder: Path, name: str, suffix: str) -> Path:
 
 
 def existing(folder: Path, name: str, suffix: str) -> Path:
-    """As `named`, of a file that is there. Raises `InputError` if it is not."""
+    """Path as by `named`, of a file that is there. Raises `InputError` if it is not."""
     file = named(folder, name, suffix)
     if not file.is_file():
         raise InputError(f"there is no file {file.name} in the lab's folder")
@@ -43,7 +43,7 @@ def existing(folder: Path, name: str, suffix: str) -> Path:
 
 
 def fresh(folder: Path, name: str, suffix: str, *, replace: bool = False) -> Path:
-    """As `named`, of a file that is not there yet. Raises `InputError` if it is."""
+    """Path as by `named`, of a file that is not there yet. Raises `InputError` if it is."""
     file = named(folder, name, suffix)
     if file.exists() and not replace:
         raise InputError(f"{file.name} exists; choose another name, or allow replacing it")

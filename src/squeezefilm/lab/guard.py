@@ -1,4 +1,4 @@
-"""What stands before every request: host, origin, session, size, and the headers that go back.
+"""Guard before every request: host, origin, session, size, and the headers that go back.
 
 A page that only this computer may use is still reachable by any website that this computer's
 browser shows. The Host check stops DNS rebinding, the Origin check foreign pages and cross-site
@@ -63,7 +63,7 @@ CONNECTION = "connection"
 
 @dataclass(frozen=True, slots=True)
 class Places:
-    """Where the lab is served: the hosts it answers to, and whether it is reached by TLS.
+    """Places at which the lab is served: the hosts it answers to, and whether it is reached by TLS.
 
     `hosts` are values of the Host header with their port, as a browser sends them. With
     `participants_only` no link and no experimenter's session is good here: a station comes in by

@@ -1,4 +1,4 @@
-"""Who may use the lab: one-time links, sessions with a role, pairing codes.
+"""Keys to the lab: one-time links, sessions with a role, pairing codes.
 
 A link works once and is exchanged for a cookie that no script can read. Keys belong to one run of
 the lab; they outlive it only when it is killed, so that a page that was open can go on after a

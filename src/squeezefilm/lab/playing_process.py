@@ -30,7 +30,7 @@ _STOPPED_BEFORE = "stopped before anything was played"
 
 
 class DeviceSession(ToldProcess):
-    """At most one session at a time. Stopped, it ramps to zero, disarms and ends."""
+    """Session on a device, at most one at a time. Stopped, it ramps to zero, disarms and ends."""
 
     ended = "device ended"
     in_use = "a device is in use by this lab already; stop it first"
@@ -40,14 +40,14 @@ class DeviceSession(ToldProcess):
 
 
 class _Watched:
-    """What a page hears of a session while it plays."""
+    """Messages for a page about a session while it plays."""
 
     def __init__(self, tell: Tell) -> None:
         self._tell = tell
         self._last = -math.inf
 
     def progress(self, text: str) -> None:
-        """What is done now."""
+        """Tell what is done now."""
         self._tell({"type": "device progress", "text": text})
 
     def tap(self, rows: si.FloatArray) -> None:

@@ -55,7 +55,7 @@ def _with_files_of(text: str, folder: Path) -> str:
 
 
 def asked_of(text: str, folder: Path) -> dict[str, Any]:
-    """What requirements ask for, in words, before anything is computed. Raises as
+    """Words for what requirements ask for, before anything is computed. Raises as
     `requirements_of`, and for a display that they start from and that cannot be read."""
     asked = requirements_of(text, folder)
     return {

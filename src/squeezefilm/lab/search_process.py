@@ -30,7 +30,7 @@ from squeezefilm.lab.told_process import Tell, ToldProcess, telling
 from squeezefilm.lab.worker import LARGEST_MEMORY, prepare
 
 MOST_POINTS = 600
-"""Of the screened front that are drawn; of a longer one as many, evenly."""
+"""Most points of the screened front that are drawn; of a longer one as many, evenly."""
 _ALL_WORDS = 40
 """Reasons that are told of one kind; the first are those of most designs."""
 
@@ -60,7 +60,7 @@ def plate(requirements: Requirements, one: Evaluated, made: Made | None = None) 
 
 
 def numbers(one: Evaluated) -> list[list[str]]:
-    """What a design does: by row a criterion's key, what people call it, and the value in words."""
+    """Numbers of a design by row: a criterion's key, its name for people, the value in words."""
     return [
         [key, CRITERIA[key].said, CRITERIA[key].shown(value)]
         for key, value in one.numbers.items()
@@ -69,7 +69,7 @@ def numbers(one: Evaluated) -> list[list[str]]:
 
 
 def glimpse(requirements: Requirements, seen: Glimpse) -> dict[str, Any]:
-    """What a search has so far."""
+    """Message of what a search has so far."""
     return {
         "stage": seen.stage,
         "screened": seen.screened,
@@ -99,8 +99,8 @@ def reference(requirements: Requirements, one: Evaluated | None) -> dict[str, An
 
 
 def result(found: DesignSearch) -> dict[str, Any]:
-    """What a search found, or what it had when it was stopped: the front, the plate that it would
-    build, what each limit costs, the empty corners, what it rests on."""
+    """Message of what a search found, or of what it had when it was stopped: the front, the plate
+    that it would build, what each limit costs, the empty corners, what it rests on."""
     asked, chosen = found.requirements, found.chosen
     return {
         "screened": len(found.screened),
@@ -130,7 +130,7 @@ _SLOWER = 100
 
 
 class SearchProcess(ToldProcess):
-    """At most one search at a time."""
+    """Process of a search, at most one at a time."""
 
     ended = "search ended"
     in_use = "this lab searches already; stop that search first"
@@ -143,15 +143,15 @@ class SearchProcess(ToldProcess):
 
 
 class Pace:
-    """How long the screening or the solving goes on, by how fast its stage went until now."""
+    """Estimate of how long screening or solving goes on, by how fast its stage went until now."""
 
     def __init__(self, screened: int, solved: int) -> None:
         self._every = screened, solved
         self._stage, self._began, self._first = "", 0.0, 0
 
     def left(self, seen: Glimpse) -> str:
-        """How long it takes until all designs are screened, or as many are solved as may be, in
-        words; "" while nobody knows."""
+        """Words for how long it takes until all designs are screened, or as many are solved as may
+        be; "" while nobody knows."""
         screens = seen.stage.startswith("screening")
         every, done = self._every[not screens], seen.screened if screens else seen.solved
         now = time.monotonic()
@@ -180,7 +180,7 @@ class _Stop:
 
     @contextlib.contextmanager
     def held(self) -> Iterator[None]:
-        """What is done here is done whole; a stop comes after it."""
+        """Do what is done here whole; a stop comes after it."""
         self._held = True
         try:
             yield

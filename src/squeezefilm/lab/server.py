@@ -49,7 +49,7 @@ MOST_WAITING = 64
 
 @dataclass(frozen=True, slots=True)
 class LanPlace:
-    """Where tablets reach the lab: its address as a link, its certificate's fingerprint."""
+    """Place where tablets reach the lab: its address as a link, its certificate's fingerprint."""
 
     link: str
     fingerprint: str
@@ -57,7 +57,7 @@ class LanPlace:
 
 @dataclass(slots=True)
 class Lab:
-    """One running lab: where its files lie, its keys, its workers, who answers what.
+    """A running lab: where its files lie, its keys, its workers, who answers what.
 
     `left` is called with each page that went away, `closing` when the lab ends.
     `lan` says where tablets reach it; None where they were not asked for.
@@ -125,7 +125,7 @@ def application(lab: Lab) -> Guard:
 
 
 def station_routes(lab: Lab) -> list[BaseRoute]:
-    """What a participant's station may reach: its page, static files, its messages."""
+    """Routes that a participant's station may reach: its page, static files, its messages."""
 
     async def page(_: Request) -> Response:
         return page_file("participant.html")
@@ -141,7 +141,7 @@ def station_routes(lab: Lab) -> list[BaseRoute]:
 
 
 def page_file(name: str) -> Response:
-    """One of the lab's pages."""
+    """Response with one of the lab's pages."""
     return _file(STATIC / name)
 
 

@@ -22,8 +22,8 @@ Tell = Callable[[dict[str, Any]], None]
 
 
 class ToldProcess:
-    """At most one process of a kind at a time. `tell` is called from a thread with messages for the
-    pages, of which the last has the type `ended` and comes when the process is gone.
+    """Process of a kind, at most one at a time. `tell` is called from a thread with messages for
+    the pages, of which the last has the type `ended` and comes when the process is gone.
 
     A kind says `in_use` to who begins a second one, `stopped` and `died` in place of a process that
     ended without a word, and how long an end of the lab waits for it (`patience`, s).
@@ -105,7 +105,7 @@ class ToldProcess:
 
 
 def telling(connection: Connection) -> Tell:
-    """How the process tells the server; one that is gone stops it as Ctrl-C does."""
+    """Function by which the process tells the server; one that is gone stops it as Ctrl-C does."""
 
     def tell(message: dict[str, Any]) -> None:
         try:

@@ -1,4 +1,4 @@
-"""What page and server say to each other over the websocket: JSON, checked by pydantic.
+"""Messages between page and server over the websocket: JSON, checked by pydantic.
 
 A request has an `id` that its answer carries, a `type`, and fields of its own. An answer is
 ``{"id", "type", …}``; an error is ``{"id", "type": "error", "message"}``, in words that a person
@@ -27,7 +27,7 @@ LONGEST_TEXT = 400_000
 
 
 class Request(BaseModel):
-    """What every request has."""
+    """Base of every request."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -48,7 +48,7 @@ Handler = Callable[[Any], Awaitable[Answer]]
 
 
 class Dispatcher:
-    """Which message is read as what, and who answers it; longer ones than `longest` are refused."""
+    """Readers and answerers of messages by type; longer ones than `longest` are refused."""
 
     def __init__(self, longest: int = LARGEST_MESSAGE) -> None:
         self._longest = longest

@@ -32,7 +32,7 @@ T = TypeVar("T")
 LARGEST_MEMORY = 2 * 1024**3
 """Bytes of data that a process which computes may hold."""
 GRACE: si.Second = 2.0
-"""How long work goes on that newer work wants to replace."""
+"""Longest time that work goes on which newer work wants to replace."""
 PAGE: ContextVar[WebSocket] = ContextVar("page")
 """The page whose message is being answered."""
 _SPAWN = multiprocessing.get_context("spawn")
@@ -51,7 +51,7 @@ class SupersededError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class _HowFar:
-    """What a process says of its work before the answer."""
+    """Progress of a process before its answer."""
 
     text: str
     share: float
@@ -59,7 +59,7 @@ class _HowFar:
 
 @dataclass(eq=False, slots=True)
 class _Job:
-    """One piece of work that was asked for."""
+    """A piece of work that was asked for."""
 
     page: WebSocket | None
     slot: str | None
@@ -109,7 +109,7 @@ class _Process:
 
 
 class Busy:
-    """One line of work: a process, and at most one piece of work waiting per page and slot.
+    """A line of work: a process, and at most one piece of work waiting per page and slot.
 
     Work that takes longer than `longest` (s) is ended.
     """

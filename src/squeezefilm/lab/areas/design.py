@@ -31,7 +31,7 @@ class OpenDisplay(Request):
 
 
 class EditDisplay(Request):
-    """One value of a display's text."""
+    """Edit of one value of a display's text."""
 
     text: str = Field(max_length=LONGEST_TEXT)
     path: str = Field(max_length=200)

@@ -34,7 +34,7 @@ COLUMNS = (
     "relative_friction",
     "tangential_force_N",
 )
-"""Of a stroke's table."""
+"""Columns of a stroke's table."""
 MOST_ROWS = 200_000
 
 

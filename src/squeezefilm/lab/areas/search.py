@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 MOST_JOBS = 64
 LONGEST_STOP: si.Second = 20.0
-"""For a search that was stopped to say what it found; then its process is ended."""
+"""Longest wait for a search that was stopped to say what it found; then its process is ended."""
 _REQUIREMENTS = "requirements"
 
 
@@ -43,7 +43,7 @@ class CheckRequirements(Request):
 
 
 class StartSearch(CheckRequirements):
-    """How many designs are looked at and solved, the seed, and processes."""
+    """Request for a search: how many designs are looked at and solved, the seed, and processes."""
 
     screened: int = Field(2000, ge=int(DESIGNS_SCREENED.least), le=int(DESIGNS_SCREENED.most))
     solved: int = Field(120, ge=int(DESIGNS_SOLVED.least), le=int(DESIGNS_SOLVED.most))
@@ -71,7 +71,7 @@ class _Search:
     end: dict[str, Any] | None = None
 
     def message(self) -> Answer:
-        """What a page is told."""
+        """Message that a page gets."""
         seconds = time.monotonic() - self.began if self.took is None else self.took
         return {
             "asked": self.asked,

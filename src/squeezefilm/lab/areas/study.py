@@ -108,7 +108,7 @@ class Respond(OfSitting):
 
 
 class RehearseStudy(NamedStudy):
-    """How many simulated participants do the study."""
+    """Request for a rehearsal: the number of simulated participants who do the study."""
 
     participants: int = Field(ge=1, le=200)
 
@@ -154,7 +154,7 @@ class StudyThread:
 
 
 class StudyArea:
-    """What the Study area's and the participants' messages do; `thread` has the studies' files.
+    """Answers to the Study area's and the participants' messages; `thread` has the studies' files.
 
     `devices` present the surfaces; real sessions on real devices and twins if None.
     """

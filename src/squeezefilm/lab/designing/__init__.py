@@ -1,1 +1,1 @@
-"""What the pages show of a display: its form, its numbers, its program for the browser."""
+"""Display on the pages: its form, its numbers, its program for the browser."""

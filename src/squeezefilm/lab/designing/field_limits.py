@@ -1,4 +1,4 @@
-"""What one value of a display may be while the others stay: read from its type, or tried.
+"""Limits of one value of a display while the others stay: read from its type, or tried.
 
 A field's own bounds stand in its annotation. Some limits depend on other values (a patch ends where
 its plate does): where the display does not fit at a bound, building it anew finds what it accepts.
@@ -25,7 +25,7 @@ _NOTHING = 2e-5
 
 
 def allowed(text: str, path: str) -> str:
-    """What the value at a dotted path may be, in words with units; "" for what is no number.
+    """Values allowed at a dotted path, in words with units; "" for what is no number.
 
     The range is the one around the value that is there, with the others as they are.
     Raises `ConfigError` for a text that is no display, `InputError` for a path that is not there.

@@ -25,9 +25,9 @@ from squeezefilm.physics.plate.layout import Actuator, RectangularPlate
 LONGEST_VALUE = 2000
 """Characters of one value in the form."""
 EDITED = ", edited"
-"""What stands behind the name of a preset that was edited."""
+"""Suffix behind the name of a preset that was edited."""
 OWN_VALUES = "values of its own"
-"""What stands for a material where the text names none."""
+"""Name of a material where the text names none."""
 
 
 def preset_text(name: str) -> str:
@@ -245,7 +245,7 @@ def _text(value: Any, unit: si.Unit | None) -> str:
 
 
 def stated(hint: Any) -> Any:
-    """What a value may be where it is stated: `X` of ``X | None``; a quantity knows itself."""
+    """Type of a value where it is stated: `X` of ``X | None``; a quantity knows itself."""
     if typing.get_origin(hint) in (Union, types.UnionType) and si.unit_of(hint) is None:
         return next(member for member in typing.get_args(hint) if member is not type(None))
     return hint
@@ -262,12 +262,12 @@ def choices(hint: Any) -> list[str] | None:
 
 _METRE = si.Unit("m")
 _LEAST_SHARE: si.Dimensionless = 1e-3
-"""Of a side: ceramics that end so near the edge cover it."""
+"""Least share of a side: ceramics that end so near the edge cover it."""
 _SIDES = {"actuator.length": ("x", "length"), "actuator.width": ("y", "width")}
 
 
 def covered(actuator: Actuator) -> dict[str, str]:
-    """For each side that the ceramics leave partly bare, by its dotted path, what they cover."""
+    """Words for what the ceramics cover, for each side that they leave partly bare, by its path."""
     if not isinstance(actuator, RectangularPlate) or not actuator.patches:
         return {}
     said = {}

@@ -1,4 +1,4 @@
-"""What the Design area shows of a display: numbers, curves and shapes, as JSON with units in keys.
+"""Numbers of a display in the Design area: numbers, curves and shapes, as JSON with units in keys.
 
 Two qualities: `screening` takes a plate as a Timoshenko beam and answers while a slider moves;
 `solved` solves it in three dimensions. Each answer says which made it.
@@ -54,8 +54,8 @@ def opened(text: str) -> dict[str, Any]:
 
 
 def changed(text: str, path: str, value: str) -> dict[str, Any]:
-    """As `opened`, with one value written anew, or with the ceramics stretched over the side at
-    `path` where the value is `STRETCHED`. Raises as `form.edited` and `ceramics.stretched`."""
+    """Display as by `opened`, with one value anew, or the side at `path` covered by ceramics where
+    it is `STRETCHED`. Raises as `form.edited` and `ceramics.stretched`."""
     if value == STRETCHED:
         path, value, text = "name", display_of(text).name, stretched(text, path)
     return opened(edited(text, path, value))
@@ -63,7 +63,7 @@ def changed(text: str, path: str, value: str) -> dict[str, Any]:
 
 @dataclass(frozen=True, slots=True)
 class WorkingPoint:
-    """What is asked of a display's text; `path` and `value` are an edit made on the way.
+    """Request about a display's text; `path` and `value` are an edit made on the way.
 
     `voltage` and `force` are quantity texts, None for the display's own.
     """
@@ -133,8 +133,8 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
 
 
 def _since_screening(display: Display, p: Prediction, point: WorkingPoint) -> str:
-    """Why a solved plate is another than it was screened; "" where it differs by no more than a
-    beam's frequency does on 95 random plates (`_BEAM`)."""
+    """Reason why a solved plate is another than it was screened; "" where it differs by no more
+    than a beam's frequency does on 95 random plates (`_BEAM`)."""
     if not isinstance(display.actuator, RectangularPlate):
         return ""
     try:
@@ -267,7 +267,7 @@ def _line(p: Prediction, actuator: Actuator) -> dict[str, Any] | None:
 
 
 def outline(text: str) -> dict[str, Any]:
-    """What plan and side view are drawn from (m): the body, its strips, where they are."""
+    """Measures (m) for plan and side view: the body, its strips, where they are."""
     actuator = display_of(text).actuator
     if isinstance(actuator, RectangularPlate):
         return {

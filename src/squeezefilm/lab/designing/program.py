@@ -1,4 +1,4 @@
-"""What the Feel area needs to render in the page: a program, the display's friction, its envelope.
+"""Data for rendering in the Feel area: a program, the display's friction, its envelope.
 
 The page runs the same program as a device's loop, by the JavaScript port of the interpreter;
 `parity` gives it samples with the compiled interpreter's answers, so that it can show that both
@@ -180,7 +180,7 @@ def parity(asked: TextureOnDisplay, ticks: int = 2000) -> dict[str, Any]:
 
 
 LONGEST: si.Second = 86_400.0
-"""For one session."""
+"""Longest time of one session."""
 
 
 def require_playable(

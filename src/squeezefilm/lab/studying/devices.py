@@ -55,11 +55,11 @@ class Measured:
     found: DeviceVerification
 
     def identity(self) -> DeviceIdentity:
-        """Who it was."""
+        """Identity of the device."""
         return self.who
 
     def verify_device(self) -> DeviceVerification:
-        """What was measured just now."""
+        """Verification that was measured just now."""
         return self.found
 
     def present(self, stimulus: Stimulus, seed: int) -> None:
@@ -180,7 +180,7 @@ class StudyDevices:
             return tuple(held.felt[place] for place in sorted(held.felt))
 
     def answered(self, sitting: str, token: str) -> None:
-        """This trial's answer is on the disk: what was felt of it need not be kept."""
+        """Forget what was felt of a trial: its answer is on the disk."""
         held = self._held.get(sitting)
         if held is not None and held.token == token:
             held.forget()

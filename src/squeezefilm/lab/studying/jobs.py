@@ -1,4 +1,4 @@
-"""What takes seconds of a study's file: analysis, report, rehearsal. Each in a process of its own.
+"""Jobs of seconds on a study's file: analysis, report, rehearsal. Each in a process of its own.
 
 The study's thread records answers meanwhile, so these open the file themselves.
 """

@@ -1,4 +1,4 @@
-"""What a sitting needs beside its study's file: conditions as they are typed, surfaces that
+"""Data that a sitting needs beside its study's file: conditions as they are typed, surfaces that
 somebody puts before a participant by hand, and what the experimenter's page is told.
 
 A sitting without a device waits before each surface until it is said to be in place, on the
@@ -61,7 +61,7 @@ class ByHand:
         self._waits.pop(sitting, None)
 
     def status(self, sitting: str) -> dict[str, Any]:
-        """What the experimenter's page shows: the surfaces, and the place of the one waited for."""
+        """Message for the experimenter: the surfaces, and the place of the one waited for."""
         _, waited = self._waits.get(sitting, ("", None))
         return {"by_hand": list(self._names.get(sitting, ())), "waits_for": waited}
 

@@ -43,7 +43,7 @@ from squeezefilm.study.record.tables import origin_of
 
 SUFFIX = ".sqlite"
 Felt = Literal["on a device", "by hand", "lies there"]
-"""How a surface comes under the finger."""
+"""Way in which a surface comes under the finger."""
 CONSENT = (
     "You will stroke surfaces with a finger and answer a question about each. It takes about "
     "{minutes} minutes, with breaks. You may stop at any time, without giving a reason, and ask "
@@ -77,7 +77,7 @@ class Studies:
         return {"designs": designs, "studies": [path.stem for path in files]}
 
     def plan(self, design: str) -> dict[str, Any]:
-        """What a design is and how long it takes."""
+        """Message of what a design is and how long it takes."""
         found = load_design(design)
         return {
             **described(found),
@@ -130,7 +130,7 @@ class Studies:
         }
 
     def enrol(self, name: str) -> dict[str, Any]:
-        """One more participant."""
+        """Enrol one more participant."""
         self.store(name).enrol()
         return self.status(name)
 
@@ -183,7 +183,7 @@ class Studies:
         return not self.sittings.is_open(id)
 
     def where(self, id: str) -> dict[str, Any]:
-        """What the participant's page shows now; nothing in it gives an answer away."""
+        """Message of what the participant's page shows now; nothing in it gives an answer away."""
         sitting = self.sittings.get(id)
         design = self.store(sitting.study).design
         if sitting.ended:
@@ -382,7 +382,7 @@ class Studies:
 
 
 def devices() -> list[str]:
-    """What may present a sitting's surfaces beside nothing: the twin, and the ports there are."""
+    """Devices for a sitting's surfaces beside nothing: the twin, and the ports there are."""
     from serial.tools import list_ports
 
     return ["twin", *sorted(f"serial:{port.device}" for port in list_ports.comports())]
