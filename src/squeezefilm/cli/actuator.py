@@ -1,4 +1,4 @@
-"""What `analyze` does with the file of a motor or of a skin-stretch array."""
+"""Body of `analyze` for the file of a motor or of a skin-stretch array."""
 
 from __future__ import annotations
 

@@ -106,11 +106,11 @@ Finger = Annotated[
     typer.Option(
         "--finger",
         metavar="new|mean|FILE",
-        help="Whose finger: a new person's (as described, with how people differ), the mean of "
-        "people, or this person's, by a recording of friction over the amplitude.",
+        help="Finger: a new person's (as described, with how people differ), the mean of people, "
+        "or this person's, by a recording of friction over the amplitude.",
     ),
 ]
-OnSurface = Annotated[str | None, typer.Option("--surface", help="Which of its surfaces.")]
+OnSurface = Annotated[str | None, typer.Option("--surface", help="Name of one of its surfaces.")]
 OnPlace = Annotated[
     str | None,
     typer.Option(

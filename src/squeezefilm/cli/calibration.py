@@ -89,7 +89,7 @@ def predict_unseen(
 
 @measure.command()
 def score(
-    prediction: Annotated[Path, typer.Argument(metavar="FILE", help="What predict wrote.")],
+    prediction: Annotated[Path, typer.Argument(metavar="FILE", help="File that predict wrote.")],
     folder: Annotated[
         Path, typer.Argument(metavar="FOLDER", help="The recordings that were predicted.")
     ],

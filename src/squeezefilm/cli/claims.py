@@ -27,7 +27,7 @@ def reproduce(
         bool,
         typer.Option(
             "--write-docs",
-            help="In a checkout: rewrite docs/reference/validation.md, or published-friction.md.",
+            help="Rewrite docs/reference/validation.md, or published-friction.md (in a checkout).",
         ),
     ] = False,
 ) -> None:

@@ -55,7 +55,7 @@ def show(target: Target, as_json: AsJson = False) -> None:
 @app.command()
 def materials(
     name: Annotated[
-        str | None, typer.Argument(help="One of them, by any of its names: all its values.")
+        str | None, typer.Argument(help="Any name of one of them: shows all its values.")
     ] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -131,7 +131,7 @@ class AnalyzeOptions(PointOptions):
     theory: Annotated[
         str | None,
         typer.Option(
-            help="How a plate is computed: solid (three-dimensional piezoelectric elements, the "
+            help="Theory of the plate: solid (three-dimensional piezoelectric elements, the "
             "default), timoshenko or euler_bernoulli (beams)."
         ),
     ] = None
@@ -150,9 +150,9 @@ class AnalyzeOptions(PointOptions):
 @app.command()
 @called_with(AnalyzeOptions)
 def analyze(asked: AnalyzeOptions) -> None:
-    """From the display's description to resonance, amplitude, friction and textures. A motor's or a
-    skin-stretch array's file is analysed as such; of the options it takes --voltage, --out and
-    --json."""
+    """Analyse a display from its description to resonance, amplitude, friction and textures. A
+    motor's or a skin-stretch array's file is analysed as such; of the options it takes --voltage,
+    --out and --json."""
     from squeezefilm.actuators.described import is_actuator
 
     if is_actuator(asked.target):
@@ -359,7 +359,7 @@ class ModesOptions:
     target: Target
     band: Annotated[
         str | None,
-        typer.Option(help='Where to look, like "20 kHz..60 kHz"; 15 to 60 kHz if not given.'),
+        typer.Option(help='Range to look in, like "20 kHz..60 kHz"; 15 to 60 kHz if not given.'),
     ] = None
     split: Annotated[
         str | None,

@@ -1,5 +1,5 @@
-"""What the command line prints of descriptions: presets, materials, and a display's values with
-their sources."""
+"""Terminal output of descriptions: presets, materials, and a display's values with their
+sources."""
 
 from __future__ import annotations
 

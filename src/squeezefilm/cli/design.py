@@ -138,7 +138,7 @@ def fabricate(
     quick: Annotated[
         bool,
         typer.Option(
-            "--quick", help="Without intervals: seconds in place of a minute or two of solving."
+            "--quick", help="Skip intervals: seconds in place of a minute or two of solving."
         ),
     ] = False,
     as_json: AsJson = False,

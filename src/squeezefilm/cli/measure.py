@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 measure = typer.Typer(
     name="measure",
-    help="What a bench measured: check how it is read, and fit it.",
+    help="Recordings of a bench: check how it is read, and fit it.",
     no_args_is_help=True,
 )
 app.add_typer(measure)

@@ -26,9 +26,9 @@ from squeezefilm.core.called_with import called_with
 @app.command()
 def lab(
     folder: Annotated[
-        Path, typer.Option(help="Where displays, textures, strokes and studies are saved.")
+        Path, typer.Option(help="Folder of displays, textures, strokes and studies.")
     ] = Path("squeezefilm-lab"),
-    port: Annotated[int, typer.Option(help="On this computer; the next free one if taken.")] = 8631,
+    port: Annotated[int, typer.Option(help="Port; the next free one if taken.")] = 8631,
     browser: Annotated[
         bool, typer.Option("--browser/--no-browser", help="Open the page in the browser.")
     ] = True,
@@ -36,7 +36,7 @@ def lab(
         str | None,
         typer.Option(
             metavar="ADDRESS",
-            help="This computer's address in the local network, to pair tablets as participant "
+            help="Address of this computer in the local network, to pair tablets as participant "
             "stations by TLS.",
         ),
     ] = None,
@@ -70,15 +70,15 @@ SeedOfFile = Annotated[
 ]
 Display = Annotated[
     str | None,
-    typer.Option(help="One of the design's, or any other by name or file, like mine.toml."),
+    typer.Option(help="Name of one of the design's, or any other by name or file, like mine.toml."),
 ]
-Observer = Annotated[str, typer.Option(help="What people are made of: a preset or a TOML file.")]
+Observer = Annotated[str, typer.Option(help="Observer of people: a preset or a TOML file.")]
 
 
 @study.command()
 def plan(
     design: Design,
-    participants: Annotated[int, typer.Option(help="How many.")] = 12,
+    participants: Annotated[int, typer.Option(help="Number of participants.")] = 12,
     seed: Seed = 0,
     orders: Annotated[
         Path | None,
@@ -129,7 +129,7 @@ def drawing_by_two(out: Path | None) -> AbstractContextManager[object]:
 @study.command()
 def simulate(
     design: Design,
-    participants: Annotated[int, typer.Option(help="How many simulated people.")] = 12,
+    participants: Annotated[int, typer.Option(help="Number of simulated people.")] = 12,
     seed: Annotated[int, typer.Option(help="Seed of orders, people and noise.")] = 0,
     out: Annotated[
         Path | None,
@@ -176,15 +176,15 @@ class PowerOptions:
         str | None,
         In("1"),
         typer.Option(
-            help="In place of two stimuli: half the 95 % interval that is wanted, like 20% (of a "
+            help="Half the 95 % interval that is wanted, in place of two stimuli, like 20% (of a "
             "Weber fraction) or 0.05 (of an exponent or a proportion correct)."
         ),
     ] = None
     against: Annotated[
         str | None,
         typer.Option(
-            help="In place of two stimuli: a display that is to be shown to differ from --display "
-            "(or from the design's first); adaptive series too."
+            help="Display that is to be shown to differ from --display (or from the design's "
+            "first), in place of two stimuli; adaptive series too."
         ),
     ] = None
     display: Display = None
@@ -202,8 +202,8 @@ class PowerOptions:
 @study.command()
 @called_with(PowerOptions)
 def power(asked: PowerOptions) -> None:
-    """How many people are needed to tell two stimuli or two displays apart, or to know a threshold,
-    exponent or share of right answers as precisely as asked; by simulated participants."""
+    """Find how many people tell two stimuli or two displays apart, or make a threshold, exponent or
+    share of right answers as precise as asked; by simulated participants."""
     from squeezefilm.core.errors import InputError
     from squeezefilm.core.kit.style import png
     from squeezefilm.core.results import write_whole
@@ -276,7 +276,7 @@ def rehearse(
     design: Design,
     store: NewStore,
     participants: Annotated[
-        int, typer.Option(help="How many simulated people the file is to have.")
+        int, typer.Option(help="Number of simulated people that the file is to have.")
     ] = 3,
     observer: Observer = "fingertip",
     seed: SeedOfFile = None,
@@ -303,7 +303,7 @@ class RunOptions:
     design: Design
     store: NewStore
     participant: Annotated[
-        str | None, typer.Option(help="Who goes on; somebody new is enrolled without it.")
+        str | None, typer.Option(help="Person who goes on; somebody new if not given.")
     ] = None
     conditions: Annotated[
         Path | None, typer.Option(help="Conditions of the session in TOML: consent, room, skin …")
@@ -325,8 +325,8 @@ class RunOptions:
     by_hand: Annotated[
         str,
         typer.Option(
-            help="Where the experimenter is told what to present with --drive none: terminal, "
-            "nowhere, or a file to watch in a second window."
+            help="Place where the experimenter is told what to present with --drive none: "
+            "terminal, nowhere, or a file to watch in a second window."
         ),
     ] = "terminal"
     lsl: Annotated[
@@ -335,10 +335,10 @@ class RunOptions:
     ] = False
     station: Annotated[
         int | None,
-        typer.Option(help="Which station this is, from 0; a file that is there knows its own."),
+        typer.Option(help="Number of this station, from 0; a file that is there knows its own."),
     ] = None
     stations: Annotated[
-        int | None, typer.Option(help="How many stations there are; 1 in a new file unless given.")
+        int | None, typer.Option(help="Number of stations; 1 in a new file unless given.")
     ] = None
 
 

@@ -27,20 +27,20 @@ class FeltOptions:
     path: Annotated[
         str | None,
         typer.Option(
-            help="With a design: a CSV of the finger's path (time_s, x_m, y_m, perhaps force_N), "
-            'or words like "80 mm/s over 4 cm, 3 turns, at 30 deg".'
+            help="Finger's path with a design: a CSV (time_s, x_m, y_m, perhaps force_N), or words "
+            'like "80 mm/s over 4 cm, 3 turns, at 30 deg".'
         ),
     ] = None
     stimulus: Annotated[
-        str | None, typer.Option(help="With --path: which of the design's surfaces.")
+        str | None, typer.Option(help="One of the design's surfaces, with --path.")
     ] = None
     display: Annotated[
-        str | None, typer.Option(help="With --path: another display than the design's first.")
+        str | None, typer.Option(help="Another display than the design's first, with --path.")
     ] = None
     force: Annotated[
         str | None,
         In("N"),
-        typer.Option(help="With --path: the normal force, like 0.5 N; assumed without it."),
+        typer.Option(help="Normal force with --path, like 0.5 N; assumed without it."),
     ] = None
     observer: Observer = "fingertip"
     out: Annotated[Path | None, written_to("A PNG of path and evidence to write.")] = None
@@ -137,7 +137,7 @@ def export(
 @study.command()
 def merge(
     store: Store,
-    others: Annotated[list[Path], typer.Argument(metavar="OTHER.sqlite …", help="To add.")],
+    others: Annotated[list[Path], typer.Argument(metavar="OTHER.sqlite …", help="Files to add.")],
 ) -> None:
     """Add other stations' files to this one, made if not there; merging again changes nothing."""
     from squeezefilm.study.record.merge import merge as add
@@ -186,22 +186,20 @@ def analyze(
     ],
     design: Annotated[
         str | None,
-        typer.Option(help="What answers of another program were given to."),
+        typer.Option(help="Design to which answers of another program were given."),
     ] = None,
     columns: Annotated[
         str,
-        typer.Option(
-            help='What its columns are called, like "participant_id=who, choice=key_resp.keys".'
-        ),
+        typer.Option(help='Names of its columns, like "participant_id=who, choice=key_resp.keys".'),
     ] = "",
     values: Annotated[
         str,
         typer.Option(
-            help='What its words for answers and stimuli mean, like "left=first, right=second".'
+            help='Meanings of its words for answers and stimuli, like "left=first, right=second".'
         ),
     ] = "",
     decimal_comma: Annotated[
-        bool, typer.Option("--decimal-comma", help="Its numbers have decimal commas.")
+        bool, typer.Option("--decimal-comma", help="Read numbers with decimal commas.")
     ] = False,
     out: Annotated[
         Path | None,

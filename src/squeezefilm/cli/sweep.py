@@ -22,11 +22,11 @@ class SweepOptions:
     vary: Annotated[
         list[str] | None,
         typer.Option(
-            help='What changes: "actuator.thickness=1 mm..3 mm:9" (:9:log for equal ratios), '
-            '"voltage=10 V, 20 V". Any number of the display, or voltage, frequency, '
-            "vibration_amplitude, normal_force, speed, position, ambient_pressure, "
-            "wanted_friction, surface, model, theory, band, texture, motion, sensor, "
-            "compensation, braking, wave. Again for a grid."
+            help='Value that changes, and its steps: "actuator.thickness=1 mm..3 mm:9" (:9:log for '
+            'equal ratios), "voltage=10 V, 20 V". Any number of the display, or voltage, '
+            "frequency, vibration_amplitude, normal_force, speed, position, ambient_pressure, "
+            "wanted_friction, surface, model, theory, band, texture, motion, sensor, compensation, "
+            "braking, wave. Again for a grid."
         ),
     ] = None
     over: Annotated[
@@ -36,7 +36,7 @@ class SweepOptions:
     ask: Annotated[
         list[str] | None,
         typer.Option(
-            help="Which numbers of predict, render, plate, friction or analyze: "
+            help="Numbers of predict, render, plate, friction or analyze: "
             "relative_friction,resonance_frequency; followed: modes by their shapes."
         ),
     ] = None
@@ -46,8 +46,8 @@ class SweepOptions:
     sample: Annotated[
         int | None,
         typer.Option(
-            help='So many points drawn in the ranges without steps, "actuator.thickness='
-            '1 mm..3 mm", in place of a grid; more of them keep those before.'
+            help='Number of points drawn in the ranges without steps, "actuator.thickness=1 mm..3 '
+            'mm", in place of a grid; more of them keep those before.'
         ),
     ] = None
     seed: Annotated[int, typer.Option(help="Seed of the random samples.")] = 0

@@ -43,13 +43,13 @@ class RenderOptions:
     ] = None
     as_json: AsJson = False
     sensor: Annotated[
-        str | None, typer.Option(help="How the loop sees the finger, like touch-panel-120-hz.")
+        str | None, typer.Option(help="Sensor of the finger, like touch-panel-120-hz.")
     ] = None
     compensation: Annotated[
         str,
         typer.Option(
             "--compensate",
-            help="How the slow resonator is compensated: none, inverse or preview.",
+            help="Compensation of the slow resonator: none, inverse or preview.",
         ),
     ] = "none"
     braking: Annotated[
@@ -154,7 +154,7 @@ class PlayOptions:
     stroke: Annotated[
         str, typer.Option(help='The twin\'s finger, to and fro: "60 mm/s over 4 cm", or a CSV.')
     ] = "60 mm/s over 4 cm"
-    duration: Annotated[str, In("s"), typer.Option(help='How long, like "10 s".')] = "4 s"
+    duration: Annotated[str, In("s"), typer.Option(help='Duration, like "10 s".')] = "4 s"
     rate: Annotated[str, In("Hz"), typer.Option(help='Rate of the loop, like "5 kHz".')] = "5 kHz"
     voltage: LargestVoltage = None
     surface: OnSurface = None
@@ -163,7 +163,7 @@ class PlayOptions:
         str,
         typer.Option(
             "--compensate",
-            help="How the slow resonator is compensated: none or inverse.",
+            help="Compensation of the slow resonator: none or inverse.",
         ),
     ] = "none"
     amplitude_per_pickup: Pickup = None
