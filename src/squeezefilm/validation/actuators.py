@@ -1,4 +1,4 @@
-"""What the paper's conclusion says of its two neighbours: a planar standing-wave motor, of which it
+"""Values of the paper's two neighbours by its conclusion: a planar standing-wave motor, of which it
 gives no number, and a display of 60 actuators that stretch the skin, whose sizes it does not give.
 """
 

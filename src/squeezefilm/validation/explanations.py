@@ -1,4 +1,4 @@
-"""Why the paper's prototype is lower than its model, and what one frequency cannot tell.
+"""Explanations of the prototype below the paper's model, and what one frequency cannot tell.
 
 Several explanations are each brought to the measured frequency by one free parameter. What they
 then predict for other measurements says which of these would tell them apart, and by how much.

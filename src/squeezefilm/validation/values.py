@@ -1,4 +1,4 @@
-"""What is computed for each published claim, one short function each, from the presets."""
+"""Values computed for each published claim, one short function each, from the presets."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def _gap(
 
 
 def _film(gap: PaperGap) -> tuple[si.Metre, si.MetreLike, si.PascalSecond, si.Pascal]:
-    """What, beside a frequency, makes the squeeze number of a gap on the stator."""
+    """Length, thickness, viscosity and pressure in the squeeze number of a gap on the stator."""
     gas = _stator().gas
     return gap.contact_length, gap.reference_thickness, gas.viscosity, gas.ambient_pressure
 

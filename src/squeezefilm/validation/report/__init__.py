@@ -1,1 +1,1 @@
-"""What `reproduce` shows: the page of claims, the prototype, the paper's figures redrawn."""
+"""Output of `reproduce`: the page of claims, the prototype, the paper's figures redrawn."""

@@ -1,4 +1,4 @@
-"""What `reproduce` shows: the page of validation, and the paper's figures redrawn."""
+"""Page of `reproduce`: the page of validation, and the paper's figures redrawn."""
 
 from __future__ import annotations
 
@@ -206,7 +206,7 @@ film effect devices</em>. Published friction against amplitude is compared by
 
 
 def _reason(item: ClaimResult) -> str:
-    """Why, and the note, which for a prediction is the prediction."""
+    """Reason, and the note, which for a prediction is the prediction."""
     return f"{item.claim.why} ({item.note})" if item.note else item.claim.why
 
 

@@ -1,5 +1,5 @@
-"""What `reproduce` says of the prototype: the paper's frequencies and amplitudes beside ours, what
-could explain the difference, and which measurement would tell the explanations apart."""
+"""Output of `reproduce` about the prototype: the paper's frequencies and amplitudes beside ours,
+what could explain the difference, and which measurement would tell the explanations apart."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the terminal shows of `reproduce`: claims, directions model by model, why, the errata."""
+"""Terminal output of `reproduce`: claims, directions model by model, why, the errata."""
 
 from __future__ import annotations
 
