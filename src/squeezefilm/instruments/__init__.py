@@ -1,1 +1,1 @@
-"""What moves a real plate, or its twin: wire, device, loop and record, bench."""
+"""Machinery for a real plate, or its twin: wire, device, loop and record, bench."""

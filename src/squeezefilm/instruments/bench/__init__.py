@@ -1,1 +1,1 @@
-"""What does things on a device or its twin: set-up, play, device check, what a session played."""
+"""Bench for a device or its twin: set-up, play, device check, what a session played."""

@@ -25,7 +25,7 @@ from squeezefilm.instruments.session.play.plan import REPORT_PERIOD
 TEST_VOLTAGE: si.Volt = 1.0
 """The most that a check may ask of a device."""
 ZERO_WITHIN: si.Second = 60e-3
-"""From the last accepted frame to an output at zero, on the device's clock."""
+"""Longest time from the last accepted frame to an output at zero, on the device's clock."""
 SLOWEST_ROUND_TRIP: si.Second = 25e-3
 """Half of the watchdog's patience: one lost frame must not stop the device."""
 _ECHOES = 300
@@ -34,7 +34,7 @@ _KEEP_ALIVE: si.Second = 20e-3
 
 @dataclass(frozen=True, slots=True)
 class CheckResult:
-    """One check: its name, whether it passed, what was measured, what is allowed, what to do.
+    """A check: its name, whether it passed, what was measured, what is allowed, what to do.
 
     `advice` is empty where the check passed.
     """
@@ -185,7 +185,7 @@ def reading_checks(talk: Conversation, duration: si.Second = 0.5) -> list[CheckR
 
 
 def limit_checks(talk: Conversation, limits: Limits, frequency: si.Hertz) -> list[CheckResult]:
-    """What lies outside the limits is refused whole, and the output stays at zero."""
+    """Check that what lies outside the limits is refused whole, and the output stays at zero."""
     first = talk.ask(m.KeepAlive())
     token = 0 if first is None else first.token
     wrong = m.Arm(token ^ 1).payload()
@@ -325,7 +325,7 @@ def _begin(talk: Conversation, limits: Limits) -> None:
 
 
 STOP_TIME: si.Second = 20e-3
-"""For which an output that is stopping is given time to reach zero."""
+"""Time for an output that is stopping to reach zero."""
 
 
 def _make_quiet(talk: Conversation) -> None:

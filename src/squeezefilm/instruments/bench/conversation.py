@@ -93,7 +93,7 @@ class Conversation:
         return self.answer(self.send(message), timeout)
 
     def listen_for(self, duration: si.Second, keep_alive: si.Second = math.inf) -> list[Heard]:
-        """What comes within a time (s), feeding the watchdog every `keep_alive` (s)."""
+        """Frames that come within a time (s), feeding the watchdog every `keep_alive` (s)."""
         start = self.clock()
         came: list[Heard] = []
         fed = start

@@ -33,7 +33,7 @@ def check_loop(rate: si.Hertz, duration: si.Second = LOOP_SECONDS) -> CheckResul
 
 
 def loop_lateness(rate: si.Hertz, duration: si.Second) -> Lateness:
-    """How late this computer's loop is at a rate (Hz), over some seconds; nothing is played."""
+    """Lateness of this computer's loop at a rate (Hz), over some seconds; nothing is played."""
     square = Amplitude(SquareWave(2e-3), low=0.0, high=1e-6)
     plan = LoopPlan(
         program=lower(square, largest_amplitude=1e-6),
@@ -55,7 +55,7 @@ def loop_lateness(rate: si.Hertz, duration: si.Second) -> Lateness:
 
 
 def stolen_time() -> si.Second:
-    """For how long a virtual computer's host has taken processors away since it started (s).
+    """Time for which a virtual computer's host has taken processors away since it started (s).
 
     0 where the system does not tell. Source: Linux, proc_stat(5), "steal".
     """

@@ -14,7 +14,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import optional
 
 NAME = "squeezefilm"
-"""What the stream is called, unless it is called something else."""
+"""Name of the stream, unless another is given."""
 
 
 class Markers:

@@ -1,4 +1,4 @@
-"""What `squeezefilm play` and `device check` do: a device or its twin, a session, a judgement.
+"""Body of `squeezefilm play` and `device check`: a device or its twin, a session, a judgement.
 
 texture → loop process → link → the device's state machine → plate → friction → record → fidelity.
 """
@@ -64,7 +64,7 @@ class PlayResult(Result):
     )
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints and summary.json holds."""
+        """Mapping that ``--json`` prints and summary.json holds."""
         outcome = self.outcome
         return {
             "ended_because": outcome.ending.value,
@@ -77,7 +77,7 @@ class PlayResult(Result):
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class PlayRequest:
-    """What `play_texture` is asked for."""
+    """Arguments of `play_texture`."""
 
     target: str | Path | Display
     texture: NamedTexture
@@ -166,7 +166,7 @@ def play_texture(asked: PlayRequest) -> PlayResult:
 
 
 def _way(display: Display, stroke: str) -> tuple[si.Metre, si.Metre]:
-    """From where to where (m) a twin's finger goes; it must stay on the display."""
+    """Ends of the way of a twin's finger (m); it must stay on the display."""
     finger = FingerMotion.of(motion_from(stroke), 1e3)
     require_on_display(display.actuator, finger)
     # The arm swings a little beyond where it turns.

@@ -1,4 +1,4 @@
-"""What a session played, judged from its record; with a twin also from what really happened.
+"""Judgement of what a session played, from its record; with a twin also from what really happened.
 
 The record knows the finger by its sensor and the vibration by the pickup, or where there is none by
 the envelope's model. A twin knows both for true. Each is made a rendered stroke, and judged by the
@@ -36,7 +36,7 @@ _SHORTEST_PASS: si.Metre = 3e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlayedWay:
-    """What a finger met along its way, as somebody saw it; arrays of shape (n,).
+    """Record of a finger's way, as somebody saw it; arrays of shape (n,).
 
     `time` (s, the loop's clock), `x` (m), `wanted` (m, the texture's amplitude there),
     `relative_friction_wanted` and `relative_friction_rendered` (1), `amplitude` (m). `source` says
@@ -63,7 +63,7 @@ class Judged:
 
 @dataclass(frozen=True, slots=True)
 class LagSummary:
-    """How far the finger goes between a sample and the command that rests on it (m)."""
+    """Distance that the finger goes between a sample and the command that rests on it (m)."""
 
     median: si.Metre
     p99: si.Metre
@@ -102,7 +102,7 @@ class PlayedSession(Result):
         return _last(self.trace, kind)
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints and summary.json holds; keys carry units."""
+        """Mapping that ``--json`` prints and summary.json holds; keys carry units."""
         p, plan = self.setup.prediction, self.setup.plan
         return {
             "texture": self.setup.name,
@@ -177,7 +177,7 @@ def judge_session(setup: PlaySetup, trace: Trace, truth: Path | None = None) -> 
 
 
 def recorded_way(setup: PlaySetup, trace: Trace) -> PlayedWay:
-    """What the finger met by the record: places of the estimator, amplitude of the pickup.
+    """Way of the finger by the record: places of the estimator, amplitude of the pickup.
 
     Without a pickup's amplitude in the record it is the envelope's model.
     """
@@ -230,7 +230,7 @@ def _true_way(setup: PlaySetup, trace: Trace, truth: Path, offset: si.Second) ->
 
 
 def tile_summary(plan: PlayPlan) -> Mapping[str, Any] | None:
-    """What the tile of a plan was made for; None without one, or where nobody can say."""
+    """Mapping of what the tile of a plan was made for; None without one or where it is unknown."""
     tile = plan.tile
     return None if tile is None or tile.made_for is None else tile.made_for.summary()
 
@@ -240,7 +240,7 @@ def _last(trace: Trace, kind: str) -> Mapping[str, Any]:
 
 
 def _played_until(trace: Trace) -> si.Second:
-    """When the session began to end (s); after it nothing was to be rendered."""
+    """Time at which the session began to end (s); after it nothing was to be rendered."""
     fields = _last(trace, "end")
     found = fields.get("faded_at_s")
     last = float(trace.rows[-1, column.TIME]) if len(trace.rows) else 0.0
@@ -282,7 +282,7 @@ class _Recorded:
         raise InputError("a recorded texture has been asked already; ask the one it was made from")
 
     def position(self, t: si.SecondLike, /) -> si.MetreArray:
-        """Where the finger was (m)."""
+        """Position of the finger (m)."""
         return np.asarray(np.interp(t, self.time, self.x))
 
 

@@ -26,7 +26,7 @@ READINGS = 16
 PROMINENCE: si.Dimensionless = 1.1
 """A resonance is at least so many times what is read at the ends of the sweep."""
 LIFT_LIMIT: si.Second = 10.0
-"""How long a finger may stay on the plate before the sweep is given up."""
+"""Longest time of a finger on the plate before the sweep is given up."""
 _DEAF_LIMIT: si.Second = 0.5
 _MICROVOLT = 1e-6
 

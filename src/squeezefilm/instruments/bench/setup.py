@@ -1,4 +1,4 @@
-"""What `squeezefilm play` works out first: texture, display and drive as a loop's plan."""
+"""Preparation of `squeezefilm play`: texture, display and drive as a loop's plan."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from squeezefilm.physics.render.resonator.envelope import envelope_time_constant
 from squeezefilm.physics.texture_files.texture_file import TextureFile
 
 OUTPUT_DELAY: si.Second = 6e-3
-"""From a tick to its command at the plate: the player's pause, a block's length, the link and what
-its jitter may be (assumed; commands that come later than this are counted, and not played)."""
+"""Time from a tick to its command at the plate: the player's pause, a block's length, the link and
+what its jitter may be (assumed; commands that come later than this are counted, and not played)."""
 _FINEST_PITCH: si.Metre = 1e-6
 _LONGEST_TILE_WAY: si.Metre = 0.1
 
 
 @dataclass(frozen=True)
 class KnownDevice:
-    """What is known of the device that plays.
+    """Facts about the device that plays.
 
     Attributes:
         sensor: what the finger is seen with.
@@ -73,7 +73,7 @@ class PlaySetup:
 
     @property
     def name(self) -> str:
-        """What the texture is called."""
+        """Name of the texture."""
         return self.texture.title or f"a texture of {self.texture.texture.quantity}"
 
     def friction(

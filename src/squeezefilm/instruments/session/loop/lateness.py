@@ -1,4 +1,4 @@
-"""How late the loop's ticks were, in a histogram of logarithmic classes, and how many were lost."""
+"""Lateness of the loop's ticks, in a histogram of logarithmic classes, and how many were lost."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def class_ends() -> si.SecondArray:
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class Lateness:
-    """How late ticks were made, and how many were not made at all.
+    """Lateness of ticks, and the number of those that were not made at all.
 
     A tick is late by the time from when it was due to when it was begun. One that could not begin
     before the next was due is lost: it is not made up for, and stands in no class.
@@ -118,7 +118,7 @@ class Lateness:
 
     @classmethod
     def from_json(cls, values: Mapping[str, Any]) -> Lateness:
-        """What `to_json` wrote. Raises `InputError` for anything else."""
+        """Lateness that `to_json` wrote. Raises `InputError` for anything else."""
         try:
             return cls(
                 rate=float(values["rate_Hz"]),

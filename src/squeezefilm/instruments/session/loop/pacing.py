@@ -1,4 +1,4 @@
-"""When ticks are made: on their deadlines, late ones counted, lost ones never made up for.
+"""Pacing of ticks: on their deadlines, late ones counted, lost ones never made up for.
 
 Tick k is due k/rate after the loop began. The loop sleeps until a margin before that and spins
 through the rest, so that a sleep which ends late by less than the margin costs nothing; the margin
@@ -27,7 +27,7 @@ from squeezefilm.instruments.session.loop.lateness import lateness_class
 from squeezefilm.instruments.session.loop.tick import make_tick
 
 MARGIN: si.Second = 50e-6
-"""How long before a deadline the loop wakes, where half a period allows it."""
+"""Time before a deadline at which the loop wakes, where half a period allows it."""
 MOST_SPIN: si.Dimensionless = 0.5
 """The largest share of a period that may be spun through."""
 _SECOND_NS = 1e9
@@ -36,7 +36,7 @@ _PARENT_LOOKED_AT_NS = 5_000_000
 
 @compiled()
 def due_ns(number: int, period: float) -> int:
-    """When a tick is due (ns after tick 0) at a period (s); exact to 1 ns for 10⁶ s."""
+    """Time at which a tick is due (ns after tick 0) at a period (s); exact to 1 ns for 10⁶ s."""
     return int(number * period * _SECOND_NS + 0.5)
 
 
@@ -143,5 +143,5 @@ def portable_loop(arrays: Any, memory: Any, timeout: int, parent: int) -> None:
 
 
 def margin_ns(period: si.Second, real_time: bool) -> int:
-    """How long before a deadline a loop of this period (s) wakes (ns); 0 without priority."""
+    """Time before a deadline at which a loop of this period (s) wakes (ns); 0 without priority."""
     return int(min(MARGIN, MOST_SPIN * period) * _SECOND_NS) if real_time else 0

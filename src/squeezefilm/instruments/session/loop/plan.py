@@ -1,4 +1,4 @@
-"""What a loop shall do: texture, drive, estimator, compensation and rate, and as flat arrays."""
+"""Plan of a loop: texture, drive, estimator, compensation and rate, and as flat arrays."""
 
 from __future__ import annotations
 
@@ -134,7 +134,7 @@ class LoopPlan:
 
     @property
     def lead(self) -> si.Second:
-        """From when a tick is due to the moment that its command is meant for (s).
+        """Time from when a tick is due to the moment that its command is meant for (s).
 
         The output delay, and half a period (the middle of the step) or, compensated, a whole one
         (its end); see `render.rendered_stroke`.

@@ -34,7 +34,7 @@ from squeezefilm.instruments.session.loop.simulated import lateness_in, sample_b
 from squeezefilm.instruments.session.loop.worker import Orders
 
 PRIORITY = 50
-"""Of SCHED_FIFO: above all ordinary work, below what the kernel itself runs at 99."""
+"""Priority of SCHED_FIFO: above all ordinary work, below what the kernel itself runs at 99."""
 _START_LIMIT: si.Second = 180.0
 _STOP_LIMIT: si.Second = 2.0
 # Until tick 0, so that the worker sees its epoch before it.
@@ -43,7 +43,7 @@ _HEAD_START_NS = 5_000_000
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LoopReport:
-    """What a loop did, to be stored with its session.
+    """Report of a loop, to be stored with its session.
 
     Attributes:
         lateness: of its ticks.
@@ -272,12 +272,12 @@ class LoopProcess:
 
     @property
     def silence(self) -> si.Second:
-        """How long ago the loop made its last tick (s); above some periods it hangs."""
+        """Time since the loop made its last tick (s); above some periods it hangs."""
         _, memory = self._running()
         return self.time - int(memory.control[shared.BEAT]) * 1e-9
 
     def report(self) -> LoopReport:
-        """What the loop did up to now.
+        """Report of the loop up to now.
 
         Raises `LoopError` for a loop that was never started.
         """

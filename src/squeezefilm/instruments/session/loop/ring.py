@@ -61,5 +61,5 @@ def ring_put_all(counters: si.Array, rows: si.Array, block: si.Array) -> int:
 
 @compiled()
 def ring_waiting(counters: si.Array) -> int:
-    """How many rows wait to be read."""
+    """Number of rows that wait to be read."""
     return int(load_acquire(counters, HEAD) - load_acquire(counters, TAIL))

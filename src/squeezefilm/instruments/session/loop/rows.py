@@ -1,4 +1,4 @@
-"""What the loop takes in and writes down: columns of its rings, and the flags of a tick.
+"""Rows that the loop takes in and writes down: columns of its rings, and the flags of a tick.
 
 All rows are 64-bit floats. Times are seconds since the loop began (its tick 0), on the clock of
 `clock`; whole numbers in them are exact to 2^53.
@@ -89,10 +89,10 @@ FLAG_MEANINGS: dict[int, str] = {
     MUTED: "the host muted the loop",
     HOST_SILENT: "the host did not touch the loop for longer than its timeout",
 }
-"""What each flag says, for people."""
+"""Meaning of each flag, for people."""
 
 
 def flag_meanings(flags: float) -> list[str]:
-    """What the flags of a row say, in words; empty for 0."""
+    """Meanings of the flags of a row, in words; empty for 0."""
     value = int(flags)
     return [meaning for flag, meaning in FLAG_MEANINGS.items() if value & flag]

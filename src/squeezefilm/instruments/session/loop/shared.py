@@ -51,7 +51,7 @@ class Shared(NamedTuple):
 
 
 def shared_size() -> int:
-    """How many bytes the shared memory takes."""
+    """Number of bytes that the shared memory takes."""
     words = CONTROL_SIZE + lateness.CLASSES
     words += sum(ring.COUNTERS_SIZE + capacity * width for capacity, width in _RINGS)
     # The histogram's length need not end a cache line; what follows it begins a new one.

@@ -91,7 +91,7 @@ class SimulatedLoop:
 
     @property
     def time(self) -> si.Second:
-        """When the next tick is due (s)."""
+        """Time at which the next tick is due (s)."""
         return int(self._memory.control[shared.NEXT]) * self.plan.period
 
     def feed(self, samples: si.FloatArray) -> int:
@@ -134,13 +134,13 @@ class SimulatedLoop:
 
     @property
     def lateness(self) -> Lateness:
-        """How late the ticks were so far."""
+        """Lateness of the ticks so far."""
         return lateness_in(self.plan, self._memory)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SimulatedRun:
-    """What a loop did on a simulated clock.
+    """Run of a loop on a simulated clock.
 
     Attributes:
         plan: the input.

@@ -1,4 +1,4 @@
-"""One compiled tick of the loop: samples in, one command and one row out; no Python, no memory.
+"""A compiled tick of the loop: samples in, one command and one row out; no Python, no memory.
 
 The steps are those of `physics.render.fidelity.rendered_stroke`, by the same compiled functions:
 the estimator takes what has arrived, the finger is predicted to the moment the command is meant
@@ -95,7 +95,7 @@ def _listen(arrays: Any, sample: si.Array) -> int:
 
 @compiled(error_model="numpy")
 def _pass_lost_ticks(arrays: Any, lost: int) -> None:
-    """What the envelope did while no command came: it followed the last, or the drive stopped."""
+    """Carry the envelope past lost ticks: it followed the last command, or the drive stopped."""
     state, envelope, settings = arrays.compensator, arrays.envelope, arrays.settings
     place = compensation_kernel.AMPLITUDE
     if lost * settings[at.DT] > settings[at.LONGEST_GAP]:

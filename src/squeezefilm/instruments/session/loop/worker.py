@@ -35,7 +35,7 @@ _MCL_CURRENT, _MCL_ONFAULT = 1, 4
 
 @dataclass(frozen=True, slots=True)
 class Orders:
-    """What a worker is told: the plan, the priority to ask for, its parent, and the clock to use.
+    """Orders to a worker: the plan, the priority to ask for, its parent, and the clock to use.
 
     `priority` is SCHED_FIFO's (1 to 99), or None to ask for none. `compiled_clock` may be False
     to pace the loop by Python where the compiled clock would do.

@@ -1,4 +1,4 @@
-"""What a session is to do, what it tells while it runs, and a texture as a device's tile.
+"""Plan of a session, what it tells while it runs, and a texture as a device's tile.
 
 A tile holds amplitudes over x that a device looks up by itself, without a loop.
 """
@@ -155,7 +155,7 @@ REPORT_PERIOD: si.Second = 1e-3
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class PlayPlan:
-    """What is to be played, and on what.
+    """Plan of what is to be played, and on what.
 
     Args:
         loop: texture, rate, estimator, compensation, output delay.
@@ -204,7 +204,7 @@ class PlayPlan:
 
 
 class Ending(Enum):
-    """Why a session ended."""
+    """Reason why a session ended."""
 
     DURATION = "the time was over"
     INTERRUPTED = "it was interrupted"

@@ -44,7 +44,7 @@ LOOP_LIMIT: si.Second = 25e-3
 DEAF_LIMIT: si.Second = 0.25
 """Silence of the device after which it is taken to be gone."""
 FADE: si.Second = 30e-3
-"""From muting the loop to stopping the device: the last commands ramp to zero in it."""
+"""Time from muting the loop to stopping the device: the last commands ramp to zero in it."""
 _STOP_LIMIT: si.Second = 0.5
 _MICRO = 1e-6
 
@@ -193,7 +193,7 @@ class Player:
         return found
 
     def view(self) -> PlayView:
-        """What there is to see now."""
+        """View of what there is to see now."""
         row = self._row
         return PlayView(
             time=float(row[column.TIME]),

@@ -53,7 +53,7 @@ LONGEST_SILENCE: si.Second = 35e-3
 
 @dataclass(frozen=True, slots=True)
 class PlayOutcome:
-    """How a session ended: why, what there is to say of it, and where its record is.
+    """End of a session: why, what there is to say of it, and where its record is.
 
     `usability` is what its ticks say of it; None where they were not counted. `silent` is when the
     device said that its output is at zero, or was given up (s, `time.monotonic`).
@@ -78,7 +78,7 @@ class PlayOutcome:
 
     @property
     def said(self) -> str:
-        """What there is to say of it, also of one that ended as it should and cannot be used."""
+        """Sentence on how it ended, also of one that ended as it should and cannot be used."""
         if self.message or self.usability is None or self.usability.usable:
             return self.message
         return f"not usable: {self.usability.sentence}"
@@ -202,7 +202,7 @@ def played(
 
 
 def fault_sentence(player: Player) -> str:
-    """What its device's fault means, for a person."""
+    """Sentence for a person on what its device's fault means."""
     fault = player.fault
     if fault is not Fault.WATCHDOG:
         return _FAULTS.get(fault, f"the device faulted: {fault.name.lower()}")
@@ -251,7 +251,7 @@ def _collected() -> Iterator[None]:
 
 @contextlib.contextmanager
 def _preferred() -> Iterator[None]:
-    """Before ordinary work, where the system grants it, and after the loop.
+    """Run before ordinary work, where the system grants it, and after the loop.
 
     The player works a quarter of the time and sleeps in every millisecond; held up for 50 ms it
     would cost the session. The loop has said already where priority is not granted. Not with a

@@ -56,7 +56,7 @@ class VirtualStream:
         self._arrived += self.device.advance(max(until, self.device.now))
 
     def read(self) -> bytes:
-        """What has arrived from the device."""
+        """Bytes that have arrived from the device."""
         data = bytes(self._arrived)
         self._arrived.clear()
         return data

@@ -30,7 +30,7 @@ MOST_LATE: si.Dimensionless = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Usability:
-    """What a session's ticks say of it, with the limits that they are held to.
+    """Usability of a session by its ticks, with the limits that they are held to.
 
     Attributes:
         usable: whether all three limits are kept; never where nothing was played.

@@ -40,7 +40,7 @@ class TraceEvent:
 
 @dataclass(frozen=True, slots=True)
 class Damage:
-    """What is missing of a trace.
+    """Parts that a trace lacks.
 
     `lost_bytes` belong to no whole block, `lost_blocks` are missing by their numbers, `closed`
     says whether the writer came to its end, `sentences` say all of it for a person.
@@ -79,28 +79,28 @@ class Trace(Result):
 
     @property
     def display(self) -> str:
-        """Of the display, by the record's own word; empty where it says nothing."""
+        """Name of the display, by the record's own word; empty where it says nothing."""
         return str(self.metadata.get("display", ""))
 
     @property
     def texture(self) -> str:
-        """What was played, by the record's own word; empty where it says nothing."""
+        """Name of the texture, by the record's own word; empty where it says nothing."""
         return str(self.metadata.get("texture", ""))
 
     @property
     def row_count(self) -> int:
-        """How many rows there are."""
+        """Number of rows."""
         return len(self.rows)
 
     @property
     def duration(self) -> si.Second:
-        """From the first row to the last (s); 0 without a column of times."""
+        """Time from the first row to the last (s); 0 without a column of times."""
         if "time_s" not in self.columns or not len(self.rows):
             return 0.0
         return float(np.ptp(self.column("time_s")))
 
     def summary(self) -> dict[str, Any]:
-        """Where it is from, how much there is, and what is missing."""
+        """Mapping of where it is from, how much there is, and what is missing."""
         return {
             "columns": list(self.columns),
             "rows": len(self.rows),
@@ -139,7 +139,7 @@ def read_trace(path: str | Path, tell: ShareProgress | None = None) -> Trace:
 
 @dataclass(slots=True)
 class _Found:
-    """What was found so far in a file."""
+    """Content of a file as found so far."""
 
     metadata: dict[str, Any] | None = None
     events: list[TraceEvent] = field(default_factory=list)
@@ -259,7 +259,7 @@ def _json_object(payload: bytes) -> dict[str, Any] | None:
 
 @dataclass(frozen=True, slots=True)
 class TraceExport:
-    """What was exported: files, format, counts, and what the trace had lost before (`damage`)."""
+    """Export of a trace: files, format, counts, and what the trace had lost before (`damage`)."""
 
     trace: str
     to: str

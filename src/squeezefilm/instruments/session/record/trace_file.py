@@ -36,7 +36,7 @@ HEADER_SIZE = _HEADER.size
 
 
 class BlockKind(IntEnum):
-    """What a block carries."""
+    """Kind of what a block carries."""
 
     METADATA = 1
     ROWS = 2
@@ -69,7 +69,7 @@ def file_header() -> bytes:
 
 
 def block_bytes(kind: BlockKind, number: int, payload: bytes) -> bytes:
-    """One block as it stands in the file. `payload` has at most `LONGEST_PAYLOAD` bytes."""
+    """Bytes of a block as it stands in the file. `payload` has at most `LONGEST_PAYLOAD` bytes."""
     head = _BLOCK.pack(MARKER, kind, number & 0xFFFFFFFF, len(payload))
     crc = zlib.crc32(payload, zlib.crc32(head[len(MARKER) :]))
     return head + payload + _CRC.pack(crc)

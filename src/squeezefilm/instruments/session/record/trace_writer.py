@@ -27,7 +27,7 @@ from squeezefilm.core.results import sync_folder, to_json
 from squeezefilm.instruments.session.record import trace_file as file
 
 SYNC_PERIOD: si.Second = 1.0
-"""How often the trace is forced onto the disk unless asked otherwise."""
+"""Time after which the trace is forced onto the disk unless asked otherwise."""
 
 
 class TraceWriter:
