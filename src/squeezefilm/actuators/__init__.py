@@ -1,1 +1,1 @@
-"""What plates and bent ceramics also make: a standing-wave motor, a skin-stretch array."""
+"""Other products of plates and bent ceramics: a standing-wave motor, a skin-stretch array."""

@@ -25,8 +25,8 @@ KINDS: dict[str, type[Described]] = {
     "motor": MotorDescription,
     "skin_stretch": SkinStretchDescription,
 }
-"""By the table that a file has: the dataclass that it is read into. What `analyze` says of each is
-in `actuators.report.dispatch`."""
+"""Kinds by the table that a file has: the dataclass that it is read into. What `analyze` says of
+each is in `actuators.report.dispatch`."""
 
 
 def is_actuator(name_or_path: str | Path) -> bool:
@@ -62,7 +62,7 @@ def actuator_class(text: str, file: str | Path | None = None) -> type[Described]
 
 
 def actuator_kind(text: str, file: str | Path | None = None) -> str:
-    """Which of `KINDS` the TOML text has a table of.
+    """Name of the one of `KINDS` that the TOML text has a table of.
 
     What is no TOML is left to the loader, which says where it is wrong: taken as the first kind.
     Raises `ConfigError` where it has none, or more than one.

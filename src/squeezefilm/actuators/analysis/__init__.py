@@ -1,1 +1,1 @@
-"""What follows from an actuator's description: of a motor, of a skin-stretch array."""
+"""Analysis of an actuator's description: of a motor, of a skin-stretch array."""

@@ -1,4 +1,4 @@
-"""How sure an actuator's answers are, and of what: all that nobody knows drawn together."""
+"""Certainty of an actuator's answers, and its causes: all that nobody knows drawn together."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Usual(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class DrawnAnswers:
-    """What an actuator's answers become where what is uncertain is drawn, `count` times.
+    """Answers of an actuator where what is uncertain is drawn, `count` times.
 
     `intervals` have the quantiles `LEVELS` of each answer, of the draws in which the actuator
     works; `refused` is in how many it does not, most often because of `reason`. `drawn` are the

@@ -1,4 +1,4 @@
-"""What `squeezefilm analyze` computes of a planar standing-wave motor."""
+"""Results of `squeezefilm analyze` for a planar standing-wave motor."""
 
 from __future__ import annotations
 
@@ -110,17 +110,17 @@ class MotorAnalysis(Result):
 
     @property
     def no_load_speed(self) -> si.MetrePerSecond:
-        """Its speed where nothing is left for a load (m/s)."""
+        """Speed where nothing is left for a load (m/s)."""
         return self.curve[-1].speed
 
     @property
     def free_amplitude(self) -> si.Metre:
-        """Of the lobe at this voltage without a slider (m)."""
+        """Amplitude of the lobe at this voltage without a slider (m)."""
         return free_amplitude(self.motor, Working(voltage=self.voltage))
 
     @property
     def input_power(self) -> si.Watt:
-        """What the drive puts in at `best` (W): output, losses of plate, contacts and guide."""
+        """Input of the drive at `best` (W): output, losses of plate, contacts and guide."""
         one = self.best
         guide = (one.thrust - one.force) * one.speed
         return one.output + one.plate_loss + one.contact_loss + one.friction_loss + guide

@@ -1,4 +1,4 @@
-"""What `squeezefilm analyze` computes of a skin-stretch array."""
+"""Results of `squeezefilm analyze` for a skin-stretch array."""
 
 from __future__ import annotations
 
@@ -106,23 +106,23 @@ class SkinStretchAnalysis(Result):
 
     @property
     def array(self) -> SkinStretchArray:
-        """What is described."""
+        """Array that is described."""
         return self.described.skin_stretch
 
     @property
     def free_deflection(self) -> si.Metre:
-        """Of one actuator at the voltage (m)."""
+        """Free deflection of one actuator at the voltage (m)."""
         return self.voltage * self.array.bender.deflection_per_volt
 
     @property
     def blocked_force(self) -> si.Newton:
-        """Of one actuator at the voltage (N)."""
+        """Blocked force of one actuator at the voltage (N)."""
         return self.voltage * self.array.bender.force_per_volt
 
     @property
     def power(self) -> tuple[si.Watt, si.Watt]:
-        """At 100 Hz, all actuators: the heat in the ceramics of a sine, and what drivers burn that
-        swing the whole voltage and recover none of it (W)."""
+        """Power at 100 Hz, all actuators: the heat in the ceramics of a sine, and what drivers burn
+        that swing the whole voltage and recover none of it (W)."""
         array = self.array
         heat = loss_power(array.actuator, array.bender, self.voltage, 100.0)
         return array.cradle.count * heat, charging_power(

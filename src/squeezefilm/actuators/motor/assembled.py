@@ -35,7 +35,7 @@ class FaceMode:
 
     @property
     def modal_mass(self) -> si.Kilogram:
-        """Of the mode, for 1 m at its lobe (kg)."""
+        """Modal mass for 1 m at the mode's lobe (kg)."""
         mass = self.working.modal_mass
         assert mass is not None  # every plate's mode has one
         return mass
@@ -86,7 +86,7 @@ _NODE = 0.05
 @si.checked_numbers
 @dataclass(frozen=True)
 class Working:
-    """How a motor is driven, pressed and held.
+    """State in which a motor is driven, pressed and held.
 
     Either `voltage` (V) drives the modes, which the feet then load, or they are held at `amplitude`
     (m, zero-to-peak at the lobe), as a loop around the amplitude does. With two modes `second` is
@@ -120,24 +120,24 @@ class AssembledMotor:
 
     @property
     def resonance_frequency(self) -> si.Hertz:
-        """Of the first mode without the slider (Hz)."""
+        """Resonance frequency of the first mode without the slider (Hz)."""
         return self.modes[0].working.resonance_frequency
 
     @property
     def amplitude_per_volt(self) -> si.MetrePerVolt:
-        """Of the first mode at its resonance, without the slider (m/V)."""
+        """Amplitude of the first mode at its resonance, without the slider (m/V)."""
         return self.modes[0].working.amplitude_per_volt
 
     @property
     def highest_voltage(self) -> si.Volt:
-        """Where the field in the thinnest ceramic reaches the share of the coercive field that
-        ceramics bear again and again (V)."""
+        """Voltage at which the field in the thinnest ceramic reaches the share of the coercive
+        field that ceramics bear again and again (V)."""
         thinnest = min(patch.thickness for patch in self.motor.plate.patches)
         return FIELD_SHARE * self.motor.thermal.coercive_field * thinnest
 
     @property
     def quiescent_force(self) -> si.Newton:
-        """What moves the slider at rest, unpowered (N): friction of feet and guide."""
+        """Force that moves the slider at rest, unpowered (N): friction of feet and guide."""
         cradle = self.motor.cradle
         return self.motor.contact.friction_coefficient * cradle.preload + cradle.friction
 

@@ -1,4 +1,4 @@
-"""What a motor does against speed, preload, amplitude, frequency and the place of its feet."""
+"""Curves of a motor against speed, preload, amplitude, frequency and the place of its feet."""
 
 from __future__ import annotations
 

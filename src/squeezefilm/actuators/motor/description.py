@@ -1,4 +1,4 @@
-"""What a planar standing-wave motor is described by: plate, feet, contact, slider and cradle."""
+"""Description of a planar standing-wave motor: plate, feet, contact, slider and cradle."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Foot:
 @si.checked_numbers
 @dataclass(frozen=True)
 class FootContact:
-    """What is between a foot and the slider: springs along and across the leg, loss and friction.
+    """Contact between a foot and the slider: springs along and across the leg, loss and friction.
 
     `damping` χ makes the normal force k δ (1 + χ δ'), which never pulls (Hunt and Crossley 1975,
     10.1115/1.3423596); the friction is Coulomb's with one coefficient. The stiffnesses are of foot,
@@ -79,7 +79,7 @@ class FootContact:
 @si.checked_numbers
 @dataclass(frozen=True)
 class Cradle:
-    """What presses the slider on the feet and guides it.
+    """Cradle that presses the slider on the feet and guides it.
 
     `preload` stays the same however the slider bounces; `direction` is where the guide lets it go,
     counted from the length towards the width; `damping` resists its motion across, `friction` is

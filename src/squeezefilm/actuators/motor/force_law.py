@@ -24,7 +24,7 @@ from squeezefilm.core.errors import InputError
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class ForceLaw:
-    """What a step needs to know of a motor, and how hard it corrects.
+    """Law of a step: what is known of a motor, and how hard it corrects.
 
     `thrust` (N) is a table over `speed` (m/s) and `amplitude` (m), which it grows with at every
     speed; `volts_per_metre` holds an amplitude and `time_constant` (s) is the amplitude's own.
@@ -63,8 +63,8 @@ class ForceLaw:
 
 
 class ForceState(NamedTuple):
-    """What a law remembers: by how much the table is too high (N), what the feet add to the
-    amplitude (m), amplitude (m) and voltage (V) a step before, and how many commands were cut."""
+    """State of a law: by how much the table is too high (N), what the feet add to the amplitude
+    (m), amplitude (m) and voltage (V) a step before, and how many commands were cut."""
 
     correction: float = 0.0
     offset: float = 0.0
@@ -104,7 +104,7 @@ def force_step(
     amplitude: Annotated[si.Metre, si.AtLeast(0.0)],
     speed: si.MetrePerSecond,
 ) -> tuple[ForceState, ForceCommand]:
-    """One step of the law.
+    """Make a step of the law.
 
     Args:
         law: what is known of the motor.

@@ -69,7 +69,7 @@ class MotorMotion:
 
     @property
     def energy_residual(self) -> si.Dimensionless:
-        """What the balance of energy lacks, over all that was put in and lost: of the march."""
+        """Energy that the balance lacks, over all that was put in and lost: of the march."""
         w = self.works
         lost = w[kernel.OUTPUT] + w[kernel.MODAL_LOSS : kernel.GUIDE_LOSS + 1].sum()
         gap = w[kernel.DRIVE] + w[kernel.PRELOAD] - lost - self.stored_energy

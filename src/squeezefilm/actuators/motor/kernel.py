@@ -188,7 +188,7 @@ def _slips(y: si.Array, stator: Stator, feet: Feet, march: March, dy: si.Array) 
 
 @compiled()
 def _stepped(t: float, h: float, stator: Stator, feet: Feet, slider: Slider, march: March) -> None:
-    """One Runge–Kutta step from `march.state` into room 5, with the events there."""
+    """Make a Runge–Kutta step from `march.state` into room 5, with the events there."""
     y, room = march.state, march.room
     rates(t, y, stator, feet, slider, march, room[0])
     room[4, :] = y + 0.5 * h * room[0]
@@ -205,7 +205,7 @@ def _stepped(t: float, h: float, stator: Stator, feet: Feet, slider: Slider, mar
 def _first_event(
     t: float, h: float, before: si.Array, stator: Stator, feet: Feet, slider: Slider, march: March
 ) -> tuple[int, float]:
-    """Which event comes first within a step that ends past one, and when; the state just past it
+    """Event that comes first within a step that ends past one, and its time; the state just past it
     stands in room 5. By the Illinois method, on steps from the same start."""
     events = march.events
     high = h
@@ -261,7 +261,7 @@ def _first_event(
 
 @compiled()
 def _change(which: int, stator: Stator, feet: Feet, slider: Slider, march: March) -> None:
-    """What becomes of the foot, or the guide, whose event has come."""
+    """Change the foot, or the guide, whose event has come."""
     J, n_feet = stator.mass.size, feet.mu.size
     at = 2 * J
     y, contact = march.state, march.contact

@@ -1,4 +1,4 @@
-"""What the compiled motors are made of: modes, feet and slider, as plain arrays and numbers."""
+"""Parts of the compiled motors: modes, feet and slider, as plain arrays and numbers."""
 
 from __future__ import annotations
 

@@ -63,7 +63,7 @@ class PlaneMotion:
 
     @property
     def energy_residual(self) -> si.Dimensionless:
-        """What the balance of energy lacks, over all that was put in and lost: of the march."""
+        """Energy that the balance lacks, over all that was put in and lost: of the march."""
         w = self.works
         gap = w[0] + w[1] - np.sum(w[2:]) - self.stored_energy
         return float(abs(gap) / np.sum(np.abs(w)))

@@ -130,7 +130,7 @@ class SkinStretchArray:
 
     @functools.cached_property
     def influence(self) -> si.FloatArray:
-        """How far a newton on one contactor moves the skin under each (m/N)."""
+        """Displacement of the skin under each contactor by a newton on one (m/N)."""
         return influence_matrix(self.tissue, *self.cradle.places, self.cradle.size)
 
     @functools.cached_property
@@ -220,8 +220,8 @@ class SkinStretchArray:
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class Pull:
-    """What an array does at some `voltages`: `forces` on the skin, `displacements` of the skin
-    under the contactors, `held`, the friction that may hold each, and how far each has `slid`."""
+    """Pull of an array at some `voltages`: `forces` on the skin, `displacements` of the skin under
+    the contactors, `held`, the friction that may hold each, and how far each has `slid`."""
 
     voltages: Annotated[si.FloatArray, si.Unit("V")]
     forces: si.NewtonArray
@@ -231,18 +231,18 @@ class Pull:
 
     @property
     def slips(self) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
-        """Which contactors pull with all of their friction."""
+        """True of the contactors that pull with all of their friction."""
         return np.asarray(np.abs(self.forces) >= (1 - 1e-9) * self.held)
 
     @property
     def slipping(self) -> int:
-        """How many those are."""
+        """Number of those."""
         return int(np.count_nonzero(self.slips))
 
 
 @dataclass(frozen=True, repr=False)
 class SkinStretchDescription(Result):
-    """What a file with the table ``[skin_stretch]`` says; read one with `described.load_actuator`.
+    """Content of a file with the table ``[skin_stretch]``; read one with `described.load_actuator`.
 
     Ceramic, shim and electrode may be named as materials of the library.
     """

@@ -43,7 +43,7 @@ _M, _V = si.Unit("m"), si.Unit("V")
 @si.checked_numbers
 @dataclass(frozen=True)
 class Bender:
-    """What a bending actuator does at its tip: `deflection_per_volt` (free, quasi-static) and
+    """Bending actuator as seen at its tip: `deflection_per_volt` (free, quasi-static) and
     `stiffness` and `resonance_frequency` with the voltage held; `capacitance` of the free
     actuator."""
 
@@ -110,7 +110,7 @@ class Bimorph:
 
     @property
     def thickness(self) -> si.Metre:
-        """Of all layers together."""
+        """Thickness of all layers together."""
         return 2 * (self.ceramic_thickness + self.electrode_thickness) + self.shim_thickness
 
     @property
@@ -125,7 +125,7 @@ class Bimorph:
 
     @property
     def mass(self) -> si.Kilogram:
-        """Of the free length; electrodes without a material are left out."""
+        """Mass of the free length; electrodes without a material are left out."""
         layers = 2 * self.ceramic.density * self.ceramic_thickness
         layers += self.shim.density * self.shim_thickness
         if self.electrode is not None:
@@ -236,7 +236,7 @@ def _boxes(actuator: Bimorph, more: int) -> BoxModel:
 
 
 def _end_face(slabs: Slabs) -> si.FloatArray:
-    """What takes a solution to the mean deflection of the end face; it is also the load of one
+    """Row that takes a solution to the mean deflection of the end face; it is also the load of one
     newton spread over that face."""
     points, weights = gauss_points(12)
     means = []

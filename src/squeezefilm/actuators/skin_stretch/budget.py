@@ -1,4 +1,4 @@
-"""What an array asks of its maker: mass, volume, power, lines. A check against stated limits."""
+"""Budget of an array: mass, volume, power, lines. A check against stated limits."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ CubicMetre = Annotated[float, si.Unit("m3")]
 PUBLISHED_MASS: si.Kilogram = 60e-3
 PUBLISHED_VOLUME: CubicMetre = 150e-6
 PUBLISHED_AREA: si.SquareMetre = 1e-4
-"""Of the source paper's array of 60. It prints "150 cm2" for the volume and "10 mm2" for the
+"""Area of the source paper's array of 60. It prints "150 cm2" for the volume and "10 mm2" for the
 surface; 150 cm³ and about 1 cm² are taken, since 60 g fill no area, and 60 contactors a millimetre
 apart span 1 cm², not 10 mm²."""
 
 
 @si.checked_numbers
 def lines_needed(count: Annotated[int, si.AtLeast(1)], lines: Lines) -> int:
-    """How many wires to the array drive `count` actuators: each its own and a common one
+    """Number of wires to the array that drive `count` actuators: each its own and a common one
     ("direct"); rows and columns of a matrix as square as can be, which holds only what is refreshed
     one row at a time; or clock, data, enable and two of supply for a daisy chain of driver chips,
     whatever the number."""
@@ -44,8 +44,8 @@ def charging_power(
     voltage: si.Volt,
     rate: Annotated[si.Hertz, si.AtLeast(0)],
 ) -> si.Watt:
-    """What drivers that do not recover charge burn (W) when every actuator goes from −`voltage` to
-    +`voltage` (V) and back `rate` times a second: count · C (2V)² · rate."""
+    """Power that drivers which do not recover charge burn (W) when every actuator goes from
+    −`voltage` to +`voltage` (V) and back `rate` times a second: count · C (2V)² · rate."""
     return count * bender.capacitance * (2 * voltage) ** 2 * rate
 
 
@@ -67,7 +67,7 @@ def loss_power(
 @si.checked_numbers
 @dataclass(frozen=True)
 class Budget:
-    """What may be spent, and what the actuators alone take of it; `over` names, in sentences, what
+    """Limits on what may be spent, and the actuators' own share; `over` names, in sentences, what
     they exceed. What is left is for clamps, cradle, drivers and housing, which are not modelled."""
 
     mass: si.Kilogram
@@ -79,7 +79,7 @@ class Budget:
 
     @property
     def over(self) -> tuple[str, ...]:
-        """What does not fit, one sentence each."""
+        """Sentences on what does not fit, one each."""
         found = []
         if self.mass > self.most_mass:
             found.append(

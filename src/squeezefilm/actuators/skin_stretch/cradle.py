@@ -1,4 +1,4 @@
-"""Where the contactors stand, and the curvature of a cradle at which a fingertip touches all.
+"""Places of the contactors, and the curvature of a cradle at which a fingertip touches all.
 
 x runs along the finger and is the way of pulling, y across it. Cradle and fingertip are described
 by their radii of curvature along x and y. The finger is pressed on: every contactor under it
@@ -98,12 +98,12 @@ class FingerCradle:
 
     @property
     def count(self) -> int:
-        """How many contactors there are."""
+        """Number of contactors."""
         return self.columns * self.rows
 
     @property
     def size(self) -> Sizes:
-        """Of one contactor, along and across (m)."""
+        """Sizes of one contactor, along and across (m)."""
         return self.contactor_length, self.contactor_width
 
     @property
@@ -115,7 +115,7 @@ class FingerCradle:
 
     @property
     def active_area(self) -> si.SquareMetre:
-        """What the contactors span, a pitch for each."""
+        """Area that the contactors span, a pitch for each."""
         return self.count * self.pitch_along * self.pitch_across
 
 
@@ -130,12 +130,12 @@ class Seating:
 
     @property
     def touching(self) -> int:
-        """How many contactors touch."""
+        """Number of contactors that touch."""
         return int(np.count_nonzero(self.forces > 0))
 
 
 def _sag(place: si.FloatArray, radius: float | None) -> si.FloatArray:
-    """How far a circle has fallen at an arc length."""
+    """Fall of a circle at an arc length."""
     if radius is None:
         return np.zeros(place.shape)
     return np.asarray(radius * (1 - np.cos(np.minimum(np.abs(place) / radius, np.pi))))
@@ -157,7 +157,7 @@ def gaps(cradle: FingerCradle, finger: Fingertip) -> si.MetreArray:
 def seat(
     cradle: FingerCradle, finger: Fingertip, tissue: Tissue, force: Annotated[si.Newton, hard.FORCE]
 ) -> Seating:
-    """Which contactors a fingertip touches under a normal force (N), and with what force each.
+    """Contactors that a fingertip touches under a normal force (N), and the force on each.
 
     Frictionless, small strains, linear tissue: a guide to about a third of its thickness. Raises
     `UnreachableError` for a force that needs more than ten thicknesses of depth.

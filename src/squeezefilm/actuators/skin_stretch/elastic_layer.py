@@ -149,8 +149,8 @@ def _waves() -> tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray
 
 @functools.lru_cache(maxsize=16)
 def _tables(poisson_ratio: float) -> tuple[CubicSpline, CubicSpline, CubicSpline]:
-    """Of a layer less a half-space, over r/h: the parts of G h u/Q that do not turn with direction,
-    that go with cos 2θ, and the normal one."""
+    """Corrections of a layer less a half-space, over r/h: the parts of G h u/Q that do not turn
+    with direction, that go with cos 2θ, and the normal one."""
     k, w, r, J0, J2 = _waves()
     along, across, normal = layer_compliances(k, poisson_ratio)
     along, across = along - (1 - poisson_ratio) / k, across - 1 / k
@@ -194,7 +194,7 @@ def tangential_correction(
     poisson_ratio: Ratio,
     thickness: Annotated[si.Metre, hard.SIDE],
 ) -> tuple[si.MetreArray, si.MetreArray]:
-    """What bone at a depth `thickness` adds to `half_space.tangential_patch` (m; negative near).
+    """Correction of `half_space.tangential_patch` by bone at depth `thickness` (m; negative near).
 
     Beyond 12 thicknesses both together are nothing. For patches up to two thicknesses wide, and
     layers not thinner than that. Raises `InputError` for sizes not above 0.
@@ -223,7 +223,7 @@ def normal_correction(
     poisson_ratio: Ratio,
     thickness: Annotated[si.Metre, hard.SIDE],
 ) -> si.MetreArray:
-    """What bone at a depth `thickness` adds to `half_space.normal_patch` (m). As
+    """Correction of `half_space.normal_patch` by bone at a depth `thickness` (m). As
     `tangential_correction`."""
 
     def kernel(dx: si.FloatArray, dy: si.FloatArray) -> tuple[si.FloatArray]:

@@ -26,8 +26,8 @@ from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 PUBLISHED_FREE: si.Metre = 0.1e-3
 PUBLISHED_BLOCKED: si.Newton = 0.15
 PUBLISHED_LOADED: si.Metre = 0.075e-3
-"""What each of the paper's 60 actuators does: free, blocked, and against a load whose force stands
-in no text that could be read (the sentence breaks off after "0.075 mm and")."""
+"""Deflection of each of the paper's 60 actuators: free, blocked, and against a load whose force
+stands in no text that could be read (the sentence breaks off after "0.075 mm and")."""
 
 IMPLIED_STIFFNESS: si.NewtonPerMetre = 500.0
 """The skin's stiffness that a linear actuator of the three figures above works against: derived,
@@ -64,7 +64,7 @@ class LoadedTip:
 
 @si.checked_numbers
 def loaded_tip(bender: Bender, load: FingerpadDynamics, voltage: si.Volt) -> LoadedTip:
-    """What an actuator does to the skin at a voltage (V, either sign).
+    """Tip of an actuator on the skin at a voltage (V, either sign).
 
     Whether the voltage undoes the poling is asked of `Bimorph.require_voltage`.
     """

@@ -76,8 +76,8 @@ class Tissue:
         length: Annotated[si.Metre, hard.SIDE],
         width: Annotated[si.Metre, hard.SIDE],
     ) -> si.NewtonPerMetre:
-        """What one contactor alone, pulling along its `length`, meets (N/m): force over the mean
-        displacement under it, for an even traction (a rigid one is some percent stiffer)."""
+        """Stiffness met by one contactor alone, pulling along its `length` (N/m): force over the
+        mean displacement under it, for an even traction (a rigid one is some percent stiffer)."""
         at_rest = np.zeros(1)
         return float(1 / _mean_under(self.shifts, at_rest, at_rest, (length, width))[0])
 
@@ -119,7 +119,7 @@ def _mean_under(function: object, x: si.FloatArray, y: si.FloatArray, size: Size
 def influence_matrix(
     tissue: Tissue, x: Places, y: Places, size: Sizes, normal: bool = False
 ) -> si.FloatArray:
-    """How much a newton on one contactor moves the skin under every other (m/N): shape (contactors,
+    """Displacement of the skin under every contactor by a newton on each (m/N): shape (contactors,
     contactors), row by row what is moved.
 
     Contactors of `size` (along x, along y) at `x`, `y` (m) of the unrolled surface; forces and
