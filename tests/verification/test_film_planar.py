@@ -15,7 +15,6 @@ from squeezefilm.physics.film.planar.balance import Balancer, Film, derivative, 
 from squeezefilm.physics.film.planar.film import solve_planar
 from squeezefilm.physics.film.planar.gap import PlanarGap
 from squeezefilm.physics.film.planar.grid import (
-    cut_ellipse_grid,
     disc_grid,
     ellipse_grid,
     graded_line,
@@ -248,35 +247,6 @@ def test_grooves_sealed_at_their_ends_are_the_line_s():
     film = Film(RIDGED, 20.418, Gas(1.0, 0.0, 0))
     state = Balancer(film, replace(grid, edge_conductance=sealed), 13).solve(None, 1e-9)
     assert state.over_pressure == pytest.approx(7.246e-3, rel=5e-3)
-
-
-@pytest.mark.slow
-def test_ridges_across_a_finger_pad():
-    pad = PlanarGap(RIDGED.excursion_ratio, 0.0, RIDGED.ridge_height, 2 * np.pi * 5.0 / 0.35)
-    coarse = solve_planar("ellipse", pad, 20.418 / 4, aspect_ratio=1.4, tolerance=2e-2)
-    fine = solve_planar("ellipse", pad, 20.418 / 4, aspect_ratio=1.4, tolerance=4e-3)
-    assert abs(coarse.over_pressure - fine.over_pressure) <= coarse.over_pressure_error
-    assert fine.over_pressure_error <= 4e-3 * fine.over_pressure
-
-
-@pytest.mark.parametrize(
-    "squeeze_number", [10.0, *(pytest.param(one, marks=pytest.mark.slow) for one in (1.0, 100.0))]
-)
-def test_the_cut_ellipse_agrees_with_the_fitted_one(squeeze_number):
-    fitted = solve_planar("disc", PlanarGap(0.5), squeeze_number, tolerance=1e-3)
-    x = graded_line(24, 1.0, squeeze_number, mirror=False)
-    cut = cut_ellipse_grid(x, np.linspace(0.0, 1.0, 49), 1.0)
-    assert 4 * cut.area.sum() == pytest.approx(np.pi, rel=1e-12)
-    state = _solved(cut, squeeze_number=squeeze_number, count=11)
-    assert state.over_pressure == pytest.approx(fitted.over_pressure, rel=6e-3)
-
-
-def test_a_quarter_of_the_cut_ellipse_is_the_whole():
-    x = graded_line(8, 1.0, 10.0, mirror=False)
-    quarter = _solved(cut_ellipse_grid(x, np.linspace(0.0, 1.5, 17), 1.5))
-    x = np.concatenate([-x[:0:-1], x])
-    whole = _solved(cut_ellipse_grid(x, np.linspace(-1.5, 1.5, 33), 1.5, quarter=False))
-    assert whole.over_pressure == pytest.approx(quarter.over_pressure, rel=1e-9)
 
 
 @pytest.mark.parametrize("squeeze_number", [0.01, 1.0, 1e4])

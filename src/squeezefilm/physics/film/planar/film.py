@@ -87,8 +87,7 @@ def solve_planar(
     `ConvergenceError` (with the best state had) where Newton's method does not converge or the
     tolerance would take more memory than 2 GB. Holds for isothermal (1) to adiabatic (1.4)
     viscous flow; slip by the local Knudsen number Kn/(PH). The tolerance is on the over-pressure,
-    down to 1e-5 of it, and on every harmonic of the force, relative to the largest of them; not
-    so for ridges across a disc or ellipse, whose harmonics have their errors stated only.
+    down to 1e-5 of it, and on every harmonic of the force, relative to the largest of them.
     Sources: Gross (1962); Blech, 10.1115/1.3254692 for the linear limit.
     """
     require_film(squeeze_number, gas.polytropic_exponent, gas.knudsen_number)

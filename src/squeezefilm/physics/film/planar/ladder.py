@@ -20,7 +20,6 @@ from squeezefilm.physics.film.planar.balance import Balance, Balancer, Film, res
 from squeezefilm.physics.film.planar.gap import PlanarGap, gap_values
 from squeezefilm.physics.film.planar.grid import (
     PlanarGrid,
-    cut_ellipse_grid,
     disc_grid,
     ellipse_grid,
     graded_line,
@@ -52,12 +51,9 @@ class Ladder:
             isinstance(gap, PlanarGap) and gap.wave_number == 0.0 and gap.ridge_height == 0.0
         )
         waves = 0.0
-        # Ridges across an ellipse: lines that follow them, cut at the boundary.
-        self.cut = False
         if isinstance(gap, PlanarGap):
             ridges = gap.ridge_wave_number if gap.ridge_height > 0.0 else 0.0
             waves = max(2.0 * gap.wave_number, 1.5 * ridges) / (2 * np.pi)
-            self.cut = shape != "rectangle" and ridges > np.pi
         if cells is not None:
             si.require("cells", np.array(cells), at_least=2)
             # Even, because the full ellipse joins opposite columns.
@@ -66,9 +62,6 @@ class Ladder:
             # `waves` periods over the whole length, three cells each and rung.
             along = max(2, int(np.ceil(waves)))
             self._base = (along, 2) if quarter else (2 * along, 4)
-        elif self.cut:
-            along = max(4, int(np.ceil(2 * waves)))
-            self._base = (along, 4) if quarter else (2 * along, 8)
         else:
             out = max(2, int(np.ceil(2 * waves)))
             around = max(1, int(np.ceil(2 * waves)))
@@ -111,12 +104,6 @@ class Ladder:
         # Under a gap that varies the pressure has shape inside too, and the edge must not take
         # all the cells.
         least = 0.15 if self.varied else 2e-3
-        if self.cut:
-            x = graded_line(counts[0], 1.0, sigma, mirror=not self.quarter, least=least)
-            x = refined_line(x, lambda X: self._mean_gap(X, 0.0 * X))
-            low = 0.0 if self.quarter else -self.aspect
-            y = np.linspace(low, self.aspect, 2 * counts[1] + 1)
-            return cut_ellipse_grid(x, y, self.aspect, quarter=self.quarter)
         if self.shape == "disc":
             return disc_grid(sigma, counts, quarter=self.quarter, least=least)
         if self.shape == "ellipse":
@@ -267,15 +254,12 @@ class _Climber:
                 return Climb(best, states[-1], self.iterations, False, status)
             if place < 2:
                 continue
-            space = _irregular if self.ladder.cut else _richardson
-            value, error = space([state.amplitudes for state in states])
+            value, error = _richardson([state.amplitudes for state in states])
             value, error = value + times.correction, error + times.doubt + 1e-13
             error[1:] = steadied(error, np.abs(value))[1:]
             best = Extrapolated(value, error)
-            # Where lines are cut at the boundary the harmonics converge too slowly to be waited
-            # for: their errors are stated.
             mean = float(error[0] / abs(value[0]))
-            if (mean if self.ladder.cut else best.lacking()) <= tolerance:
+            if best.lacking() <= tolerance:
                 reached = f"{mean:.1g} of the over-pressure"
                 known = f"solved to {reached}, the force to {best.lacking():.1g},"
                 status = f"{known} on {nodes} at {count} times"
@@ -299,12 +283,6 @@ def _richardson(rungs: list[si.ComplexArray]) -> tuple[si.ComplexArray, si.Float
     trend = np.maximum(0.8 * np.abs(value - before), 0.2 * np.abs(before - earlier))
     chance = 0.06 if place == 2 else 0.03
     return value, np.asarray(trend + chance * np.abs(value - rungs[-1]))
-
-
-def _irregular(rungs: list[si.ComplexArray]) -> tuple[si.ComplexArray, si.FloatArray]:
-    """The last rung as it is: an error that jumps with the grid cannot be extrapolated."""
-    steps = [np.abs(rungs[-1] - rung) for rung in rungs[-3:-1]]
-    return rungs[-1], 1.3 * np.maximum(steps[1], 0.5 * steps[0])
 
 
 def _moved(film: Film, state: Balance, grid: PlanarGrid) -> si.FloatArray:
