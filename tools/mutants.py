@@ -384,7 +384,11 @@ def main() -> None:
         print_report(read_lines(arguments.file), equivalent_mutants())
         return
     rooms = sorted(filter(None, arguments.rooms.split(",")))
-    drawn = sample(all_mutants(ROOT / "src", rooms), arguments.seed)
+    every = all_mutants(ROOT / "src", rooms)
+    gone = equivalent_mutants().keys() - {mutant.id for mutant in every}
+    if gone and not rooms:
+        print(f"{EQUIVALENT.name} names what is no mutant any more: {', '.join(sorted(gone))}")
+    drawn = sample(every, arguments.seed)
     chosen: list[Mutant] = []
     while len(chosen) < arguments.count and (mutant := next(drawn, None)):
         if mutant.is_valid((ROOT / "src" / mutant.path).read_bytes()):
