@@ -1,1 +1,1 @@
-"""From volts to what a finger feels: plate, film, contact, chain, rendering, perception."""
+"""Physics from volts to what a finger feels: plate, film, contact, chain, rendering, perception."""

@@ -75,7 +75,7 @@ class Drive:
     duty_window: Annotated[si.Second, si.AtLeast(0.001), si.AtMost(3600)] = 10.0
 
     def limits(self, frequency: si.Hertz, voltage: si.Volt | None = None) -> Limits:
-        """What a device may be asked for at a carrier near `frequency` (Hz).
+        """Limits of what a device may be asked for at a carrier near `frequency` (Hz).
 
         `voltage` (V) asks for less than the drive's own. What the drive does not say is assumed:
         `assumed_limits` names it.
@@ -100,7 +100,7 @@ class Drive:
         )
 
     def _assumed(self, frequency: si.Hertz) -> dict[str, float]:
-        """What each limit is that the display does not give."""
+        """Values of the limits that the display does not give."""
         return {
             "slew": max(1.0, 1e3 * self.voltage),
             "continuous_voltage": self.voltage,
@@ -141,7 +141,7 @@ class ActiveRegion:
 @si.checked_numbers
 @dataclass(frozen=True)
 class Measured:
-    """What was measured of the real display without a finger, to stand beside what is computed.
+    """Measurements of the real display without a finger, to stand beside what is computed.
 
     Nothing is computed from it. Each value may say where it is from and how sure it is, as any
     value does; what is left out was not measured.
@@ -224,7 +224,7 @@ class Display(Result):
 
     @property
     def whose_finger(self) -> str:
-        """Whose finger the display is described for, in words: a new person's, unless the decay
+        """Words for the finger that the display is described for: a new person's, unless the decay
         length has a source."""
         stated = self.provenance.get(DECAY_LENGTH)
         return (stated.source if stated else "") or "a new person's, as described"
@@ -243,7 +243,7 @@ class Display(Result):
         )
 
     def limits(self, frequency: si.Hertz, voltage: si.Volt | None = None, *, twin: bool) -> Limits:
-        """What this display's device, or its twin, may be asked for. See `Drive.limits`.
+        """Limits of what this display's device, or its twin, may be asked for. See `Drive.limits`.
 
         Raises:
             InputError: as `Drive.limits` and `require_insulation`.

@@ -99,14 +99,14 @@ class ActiveArea:
 
     @property
     def best_place(self) -> tuple[si.Metre, si.Metre] | None:
-        """Where µ′/µ is lowest (m), of places alike the one that moves most."""
+        """Place where µ′/µ is lowest (m), of places alike the one that moves most."""
         if self.relative_friction is None:
             return None
         return self._place(lowest(self.relative_friction, self.amplitude))
 
     @property
     def worst_place(self) -> tuple[si.Metre, si.Metre] | None:
-        """Where µ′/µ is highest (m); of places alike the first."""
+        """Place where µ′/µ is highest (m); of places alike the first."""
         if self.relative_friction is None:
             return None
         return self._place(int(np.nanargmax(np.round(self.relative_friction, 9))))
@@ -132,7 +132,7 @@ class ActiveArea:
 
     @property
     def _size_said(self) -> str:
-        """Its size as it follows "the active area"; a disc's has no corners."""
+        """Size as it follows "the active area"; a disc's has no corners."""
         sides = [1e3 * float(axis[-1] - axis[0]) for axis in (self.x, self.y)]
         if np.isnan(self.amplitude[0, 0]):
             return f", a disc of {sides[0]:.3g} mm"
@@ -158,7 +158,7 @@ class ActiveArea:
         )
 
     def summary(self) -> dict[str, Any]:
-        """What JSON has under `active_area`; keys carry units."""
+        """Mapping that JSON has under `active_area`; keys carry units."""
         return {
             "x_m": [float(self.x[0]), float(self.x[-1])],
             "y_m": [float(self.y[0]), float(self.y[-1])],
@@ -236,5 +236,5 @@ def _halfway(values: si.FloatArray) -> si.FloatArray:
 
 
 def _parts(places: si.MetreArray) -> si.MetreArray:
-    """How long these parts are; all of one place."""
+    """Lengths of these parts; all of one place."""
     return np.ones(1) if places.size == 1 else np.repeat(np.diff(places) / _BETWEEN, _BETWEEN)

@@ -1,4 +1,4 @@
-"""What a finger meets at each place of a display's active area, and the best of them.
+"""Map of what a finger meets at each place of a display's active area, and the best of them.
 
 The finger lies at one place after another. It takes from the vibration what it takes there (less
 beside the antinodes), the best antinode is left with an amplitude, the solved shape says what each
@@ -39,8 +39,8 @@ _AT_A_TIME = 2_000_000
 
 
 class AreaMap(NamedTuple):
-    """What a pad meets at the places `x` × `y` (m) of an active area, arrays (x, y), NaN where the
-    face has no such place.
+    """Map of what a pad meets at the places `x` × `y` (m) of an active area, arrays (x, y), NaN
+    where the face has no such place.
 
     `at_centre` is the amplitude of the face at the place over the best antinode's, `lobe_amplitude`
     (m) the best antinode's with the finger at the place, `mean_square` the mode's under the pad;
@@ -60,7 +60,7 @@ class AreaMap(NamedTuple):
 
 
 def lowest(relative_friction: si.DimensionlessArray, moved: si.FloatArray) -> int:
-    """Where a map of µ′/µ is lowest; of places alike the one that is moved most, so that a
+    """Index at which a map of µ′/µ is lowest; of places alike the one that is moved most, so that a
     vibration too small for any friction to fall has its best place where a larger one has it."""
     rounded = np.round(relative_friction, 9)
     alike = rounded == np.nanmin(rounded)
@@ -151,7 +151,7 @@ def _met(
     at: si.IntArray,
     points: PadPoints,
 ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
-    """What the points of pads meet at places of a grid, with weights: both (places, points)."""
+    """Amplitudes at points of pads at places of a grid, with weights: both (places, points)."""
     x, y = axes
     dx, dy, length, width = points.on_axes(shape.along)
     across, by_x = np.unique(dx, return_index=True)

@@ -28,8 +28,8 @@ from squeezefilm.physics.film.closed import PaperModel, contact_mean_pressure
 from squeezefilm.physics.film.gap import PaperGap
 
 TABLE_SPEEDS: si.MetrePerSecondArray = np.append(0.0, np.geomspace(1e-3, 2.0, 47))
-"""Where a law that depends on the speed is tabulated: toward rest, and from creeping to faster than
-fingers explore. Linear between; held beyond."""
+"""Speeds at which a law that depends on the speed is tabulated: toward rest, and from creeping to
+faster than fingers explore. Linear between; held beyond."""
 
 
 class FilmLoad(NamedTuple):
@@ -83,7 +83,7 @@ class FrictionLaw(PadLaw):
 
     @si.checked_numbers
     def load(self, amplitude: si.Metre) -> FilmLoad:
-        """What the film carries at an amplitude (m) over the whole contact, grooves included."""
+        """Load of the film at an amplitude (m) over the whole contact, grooves included."""
         ambient = self.gas.ambient_pressure
         if self.kind.friction == "lift":
             return FilmLoad((1 - self.at(amplitude)) * self.contact_pressure / ambient, 0.0)

@@ -20,7 +20,7 @@ DEFAULT_MODEL: FrictionModel = "levitation"
 
 
 class ModelKind(NamedTuple):
-    """What a friction model makes of film and skin.
+    """Kind of a friction model by what it makes of film and skin.
 
     `friction` is what the model takes: the paper's closed form at an infinite squeeze number and a
     gap that does not yield ("asymptote"); or films that carry the finger together with asperities,

@@ -97,8 +97,8 @@ PascalPerMetreComplex = Annotated[complex, si.Unit("Pa/m")]
 @si.checked_numbers
 @dataclass(frozen=True)
 class PadLaw:
-    """How film and asperities share the load of a pad, at one frequency and force, and the friction
-    that this leaves.
+    """Law by which film and asperities share the load of a pad, at one frequency and force, and the
+    friction that this leaves.
 
     `position` is the pad's centre from an antinode, along a wave whose antinodes are all alike; a
     `place` on the face, with what the ridges meet there, stands in its stead, and amplitudes are
@@ -132,13 +132,13 @@ class PadLaw:
 
     @property
     def kind(self) -> ModelKind:
-        """What the model makes of film and skin."""
+        """Kind of the model."""
         return MODEL_KINDS[self.model]
 
     @si.checked_numbers
     def sharing(self, amplitude: si.MetreLike, limit: Limit = "own") -> PadFriction:
-        """How film and asperities share the load at amplitudes (m), whatever the model, in a limit
-        of the skin."""
+        """Sharing of the load between film and asperities at amplitudes (m), whatever the model, in
+        a limit of the skin."""
         met, shares = self.ridge_swings
         _require_tabulated(amplitude, met)
         return self._pad(amplitude, met, shares, limit)
@@ -203,7 +203,7 @@ class PadLaw:
 
     @cached_property
     def asperities(self) -> ContactLaw:
-        """What skin and surface carry between them."""
+        """Contact law of skin and surface."""
         return self.finger.asperity_law(self.surface.roughness)
 
     @property
@@ -220,9 +220,9 @@ class PadLaw:
     def felt_stiffness(
         self, amplitude: Annotated[si.Metre, si.AtLeast(0.0)]
     ) -> PascalPerMetreComplex:
-        """What the plate feels of the finger per area of contact (Pa/m, complex) at an amplitude
-        (m) of an even wave, wherever the pad is: of `sharing` what the vibration depends on,
-        without the friction. See `load_kernel.between`."""
+        """Stiffness of the finger that the plate feels per area of contact (Pa/m, complex) at an
+        amplitude (m) of an even wave, wherever the pad is: of `sharing` what the vibration depends
+        on, without the friction. See `load_kernel.between`."""
         from squeezefilm.physics.contact.sharing import kernel
 
         met, known = self._even_swings[0], self._compiled
@@ -240,7 +240,7 @@ class PadLaw:
         return complex(found)
 
     def __getstate__(self) -> dict[str, object]:
-        """What is pickled: not the form for compiled code, most of it tables made anew at once."""
+        """State to be pickled, without the form for compiled code, whose tables are made anew."""
         return {name: value for name, value in vars(self).items() if name != "_compiled"}
 
     @cached_property

@@ -90,18 +90,18 @@ class PadPlace:
 
     @property
     def antinode_said(self) -> str:
-        """Which antinode amplitudes are told of, in words: elsewhere the face may move further."""
+        """Words for the antinode whose amplitudes are told: elsewhere the face may move further."""
         return f"the antinode at {place_words(self.shape.lobe)}"
 
     @functools.cached_property
     def _known(self) -> dict[tuple[float, float, float], tuple[si.FloatArray, si.FloatArray]]:
-        """What was asked of `met`."""
+        """Answers of `met` until now."""
         return {}
 
     def met(
         self, finger: Finger, contact_length: si.Metre
     ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
-        """What stands for all that the ridges of a finger meet, with shares: see `gauss_nodes`.
+        """Amplitudes that stand for all of a finger's ridges, with shares: see `gauss_nodes`.
 
         Kept, since of many draws some have the same pad. Raises as `ridges` does.
         """

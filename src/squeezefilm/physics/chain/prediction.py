@@ -40,7 +40,7 @@ from squeezefilm.physics.render.resonator.envelope import envelope_time_constant
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Prediction(Result):
-    """What a display does at one voltage, frequency and force on one surface.
+    """Prediction of a display at one voltage, frequency and force on one surface.
 
     The pad is at the best place of the active area (see `at_best_place`), or where it was asked
     for, on the shape of the vibration; of a plate taken as a beam it is over an antinode of a
@@ -105,8 +105,8 @@ class Prediction(Result):
 
     @property
     def held_amplitude(self) -> si.Metre:
-        """What stays as it was asked for while all else is uncertain (m): at a voltage the
-        amplitude without a finger, where an amplitude was given that with the finger on it."""
+        """Amplitude that stays as it was asked for while all else is uncertain (m): at a voltage
+        the amplitude without a finger, where an amplitude was given that with the finger on it."""
         return self.vibration_amplitude if self.voltage is None else self.touch.free_amplitude
 
     @property
@@ -117,7 +117,7 @@ class Prediction(Result):
 
     @property
     def place(self) -> tuple[si.Metre, si.Metre]:
-        """Where the pad's centre is (m)."""
+        """Place of the pad's centre (m)."""
         at = self.law.place
         return self.mode.lobe if at is None else (at.x, at.y)
 
@@ -154,7 +154,7 @@ class Prediction(Result):
         return self.vibration_amplitude * math.sqrt(self.law.mean_square)
 
     def place_summary(self) -> dict[str, Any]:
-        """What JSON has under `place`; keys carry units."""
+        """Mapping that JSON has under `place`; keys carry units."""
         return {
             "x_m": self.place[0],
             "y_m": self.place[1],
@@ -167,7 +167,7 @@ class Prediction(Result):
 
     @property
     def envelope_time_constant(self) -> si.Second:
-        """Of the resonator's envelope without a finger (s)."""
+        """Time constant of the resonator's envelope without a finger (s)."""
         mode = self.mode
         return float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
 
@@ -338,7 +338,7 @@ def _felt(
 
 
 def _doubts(caught: list[warnings.WarningMessage], p: Prediction) -> list[str]:
-    """What was warned of on the way, and what the models leave out."""
+    """Doubts that were warned of on the way, and what the models leave out."""
     kind, limits = p.law.kind, p.relative_friction_limits
     # Of a film that is solved, what fails of the asymptote is no doubt about this number.
     messages = [

@@ -1,4 +1,4 @@
-"""What `squeezefilm render` computes: a texture on a display under a finger, link by link.
+"""Results of `squeezefilm render`: a texture on a display under a finger, link by link.
 
 texture → program → renderer along the motion (as a sensor has it, if there is one) → resonator
 with the finger on it → friction by the display's law → tangential force → fidelity. The renderer
@@ -58,7 +58,7 @@ from squeezefilm.physics.texture_files.texture_file import NamedTexture, Texture
 from squeezefilm.physics.texture_files.trajectories import Motion, NamedMotion
 
 CONTROL_RATE: si.Hertz = 19.2e3
-"""Of the loop (Hz): commands to which a converter of 192 kHz gives ten samples each."""
+"""Rate of the loop (Hz): commands to which a converter of 192 kHz gives ten samples each."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -106,7 +106,7 @@ class RenderAnalysis(Result):
 
     @property
     def mean_speed(self) -> si.MetrePerSecond:
-        """Of the finger over its way (m/s)."""
+        """Mean speed of the finger over its way (m/s)."""
         return float(np.mean(np.abs(self.finger.speed)))
 
     @property
@@ -116,7 +116,7 @@ class RenderAnalysis(Result):
 
     @property
     def time_constant(self) -> si.Second:
-        """Of the resonator's envelope with the finger on it (s)."""
+        """Time constant of the resonator's envelope with the finger on it (s)."""
         return self.stroke.envelope.rise_time_constant
 
     def provenance(self) -> dict[str, Any]:
@@ -148,7 +148,7 @@ class RenderAnalysis(Result):
     _table = columns
 
     def summary(self) -> dict[str, Any]:
-        """What ``--json`` prints and fidelity.json holds; keys carry units."""
+        """Mapping that ``--json`` prints and fidelity.json holds; keys carry units."""
         p, stroke, force = self.prediction, self.stroke, self.force
         judged = self.fidelity
         return {
@@ -208,7 +208,7 @@ class RenderAnalysis(Result):
 @si.checked_numbers
 @dataclass(frozen=True)
 class RenderRequest:
-    """What `render_texture` is asked for."""
+    """Arguments of `render_texture`."""
 
     display: NamedDisplay
     texture: NamedTexture
@@ -228,7 +228,7 @@ class RenderRequest:
     progress: SayProgress | None = None
 
     def at_largest_amplitude(self) -> tuple[Prediction, UnderPad]:
-        """What the display does at its largest amplitude, and what the pad meets of it; refused
+        """Prediction of the display at its largest amplitude, and what the pad meets of it; refused
         where it changes no friction."""
         if self.place is not None and self.wave != "ignored":
             raise InputError(

@@ -86,7 +86,7 @@ class UnderPad:
 
     @classmethod
     def of(cls, display: Display, p: Prediction, wave: Wave) -> UnderPad:
-        """Under the pad on a display."""
+        """Wave under the pad on a display."""
         friction, inverse, largest = p.friction, p.inverse, p.vibration_amplitude
         if wave == "ignored":
             return cls(wave, friction, friction, inverse, None, 1.0)
@@ -99,7 +99,7 @@ class UnderPad:
 
     @property
     def compensation(self) -> WaveCompensation | None:
-        """By what the renderer drives harder, None where it does not."""
+        """Compensation by which the renderer drives harder, None where it does not."""
         return self.factors if self.wave == "compensated" else None
 
     def reached(
@@ -148,7 +148,7 @@ def at_largest_amplitude(
     place: FacePlace | None,
     wave: Wave,
 ) -> tuple[Prediction, UnderPad]:
-    """What a display does at its largest amplitude, arguments as of `predict`, and what the pad
+    """Prediction of a display at its largest amplitude, arguments as of `predict`, and what the pad
     meets of it. Raises `InputError` where it changes no friction."""
     p = predict(
         display,

@@ -28,7 +28,7 @@ _BELOW = np.concatenate([np.linspace(1.0, 0.05, 120), np.geomspace(0.05, 1e-6, 4
 # Of the mean square of the mode under a pad, between which amplitudes are interpolated.
 _KNOTS = 17
 TOLERANCE: si.Dimensionless = 1e-11
-"""To which amplitude and load fit where nothing else is asked, a share of the free amplitude."""
+"""Tolerance of amplitude and load where nothing else is asked, a share of the free amplitude."""
 
 _LEAST_AMPLITUDE: si.Metre = 1e-12
 
@@ -52,8 +52,8 @@ class Touch:
 
     @functools.cached_property
     def sharing(self) -> PadFriction | None:
-        """How film and asperities share the load at this amplitude, each ridge where it is; None
-        where the surface stands still. Raises what the load balance raises."""
+        """Sharing of the load between film and asperities at this amplitude, each ridge where it
+        is; None where the surface stands still. Raises what the load balance raises."""
         law = self.law
         return None if law is None else law.sharing(self.amplitude)
 
@@ -140,12 +140,12 @@ class _Pad(NamedTuple):
 
     @classmethod
     def of(cls, law: FrictionLaw) -> _Pad:
-        """As a law has its pad."""
+        """Pad as a law has it."""
         return cls.at(law, law.mean_square)
 
     @classmethod
     def at(cls, law: FrictionLaw, mean_square: float) -> _Pad:
-        """Where the mode has a mean square."""
+        """Pad where the mode has a mean square."""
         return cls(law, mean_square, (mean_square / law.mean_square_even) ** 0.5)
 
 
@@ -157,7 +157,7 @@ def _touched(mode: WorkingMode, pad: _Pad, free_amplitude: si.Metre, tolerance: 
     alone = _alone(mode, pad.law)
 
     def made(amplitude: float) -> _Left:
-        """Under a finger that lies on the mode as it does at an amplitude."""
+        """Vibration under a finger that lies on the mode as it does at an amplitude."""
         felt = _carried(pad, amplitude)
         loaded = _loaded(mode, modal_mass, felt)
         new = free_amplitude * loaded.amplitude_ratio(frequency) / alone
@@ -241,27 +241,27 @@ def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: si.MetreArray) -
 
 
 def _carried(pad: _Pad, amplitude: si.Metre) -> _Felt:
-    """What the plate feels at an amplitude of the best antinode."""
+    """Finger as the plate feels it at an amplitude of the best antinode."""
     law = pad.law
     stiffness = law.felt_stiffness(pad.scale * amplitude)
     return _Felt(stiffness, law.finger.contact_area(law.normal_force), pad.mean_square)
 
 
 class _Felt(NamedTuple):
-    """What a plate feels of a finger: complex stiffness per area (Pa/m), area of contact (m²), and
-    the mean square of the wave over it."""
+    """Finger as a plate feels it: complex stiffness per area (Pa/m), area of contact (m²), and the
+    mean square of the wave over it."""
 
     stiffness_per_area: complex
     area: float
     mean_square: float
 
     def impedance(self, frequency: float) -> complex:
-        """Of the whole finger, at the antinode (N·s/m)."""
+        """Impedance of the whole finger, at the antinode (N·s/m)."""
         return finger_impedance(self.stiffness_per_area, self.area, frequency, self.mean_square)
 
 
 class _Left(NamedTuple):
-    """What is left of a vibration: its amplitude (m), the mode and what the plate feels then."""
+    """Vibration that is left: its amplitude (m), the mode and what the plate feels then."""
 
     amplitude: float
     mode: LoadedMode | None

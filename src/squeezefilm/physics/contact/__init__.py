@@ -1,1 +1,1 @@
-"""From film pressure to friction: finger, load sharing and the paper's friction model."""
+"""Contact from film pressure to friction: finger, load sharing and the paper's friction model."""

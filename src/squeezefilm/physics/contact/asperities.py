@@ -1,4 +1,4 @@
-"""What the roughness of skin and surface carries at a gap: asperity laws and period means.
+"""Pressure of the roughness of skin and surface at a gap: asperity laws and period means.
 
 A law gives the pressure p_a (Pa) of the asperities on a plateau as a function of the gap h between
 the mean planes, and of nothing else: it does not know the load, nor the frequency. Two laws:
@@ -172,7 +172,7 @@ class AsperityLaw:
 
     @property
     def words(self) -> str:
-        """What it is, for the name of a model."""
+        """Words for the law in the name of a model."""
         return f"asperities of {self.heights} heights"
 
     def compiled(self) -> CompiledAsperities:

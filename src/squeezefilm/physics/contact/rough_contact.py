@@ -51,7 +51,7 @@ _LOG_S = -60.0, math.log(7.0)
 
 
 class Spectrum(NamedTuple):
-    """What of the law depends on the shape of the spectrum alone, in units of h_rms, q0 and E*.
+    """Shape of a spectrum as the law needs it, in units of h_rms, q0 and E*.
 
     `slope` is h′_rms/(q0 h_rms), `energy` the elastic energy of full contact over E* q0 h_rms²;
     `decay` u0/h_rms and `strength` β/(q0 h_rms) are those of the exponential limit at small
@@ -93,7 +93,7 @@ def _fallen() -> Callable[[si.FloatArray], si.FloatArray]:
 
 
 def _falls(s: si.FloatArray) -> si.FloatArray:
-    """What `_fallen` falls by for each e in s."""
+    """Fall of `_fallen` for each e in s."""
     from scipy.special import erf
 
     return np.asarray((_GAMMA + 3 * (1 - _GAMMA) * erf(s) ** 2) * np.exp(-(s**2)))
@@ -258,7 +258,7 @@ class RoughContact:
 
     @property
     def words(self) -> str:
-        """What it is, for the name of a model."""
+        """Words for the law in the name of a model."""
         return "a rough elastic interface by Persson's theory"
 
     def compiled(self) -> CompiledAsperities:
@@ -282,4 +282,4 @@ def _compiled(law: RoughContact) -> CompiledAsperities:
 
 
 ContactLaw = AsperityLaw | RoughContact
-"""What skin and surface carry at a gap, by asperities of assumed strength or from roughness."""
+"""Law of skin and surface at a gap, by asperities of assumed strength or from roughness."""

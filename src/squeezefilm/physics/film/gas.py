@@ -88,8 +88,8 @@ class Gas(NamedTuple):
 @si.checked_numbers
 @dataclass(frozen=True)
 class FilmGas:
-    """How a film's gas answers: `polytropic_exponent` from 1 (isothermal) to 5/3, `knudsen_number`
-    the free path at ambient pressure over H0, used locally as Kn/(P H) in the law `slip` (see
+    """Gas of a film: `polytropic_exponent` from 1 (isothermal) to 5/3, `knudsen_number` the free
+    path at ambient pressure over H0, used locally as Kn/(P H) in the law `slip` (see
     `SLIP_LAWS`)."""
 
     polytropic_exponent: si.Dimensionless = 1.0
@@ -97,7 +97,7 @@ class FilmGas:
     slip: str = "first"
 
     def compiled(self) -> Gas:
-        """As compiled code knows it. Raises `InputError` for a law of slip that is not known."""
+        """Gas for compiled code. Raises `InputError` for a law of slip that is not known."""
         law = slip_law(self.slip, self.knudsen_number)
         return Gas(float(self.polytropic_exponent), float(self.knudsen_number), law)
 

@@ -1,4 +1,4 @@
-"""How easily gas moves through the gap: H³ P^{1/n} φ(Kn/(PH)), and its slope in P, compiled.
+"""Mobility of gas in the gap: H³ P^{1/n} φ(Kn/(PH)), and its slope in P, compiled.
 
 The flow factor φ takes the *local* Knudsen number, because the mean free path goes with 1/p.
 """

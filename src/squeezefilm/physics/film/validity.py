@@ -1,4 +1,4 @@
-"""How far a film is from what the equations assume: inertia, slip, trapped gas, small amplitude."""
+"""Distance of a film from assumptions: inertia, slip, trapped gas, small amplitude."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def asymptotic_fraction(squeeze_number: si.DimensionlessLike) -> si.Dimensionles
 
 @dataclass(frozen=True)
 class ValidityCheck:
-    """One assumption: its number, the range where it holds (None: no bound) and a sentence."""
+    """An assumption: its number, the range where it holds (None: no bound) and a sentence."""
 
     name: str
     value: si.Dimensionless
@@ -102,7 +102,7 @@ class ValidityCheck:
 
 @dataclass(frozen=True)
 class FilmValidity:
-    """How far a film is from the assumptions of the asymptotic (σ → ∞) model.
+    """Distance of a film from the assumptions of the asymptotic (σ → ∞) model.
 
     `checks` are named inertia, slip, asymptote and, where the finger has ridges, crest.
     `asymptotic_fraction` is the share of the asymptotic over-pressure that a smooth film of this
@@ -136,7 +136,7 @@ class FilmValidity:
 def film_validity(
     gap: PaperGap, frequency: si.Hertz, gas: Gas, *, strict: bool = False
 ) -> FilmValidity:
-    """How far a film vibrating at `frequency` (Hz) is from where the σ → ∞ model holds.
+    """Distance of a film that vibrates at `frequency` (Hz) from where the σ → ∞ model holds.
 
     The gap needs a single vibration amplitude. Inertia and slip are judged where the film is
     thinnest (over a ridge crest, h_r + h_vib), the asymptote on the paper's σ (l0 and H0), the

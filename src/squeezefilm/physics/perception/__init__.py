@@ -1,1 +1,1 @@
-"""What a person feels: stimuli, the senses of the fingertip, percepts, and how people differ."""
+"""Perception of a person: stimuli, the senses of the fingertip, percepts, and how people differ."""

@@ -1,4 +1,4 @@
-"""Which gratings of a display are felt: a square grating's rhythm through an observer's senses.
+"""Gratings of a display that are felt: a square grating's rhythm through an observer's senses.
 
 A grating that survives the resonator need not be felt, and one that the resonator flattens may
 be. A finger slides steadily at a speed v over a square grating of period λ, the vibration switched

@@ -1,4 +1,4 @@
-"""How a simulated finger explores a face freely: sweeps in two directions. Assumed.
+"""Way of a simulated finger that explores a face freely: sweeps in two directions. Assumed.
 
 Nobody was measured for it. The finger goes to and fro along x on lines spread over a square of the
 observer's stroke, or over the face where that is smaller, then along y in the same way; as many
@@ -22,7 +22,7 @@ SAYS = (
     "Free exploration is a plain hand: sweeps to and fro along x and then along y, on lines spread "
     "over a square of the observer's stroke; nobody was measured for it."
 )
-"""What results that rest on this hand repeat."""
+"""Sentence that results which rest on this hand repeat."""
 _SAMPLE: si.Second = 2e-3
 
 

@@ -29,7 +29,7 @@ _FINGERS_STREAM = 71
 @si.checked_numbers
 @dataclass(frozen=True)
 class SensoryChannel:
-    """One kind of mechanoreceptor as a band-pass of skin displacement with a threshold.
+    """A kind of mechanoreceptor as a band-pass of skin displacement with a threshold.
 
     Args:
         name: like "RA".

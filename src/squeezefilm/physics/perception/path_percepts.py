@@ -1,4 +1,4 @@
-"""What a finger's own path over a surface would have felt like, through the whole chain.
+"""Percept of a finger's own path over a surface, through the whole chain.
 
 The path goes through the loop, the friction and the skin as a simulated stroke does (`percepts`),
 and the same senses look at the same lines along its way, run by run (`path_runs`). Runs along x and
@@ -49,7 +49,7 @@ _ROUNDING: si.Metre = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RunPercept:
-    """What the runs in one direction give the senses.
+    """Percept of the runs in one direction.
 
     Attributes:
         percept: evidence by period along the runs, and the rhythms that compete.
@@ -69,20 +69,20 @@ class RunPercept:
 
     @property
     def clearest_period(self) -> si.Metre:
-        """Of the most evident rhythm (m); NaN where there is none."""
+        """Period of the most evident rhythm (m); NaN where there is none."""
         found = self.percept.candidates
         return float(found.period[0]) if np.isfinite(found.d_prime[0]) else math.nan
 
     @property
     def clearest_d_prime(self) -> si.Dimensionless:
-        """Its evidence (1); 0 where there is none."""
+        """Evidence of the most evident rhythm (1); 0 where there is none."""
         return max(float(self.percept.candidates.d_prime[0]), 0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PathPercept:
-    """What a path over a surface gives the senses: on its runs `along` x and `across`, along y;
-    None where there is no run. `played` is how each part of the path was rendered."""
+    """Percept of a path over a surface: on its runs `along` x and `across`, along y; None where
+    there is no run. `played` is how each part of the path was rendered."""
 
     along: RunPercept | None
     across: RunPercept | None
@@ -110,7 +110,7 @@ def path_percept(
     paths: Sequence[FingerPath],
     apparatus: Apparatus | None = None,
 ) -> PathPercept:
-    """What a finger gets of a surface on a display along a path of its own.
+    """Percept of a surface on a display along a finger's own path.
 
     Args:
         display: what renders.

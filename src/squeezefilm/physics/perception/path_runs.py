@@ -20,7 +20,7 @@ TURN: si.Metre = 1e-3
 """A finger that comes back, or strays from the straight, by less has not turned (m); assumed: a
 tenth of a contact, and far above a sensor's noise."""
 SHORTEST_RUN: si.Metre = 4e-3
-"""Of a shorter run nothing is told: two millimetres of it go by while the pad is stretched (m)."""
+"""Shortest run that is told of: two millimetres go by while the pad is stretched (m)."""
 
 
 @dataclass(frozen=True, slots=True)

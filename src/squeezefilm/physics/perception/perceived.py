@@ -1,4 +1,4 @@
-"""What is perceived of a surface on one trial: the strongest rhythm, its period, with noise."""
+"""Perception of a surface on one trial: the strongest rhythm, its period, with noise."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _FAINTEST = 0.05
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Perceived:
-    """What is perceived on trials; arrays of one shape.
+    """Perceived rhythms on trials; arrays of one shape.
 
     Attributes:
         log_period: natural logarithm of the period perceived (of m).
@@ -70,7 +70,7 @@ def perceived_anew(
     random: np.random.Generator,
     drawn: int,
 ) -> Perceived:
-    """What is perceived, with noise drawn anew; `surface` has shape (people, …, candidates). The
+    """Perceived rhythm, with noise drawn anew; `surface` has shape (people, …, candidates). The
     noise of `drawn` people is drawn, so that nobody depends on how many there are."""
     count, *shape = surface.period.shape
     noise = random.standard_normal((drawn, *shape))[:count]

@@ -43,7 +43,7 @@ _FEWEST_STEPS = 64
 
 @dataclass(frozen=True, slots=True)
 class Apparatus:
-    """How a display is run while people feel it.
+    """Apparatus by which a display is run while people feel it.
 
     Args:
         sensor: that follows the finger; the default is what the paper used, a transducer tied to
@@ -61,7 +61,7 @@ class Apparatus:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Percept:
-    """What one finger gets of one surface: `evidence` by period and the `candidates` in it.
+    """Percept of a surface by one finger: `evidence` by period and the `candidates` in it.
 
     `mean_displacement` (m) of the skin is what masks.
     """
@@ -78,7 +78,7 @@ def percept(
     finger: FingerClass,
     apparatus: Apparatus | None = None,
 ) -> tuple[Percept, RenderAnalysis]:
-    """What a finger gets of a virtual grating on a display, and how it was rendered.
+    """Percept of a virtual grating on a display by a finger, and how it was rendered.
 
     The lateral stretch of the skin over the way, from 2 mm after each turn on. The sensor's noise
     has a fixed seed. Raises as `render_texture` does.
@@ -111,7 +111,7 @@ def percept(
 
 
 def grating_percept(grating: Grating, observer: Observer, finger: FingerClass) -> Percept:
-    """What a finger gets of a real grating, with the same exploration and channels."""
+    """Percept of a real grating by a finger, with the same exploration and channels."""
     stroke = exploration(observer, finger)
     way: si.MetreArray = np.arange(SETTLING, observer.stroke_length, SPACING)
     depth = indentation(grating, _pressure(finger), observer.skin_modulus)
@@ -132,7 +132,7 @@ def grating_percept(grating: Grating, observer: Observer, finger: FingerClass) -
 
 
 def indentation(grating: Grating, pressure: si.Pascal, modulus: si.Pascal) -> si.Metre:
-    """How deep the skin bulges into the grooves (m): p g/E*, at most the ridge's height.
+    """Depth to which the skin bulges into the grooves (m): p g/E*, at most the ridge's height.
 
     The opening of a plane crack of width g under a pressure p (Pa) in a half-space of plane-strain
     modulus E* (Pa): a slit between two punches, small depths.

@@ -1,4 +1,4 @@
-"""What the channels of a fingertip make of skin displacement along a stroke: lines and rhythms.
+"""Skin displacement along a stroke as the channels of a fingertip see it: lines and rhythms.
 
 A displacement along the finger's way has lines at spatial periods λ. Each channel sees a line of
 amplitude A through its gain at the temporal frequencies v/λ of the stroke, in the noise of its
@@ -28,7 +28,7 @@ COARSEST_PERIOD: si.Metre = 20e-3
 """Periods that may be perceived; half the stroke of 4 cm is the longest that repeats in it."""
 
 SPACING: si.Metre = 25e-6
-"""Of the samples along the way."""
+"""Spacing of the samples along the way."""
 
 # Lines are looked for down to the harmonics of the finest period, where a step is a third of the
 # half-width that a stroke of 4 cm gives a line. By falling between two steps a line seems fainter
@@ -51,7 +51,7 @@ _SPATIAL_MOST: si.Metre = 3e-3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Evidence:
-    """What a surface gives the senses, by spatial period.
+    """Evidence that a surface gives the senses, by spatial period.
 
     Attributes:
         period: of lines (m), shape (n,), rising.
@@ -179,7 +179,7 @@ def _harmonics(observer: Observer, power: si.DimensionlessArray) -> si.Dimension
 
 
 def _line_width(stroke_length: si.Metre) -> si.PerMetre:
-    """From the middle of a line to its first zero under a Hann window (1/m)."""
+    """Width from the middle of a line to its first zero under a Hann window (1/m)."""
     return 2.0 / (stroke_length - SETTLING)
 
 

@@ -1,4 +1,4 @@
-"""What a study presents: virtual gratings, shapes and maps, and the real gratings they are compared
+"""Stimuli of a study: virtual gratings, shapes and maps, and the real gratings they are compared
 with.
 
 A grating of equal grooves and ridges has two lengths that papers call by one name: its spatial
@@ -26,13 +26,13 @@ from squeezefilm.physics.texture_files.texture_file import load_texture
 PeriodMeans = Literal["period", "groove width"]
 Waveform = Literal["square", "sine", "constant"]
 Varied = Literal["spatial_period", "friction_depth", "ridge_share", "orientation"]
-"""What an adaptive method may vary of a stimulus."""
+"""Amounts of a stimulus that an adaptive method may vary."""
 
 _METRE = si.Unit("m")
 
 
 class _Periodic:
-    """What virtual and real gratings share: grooves and ridges."""
+    """Base of virtual and real gratings: grooves and ridges."""
 
     period_means: PeriodMeans | None
     ridge_share: si.Dimensionless
@@ -154,7 +154,7 @@ class Stimulus(_Periodic):
 
     @property
     def kind(self) -> str:
-        """In words: "square grating", "crossed sine gratings", "shape", "picture" …"""
+        """Kind in words: "square grating", "crossed sine gratings", "shape", "picture" …"""
         if self.texture:
             return f"texture {self.texture}"
         if self.pattern is not None:
@@ -201,7 +201,7 @@ class Stimulus(_Periodic):
         return math.nan if value is None or self.spatial_period is None else float(value)
 
     def varied(self, name: str, varied: Varied, value: float) -> Stimulus:
-        """This stimulus under another name, with one amount changed to `value` (SI).
+        """Stimulus like this under another name, with one amount changed to `value` (SI).
 
         A friction depth lowers the grooves and leaves the ridges.
         Raises `InputError` for a value outside its range.

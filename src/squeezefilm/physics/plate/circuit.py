@@ -1,4 +1,4 @@
-"""What a vibrating body is to the amplifier: its admittance, and a circuit near one resonance."""
+"""Circuit of a vibrating body: its admittance, and a circuit near one resonance."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""What a plate asks of its amplifier: current, power, slew, the inductor that matches it; and which
-class of amplifier can give that."""
+"""Demands of a plate on its amplifier: current, power, slew, the inductor that matches it; and
+which class of amplifier can give that."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ AMPLIFIERS: tuple[Amplifier, ...] = (
         "150 V, 13 kHz at 200 V peak to peak; the currents follow from these",
     ),
 )  # fmt: skip
-"""One part for each class, as an example of it and no recommendation."""
+"""A part for each class, as an example of it and no recommendation."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class AmplifierCheck:
 
 @dataclass(frozen=True)
 class ElectricalLoad:
-    """What a plate without a finger, which is when it takes most, asks of its amplifier.
+    """Load that a plate without a finger, which is when it takes most, is for its amplifier.
 
     Amplitudes are zero-to-peak. `capacitance` is that of the electrodes beside the mode (None where
     the mode has no circuit), `channels` how many ceramics are driven, in parallel; what is `per

@@ -19,7 +19,7 @@ from typing import Annotated, Literal
 from squeezefilm.core import quantities as si
 
 EAR_DISTANCE: si.Metre = 0.5
-"""From the plate to the ear of somebody seated at it (assumed)."""
+"""Distance from the plate to the ear of somebody seated at it (assumed)."""
 
 Audience = Literal["public", "occupational"]
 

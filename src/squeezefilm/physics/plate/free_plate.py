@@ -1,4 +1,4 @@
-"""How a freely vibrating plate's resonance and losses follow its amplitude."""
+"""Change of a freely vibrating plate's resonance and losses with its amplitude."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ SHEAR_CORRECTION = 5 / 6
 @si.checked_numbers
 @dataclass(frozen=True)
 class Layer:
-    """One layer of a laminate: its thickness, bending modulus, shear modulus and density."""
+    """A layer of a laminate: its thickness, bending modulus, shear modulus and density."""
 
     thickness: Annotated[si.Metre, si.Above(0)]
     modulus: Annotated[si.Pascal, si.Above(0)]

@@ -1,4 +1,4 @@
-"""What a plate or a stator is made of and where: geometry, checked when it is built."""
+"""Parts of a plate or a stator: geometry, checked when it is built."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ Edge = Literal["left", "right", "front", "back"]
 @si.checked_numbers
 @dataclass(frozen=True)
 class CeramicPatch:
-    """One rectangular ceramic on a face of the plate.
+    """A rectangular ceramic on a face of the plate.
 
     `x` and `y` are the distances of its near edges from the plate's corner. The bonded side is
     grounded; `electrode` says what happens to the outer side: driven (with `polarity` as sign),
@@ -180,7 +180,7 @@ class RectangularPlate:
 
     @property
     def extent(self) -> tuple[si.Metre, si.Metre]:
-        """What there is to touch along x and along y (m)."""
+        """Extent of what there is to touch along x and along y (m)."""
         return self.length, self.width
 
     @property
@@ -195,7 +195,7 @@ class RectangularPlate:
         return _mean_thickness(self.patches)
 
     def ceramic_thickness_on(self, face: Face) -> si.Metre:
-        """That of the ceramics on one face, their mean by area; 0 where it carries none."""
+        """Thickness of the ceramics on one face, their mean by area; 0 where it carries none."""
         return _mean_thickness([patch for patch in self.patches if patch.face == face])
 
     def coverage_of(self, face: Face) -> si.Dimensionless:

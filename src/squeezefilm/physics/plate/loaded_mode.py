@@ -13,7 +13,7 @@ from squeezefilm.core import quantities as si
 @si.checked_numbers
 @dataclass(frozen=True)
 class LoadedMode:
-    """One mode with a load on it: its new resonance and quality factor.
+    """A mode with a load on it: its new resonance and quality factor.
 
     `load_ratio` δ is the load's modal stiffness over the mode's own, complex.
     """
@@ -49,7 +49,7 @@ class LoadedMode:
         frequency: Annotated[si.Hertz, si.Above(0.0)],
         amplitude: Annotated[si.Metre, si.AtLeast(0.0)],
     ) -> si.Watt:
-        """What mode and load lose (W, mean over a period) at an amplitude (m) and frequency (Hz).
+        """Power that mode and load lose (W, period's mean) at an amplitude (m) and frequency (Hz).
 
         ½ ω M ω0² (1/Q + Im δ) A², the loss of a stiffness M ω0² with structural damping. At the
         resonance it goes with the amplitude times the force that drives it: with a load that takes

@@ -27,7 +27,7 @@ class Rectangle:
 
     @property
     def area(self) -> si.SquareMetre:
-        """Its area (m²)."""
+        """Area (m²)."""
         return self.length * self.width
 
 
@@ -53,7 +53,7 @@ class Sector:
 
     @property
     def area(self) -> si.SquareMetre:
-        """Its area (m²)."""
+        """Area (m²)."""
         return (self.end - self.start) / 2 * (self.outer_radius**2 - self.inner_radius**2)
 
 
@@ -63,7 +63,7 @@ Footprint = Rectangle | Sector
 @si.checked_numbers
 @dataclass(frozen=True)
 class Part:
-    """One body: a footprint between two heights (m). Height 0 is the substrate's lower face.
+    """A body: a footprint between two heights (m). Height 0 is the substrate's lower face.
 
     `number` counts the ceramics from 1 as the description has them, and a glue layer has that of
     its ceramic; a substrate has 0. `assumed` says why nobody should cut it by these numbers.
@@ -88,12 +88,12 @@ class Part:
 
     @property
     def volume(self) -> si.CubicMetre:
-        """Its volume (m³)."""
+        """Volume (m³)."""
         return self.footprint.area * self.thickness
 
     @property
     def mass(self) -> si.Kilogram:
-        """What it weighs (kg)."""
+        """Mass (kg)."""
         return self.volume * self.density
 
 
@@ -111,7 +111,7 @@ def parts_of(actuator: Actuator) -> tuple[Part, ...]:
 
 
 def assembly_mass(actuator: Actuator) -> si.Kilogram:
-    """What an actuator weighs with its ceramics and their glue (kg). Raises as `parts_of`."""
+    """Mass of an actuator with its ceramics and their glue (kg). Raises as `parts_of`."""
     return math.fsum(one.mass for one in parts_of(actuator))
 
 

@@ -1,5 +1,5 @@
-"""What a finger that presses does to a plate, and what its vibration does to the ceramic: two
-closed forms that a designer asks before a plate is built."""
+"""Press of a finger on a plate, and stress of the ceramic in vibration: two closed forms that a
+designer asks before a plate is built."""
 
 from __future__ import annotations
 

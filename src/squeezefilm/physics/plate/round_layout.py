@@ -72,7 +72,7 @@ class AnnularStator:
 
     @property
     def extent(self) -> tuple[si.Metre, si.Metre]:
-        """What there is to touch once round, along x, and across it (m)."""
+        """Extent of what there is to touch once round, along x, and across it (m)."""
         return math.pi * self.mean_diameter, self.radial_width
 
     @property
@@ -159,7 +159,7 @@ class DiscPlate:
 
     @property
     def extent(self) -> tuple[si.Metre, si.Metre]:
-        """What there is to touch along x and along y (m), at the widest."""
+        """Extent of what there is to touch along x and along y (m), at the widest."""
         return self.diameter, self.diameter
 
     @property

@@ -24,10 +24,10 @@ REFERENCE_PRESSURE = 20e-6
 """0 dB of sound pressure level in air, r.m.s., in Pa (ISO 1683)."""
 
 DISTANCES: tuple[si.Metre, ...] = (0.3, 0.5, 1.0)
-"""Where levels are given unless asked otherwise: a bent head, a seated user, a bystander."""
+"""Distances of levels unless asked otherwise: a bent head, a seated user, a bystander."""
 
 _DENSITY, _SOUND_SPEED = 1.204, 343.2
-"""Of air at 20 °C (kg/m³, m/s)."""
+"""Density and sound speed of air at 20 °C (kg/m³, m/s)."""
 
 _COARSEST = 4
 """Points per wavelength in air below which a surface is refused."""

@@ -1,4 +1,4 @@
-"""How far each place of the upper face moves, over how far the best antinode does.
+"""Motion of each place of the upper face over that of the best antinode.
 
 The seam between the vibrating bodies and what lies on them anywhere: a solved plate has its
 harmonic response, all modes in; a beam moves alike all across; a disc varies as cos mθ around; a
@@ -93,8 +93,8 @@ class SurfaceShape(ABC):
     def under_grid(
         self, x: si.MetreArray, y: si.MetreArray, length: si.MetreArray, width: si.MetreArray
     ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
-        """As `under` on the grid of `x` × `y` (m), of cells with a length for each x and a width
-        for each y (m), both of shape (x, y); for very many points, and quickly."""
+        """Motion as by `under` on the grid of `x` × `y` (m), of cells with a length for each x and
+        a width for each y (m), both of shape (x, y); for very many points, and quickly."""
         si.require("x", x, si.Unit("m"), axes=1)
         si.require("y", y, si.Unit("m"), axes=1)
         covered = self._covered(x[:, None], y[None, :], length[:, None], width[None, :])
@@ -163,7 +163,7 @@ class SolvedSurface(SurfaceShape):
         return found
 
     def __getstate__(self) -> dict[str, object]:
-        """Without its splines, which are made anew where they are asked for."""
+        """State without the splines, which are made anew where they are asked for."""
         return {name: value for name, value in vars(self).items() if name != "_splines"}
 
 
@@ -207,7 +207,7 @@ class DiscSurface(SurfaceShape):
     def _covered(
         self, x: si.FloatArray, y: si.FloatArray, length: si.MetreLike, width: si.MetreLike
     ) -> si.DimensionlessArray:
-        """By the radius alone, over which a cell reaches as far as across it."""
+        """Motion by the radius alone, over which a cell reaches as far as across it."""
         r, known = np.hypot(x, y), self.mode.surface_radius
         turned = np.where(r > 0, r, 1.0)
         across = (np.abs(x) * length + np.abs(y) * width) / turned

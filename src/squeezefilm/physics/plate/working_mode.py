@@ -105,7 +105,7 @@ class WorkingMode:
 
     @property
     def company(self) -> str | None:
-        """What is to be said of a neighbour that takes part in this mode; None where none does."""
+        """Sentence on a neighbour that takes part in this mode; None where none does."""
         beside = self.neighbour
         if beside is None or beside.share < CROWDED:
             return None
@@ -276,7 +276,7 @@ def _beam_mass(beam: BeamResponse) -> si.Kilogram:
 
 
 def _beam_lobe(beam: BeamResponse) -> tuple[si.Metre, float]:
-    """Where the largest lobe between the outermost nodal lines is, and how far it goes."""
+    """Place of the largest lobe between the outermost nodal lines, and how far it goes."""
     shape = beam.mode
     x, nodes = shape.position, shape.nodal_positions
     inside = (x >= nodes[0]) & (x <= nodes[-1])

@@ -119,7 +119,7 @@ def _bound(of: str, row: dict[str, str | bool]) -> Bound:
 
 
 def _range(text: str, unit: si.Unit) -> Range:
-    """From ``"1 mm to 2 mm"``, ``"from 1 mm"``, ``"up to 2 mm"`` or ``"any"``."""
+    """Range of ``"1 mm to 2 mm"``, ``"from 1 mm"``, ``"up to 2 mm"`` or ``"any"``."""
     if text == "any":
         return -inf, inf
     if text.startswith("from "):
@@ -179,7 +179,7 @@ def implausibilities(display: Display, voltage: si.Volt | None = None) -> tuple[
 
 
 def _outside(display: Display, values: Iterable[Ratio]) -> dict[str, Implausible]:
-    """Of these values what is not usual, by key."""
+    """Values that are not usual, by key."""
     found: dict[str, Implausible] = {}
     for value in values:
         bound = bounds()[value.of]
@@ -193,8 +193,8 @@ def _outside(display: Display, values: Iterable[Ratio]) -> dict[str, Implausible
 
 @contextmanager
 def checked_before() -> Iterator[None]:
-    """While displays are computed that differ by tolerances from one that was checked: none of
-    them is checked again, which would take a quarter of their time."""
+    """Skip the check of displays that differ by tolerances from one that was checked: none of them
+    is checked again, which would take a quarter of their time."""
     before = _CHECKED.set(True)
     try:
         yield
@@ -272,7 +272,7 @@ def _meant(bound: Bound, value: float) -> str:
 
 
 def _meant_of_part(display: Display, path: Path) -> str:
-    """What the value behind a ratio may mean, where it is not usual by itself."""
+    """Guess at what the value behind a ratio may mean, where it is not usual by itself."""
     owner: Any = display
     for part in path[:-1]:
         owner = owner[part] if isinstance(part, int) else getattr(owner, part)
@@ -285,8 +285,8 @@ def _meant_of_part(display: Display, path: Path) -> str:
 
 @dataclass(frozen=True)
 class Foreseen:
-    """Of a display that nothing speaks against: `doubts` in sentences, the closed estimate and the
-    size of the solve, None where there is none."""
+    """Forecast of a display that nothing speaks against: `doubts` in sentences, the closed estimate
+    and the size of the solve, None where there is none."""
 
     display: Display
     doubts: tuple[str, ...]
@@ -295,7 +295,7 @@ class Foreseen:
 
     @property
     def sentence(self) -> str:
-        """What to expect and how long it takes; empty where nothing is known."""
+        """Sentence on what to expect and how long it takes; empty where nothing is known."""
         if self.expected is None:
             return ""
         said = f"expected {self.expected.sentence}"

@@ -1,4 +1,4 @@
-"""What a display is expected to do, by closed forms, before anything is solved.
+"""Forecast of a display by closed forms, before anything is solved.
 
 A plate is a Timoshenko beam that carries ceramic in places, a disc a thin free plate. A few
 milliseconds.
@@ -50,8 +50,8 @@ class Expectation:
 
     @property
     def sentence(self) -> str:
-        """What is expected, for people who wait: ``"about 33.4 kHz (mostly right to 15 %), 110 nm/V
-        (to a factor of two), by a beam"``."""
+        """Sentence on what is expected, for people who wait: ``"about 33.4 kHz (mostly right to 15
+        %), 110 nm/V (to a factor of two), by a beam"``."""
         known = self.off == 1
         said = f"about {si.format_quantity(self.frequency, si.Unit('Hz'), 3)}"
         said += "" if known else f" (mostly right to {100 * (self.off - 1):.0f} %)"
@@ -63,7 +63,7 @@ class Expectation:
 
 @functools.lru_cache(maxsize=64)
 def expectation(actuator: Actuator) -> Expectation | None:
-    """What an actuator's working mode is expected to be; None where no closed form says it."""
+    """Expected working mode of an actuator; None where no closed form says it."""
     try:
         if isinstance(actuator, AnnularStator):
             return _of_stator(actuator)

@@ -1,5 +1,5 @@
-"""What is compared beside single values: ratios, speeds, fields, and what a display is expected to
-do, each at the key that is most likely the wrong one."""
+"""Values compared beside single ones: ratios, speeds, fields, and what a display is expected to do,
+each at the key that is most likely the wrong one."""
 
 from __future__ import annotations
 
@@ -187,7 +187,7 @@ def _of_drive(display: Display, volts: si.Volt) -> Iterator[Ratio]:
 
 
 def _of_expected(display: Display, seen: Expectation | None, volts: si.Volt) -> Iterator[Ratio]:
-    """What a closed estimate says of the vibration, where it says it well enough to doubt it."""
+    """Ratios by a closed estimate of the vibration, where it says enough to doubt it."""
     if seen is None:
         return
     by_kind = {"rectangular_plate": "nodal_lines", "disc": "nodal_circles"}

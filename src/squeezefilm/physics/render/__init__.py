@@ -1,4 +1,4 @@
-"""What the surface should feel like, how it is played, and what gets through a slow resonator.
+"""Rendering: what the surface should feel like, how it is played, and what a resonator passes.
 
 `texture`: textures as values, in place, speed and time, and how they compose. `program`: the
 flat array that a texture lowers to (its wire format in `opcodes`), the compiled tick that runs

@@ -107,7 +107,7 @@ SHAPES: tuple[tuple[int, int, int], ...] = (
 DEEPEST_STACK = 64
 LONGEST_CODE = 100_000
 LARGEST_TABLES = 4_000_000
-"""What a program may take: values on the stack, numbers of code, numbers of tables."""
+"""Limits of a program: values on the stack, numbers of code, numbers of tables."""
 
 
 @si.checked_numbers

@@ -52,7 +52,7 @@ ToFriction = Callable[[si.FloatArray], si.DimensionlessArray]
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class ReferenceDevice:
-    """What an export says of the display it was made for.
+    """Description in an export of the display that it was made for.
 
     `maximum_amplitude` is the greatest relative friction (1, at rest); `maximum_displacement` the
     largest vibration amplitude (m, zero-to-peak); frequencies are of the carrier (Hz).
@@ -65,7 +65,7 @@ class ReferenceDevice:
     maximum_amplitude: si.Dimensionless = 1.0
 
     def document(self) -> dict[str, Any]:
-        """As the format has it. Displays work at one frequency: least, largest and resonance."""
+        """Mapping in the format. Displays work at one frequency: least, largest and resonance."""
         return {
             "id": 0,
             "type": "Piezo",

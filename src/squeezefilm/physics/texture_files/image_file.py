@@ -93,7 +93,7 @@ def _header(data: bytes, name: str) -> tuple[int, int, bool]:
 
 
 def _brightness(data: bytes) -> Read:
-    """In the child: the values of a picture, the right way up."""
+    """Values of a picture, the right way up (read in the child)."""
     from PIL import Image as Pillow
     from PIL import ImageOps
 

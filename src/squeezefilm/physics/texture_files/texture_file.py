@@ -44,7 +44,7 @@ MODULES = (image_file, levels, pattern_gates, pattern_image, pattern_noise)
 
 @dataclass(frozen=True, slots=True)
 class TextureFile:
-    """One texture and what it is called. Raises `InputError` for what is no texture."""
+    """A texture and what it is called. Raises `InputError` for what is no texture."""
 
     texture: Composable
     title: str = ""

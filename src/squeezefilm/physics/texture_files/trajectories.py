@@ -28,7 +28,7 @@ from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
 
 Motion = Stroke | MinimumJerkStroke | FingerPath
-"""What a finger does, however it was said."""
+"""Motion of a finger, however it was said."""
 
 _COLUMNS = ("time_s", "x_m", "y_m")
 _EXAMPLE = "60 mm/s over 4 cm, 3 passes"

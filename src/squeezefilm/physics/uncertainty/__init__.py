@@ -1,1 +1,1 @@
-"""What is not known of a display, drawn: its parameters, and intervals of a prediction."""
+"""Uncertainty of a display, drawn: its parameters, and intervals of a prediction."""

@@ -34,7 +34,7 @@ _WORTH_KEEPING = 100
 
 
 class KeptDraws(Generic[_Found]):
-    """What comes of draws, kept on disk from one process to the next; `kind` names the folder, and
+    """Results of draws, kept on disk from one process to the next; `kind` names the folder, and
     `of` is the type of what is kept."""
 
     def __init__(self, kind: str, of: Any) -> None:
@@ -47,7 +47,7 @@ class KeptDraws(Generic[_Found]):
         more: object,
         make: Callable[[], _Found],
     ) -> _Found:
-        """What `make` makes of the draws at points of the unit cube, shape (n, inputs), and of
+        """Results of `make` for the draws at points of the unit cube, shape (n, inputs), and of
         whatever `more` there is to it: found where it was made before."""
         return self._kept.found(_asked(mixture, points, more), make)
 
@@ -61,7 +61,7 @@ def evaluate(
     tell: SayProgress,
     what: str = "friction of draw",
 ) -> tuple[Outcome, Refusals]:
-    """What comes of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
+    """Outcome of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
     where refused; and what was refused. `tell` is told some twenty times."""
     found = mixture.known(points)
     new = np.flatnonzero(np.isnan(found[:, 0]))
@@ -117,7 +117,7 @@ def _drawn_now(
     tell: SayProgress,
     what: str,
 ) -> tuple[si.FloatArray, Tally]:
-    """What comes of the points numbered `new`, shape (n, 3), and what was refused."""
+    """Outcome of the points numbered `new`, shape (n, 3), and what was refused."""
     found, tally = np.full((new.size, 3), np.nan), Tally()
     every = max(new.size // _TOLD, 1)
     draws = mixture.draws(points[new]) if new.size else iter(())

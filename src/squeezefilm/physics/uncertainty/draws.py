@@ -61,7 +61,7 @@ def as_drawn() -> Iterator[None]:
 
 @dataclass(frozen=True)
 class Draw:
-    """One display of those that it may be: with other values and laws, its force (N), the pad's
+    """A display of those that it may be: with other values and laws, its force (N), the pad's
     softness (0: all ridges at one mean gap, 1: each at its own balance), the slip of its gas and
     the friction model; of a calibrated one the amplitude relative to the solved one, and what is
     added to friction."""
@@ -89,11 +89,11 @@ class Refusals:
 
     @property
     def share(self) -> si.Dimensionless:
-        """Of all draws."""
+        """Share of all draws."""
         return self.count / self.evaluations
 
     def together_with(self, more: Refusals) -> Refusals:
-        """These and those of other draws."""
+        """Refusals of these and of other draws."""
         return Refusals(
             self.count + more.count,
             self.evaluations + more.evaluations,
@@ -135,7 +135,7 @@ class Tally:
         self.example = self.example or words
 
     def found(self, evaluations: int) -> Refusals:
-        """What was counted, of so many."""
+        """Refusals that were counted, of so many."""
         count = sum(self.reasons.values())
         return Refusals(count, evaluations, self.reasons, self.heights, self.example)
 
@@ -204,15 +204,15 @@ class Mixture:
         return FreeAmplitude(self.display, self.prediction)
 
     def outcome(self, point: si.DimensionlessArray, draw: Draw) -> Outcome:
-        """What comes of the draw at a point of the unit cube, kept: whatever is asked of a display
-        is asked of the same points."""
+        """Outcome of the draw at a point of the unit cube, kept: whatever is asked of a display is
+        asked of the same points."""
         key = point.tobytes()
         if key not in self._known:
             self._known[key] = outcome_of(self, draw, self.free(draw.display))
         return self._known[key]
 
     def known(self, points: si.DimensionlessArray) -> si.FloatArray:
-        """What was found at points before, shape (n, 3), NaN where nothing was."""
+        """Outcomes found at points before, shape (n, 3), NaN where nothing was."""
         unknown = Outcome(np.nan, np.nan, np.nan)
         return np.array([self._known.get(point.tobytes(), unknown) for point in points], float)
 
@@ -234,7 +234,7 @@ class Mixture:
     def values(
         self, points: si.DimensionlessArray
     ) -> Iterator[tuple[dict[str, float], dict[str, str]]]:
-        """Of points of the unit cube, shape (n, inputs): values by path and options by path."""
+        """Values by path and options by path of points of the unit cube, shape (n, inputs)."""
         columns = [one.drawn(points[:, k]) for k, one in enumerate(self.inputs)]
         numbers = [isinstance(one, Parameter) for one in self.inputs]
         for row in zip(*columns, strict=True):
@@ -296,10 +296,10 @@ class Mixture:
         return dataclasses.replace(mode, quality_factor=share * mode.quality_factor)
 
     def power(self, felt: Touch, drawn_voltage: si.Volt | None = None) -> si.Watt | None:
-        """What plate and finger take of the drive (W, mean), cold: lost in the materials of the
-        plate as `LoadedMode.power` has it, in the ceramics' capacitance (`heat_source`), and in the
-        finger. Modal mass and frequency are as described. None where nothing is driven or the modal
-        mass is not known. A `drawn_voltage` stands for the description's own, where that is
+        """Power that plate and finger take of the drive (W, mean), cold: lost in the materials of
+        the plate as `LoadedMode.power` has it, in the ceramics' capacitance (`heat_source`), and in
+        the finger. Modal mass and frequency are as described. None where nothing is driven or the
+        modal mass is not known. A `drawn_voltage` stands for the description's own, where that is
         uncertain."""
         p = self.prediction
         mass, nominal = p.mode.modal_mass, self.display.drive.voltage
@@ -347,7 +347,7 @@ def _mixture(
 
 
 class Outcome(NamedTuple):
-    """What comes of a draw, or of many: µ′/µ, the amplitude with the finger (m), and the power that
+    """Outcome of a draw, or of many: µ′/µ, the amplitude with the finger (m), and the power that
     plate and finger take, cold (W; NaN where the modal mass is not known)."""
 
     friction: Any
@@ -362,7 +362,7 @@ _SETTLED = 1e-4
 def outcome_of(
     mixture: Mixture, draw: Draw, free_amplitude: si.Metre, *, settled: float = _SETTLED
 ) -> Outcome:
-    """What comes of a draw at an amplitude (m) without its finger; `settled` as `touch` has its
+    """Outcome of a draw at an amplitude (m) without its finger; `settled` as `touch` has its
     tolerance."""
     law, free_amplitude = mixture.law(draw), free_amplitude * draw.amplitude_share
     amplitude, power = free_amplitude, None

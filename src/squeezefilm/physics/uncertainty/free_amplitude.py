@@ -87,7 +87,7 @@ class FreeAmplitude:
         return tuple(path for path in paths if attrgetter(path)(actuator))
 
     def _moved(self, path: str, value: float) -> float:
-        """By how much one number alone moves the amplitude per volt: a parabola in logarithms
+        """Factor by which one number alone moves the amplitude per volt: a parabola in logarithms
         through beams or discs with 10 % less, as described and with 10 % more. A disc for every
         draw would take minutes; a tenth off in all numbers at once they differ by some per cent."""
         actuator = self.nominal.actuator

@@ -1,4 +1,4 @@
-"""How much of the variance of µ′/µ each input explains: Sobol' indices from Saltelli's design.
+"""Share of the variance of µ′/µ that each input explains: Sobol' indices from Saltelli's design.
 
 Most inputs of a display explain next to nothing, which some rows of the design show: the others are
 drawn for the rest alone.
@@ -48,7 +48,7 @@ class GroupInfluence:
 def influences_of(
     inputs: tuple[Input, ...], friction: si.DimensionlessArray
 ) -> tuple[Influence, ...]:
-    """What each input explains of the design's frictions, shape (samples, inputs + 4); the most
+    """Influence of each input on the design's frictions, shape (samples, inputs + 4); the most
     important first. An input that was not `followed` to the end has NaN in the last rows."""
     a, b = friction[:, 0], friction[:, -3]
     scale = float(np.mean((a - b) ** 2)) or 1.0
@@ -81,7 +81,7 @@ def followed(friction: si.DimensionlessArray) -> si.IntArray:
 
 
 def groups_of(friction: si.DimensionlessArray) -> tuple[GroupInfluence, ...]:
-    """What could be measured, and what nobody knows, of the design's frictions.
+    """Influence on the design's frictions of what could be measured, and of what nobody knows.
 
     Its last two columns share with A, and with B, what nobody knows.
     """
@@ -101,9 +101,9 @@ def groups_of(friction: si.DimensionlessArray) -> tuple[GroupInfluence, ...]:
 
 
 def _shared(both: tuple[si.FloatArray, si.FloatArray], with_b: si.FloatArray) -> si.FloatArray:
-    """What A with some columns of B has in common with B, beyond what A has: its mean is twice the
-    variance that these columns explain by themselves. Where they explain little its noise is
-    little, which that of 1 less the share of the others is not (Saltelli's of 2010)."""
+    """Product of what A with some columns of B has in common with B, beyond what A has: its mean is
+    twice the variance that these columns explain by themselves. Where they explain little its noise
+    is little, which that of 1 less the share of the others is not (Saltelli's of 2010)."""
     a, b = both
     return 2 * (b - (np.mean(a) + np.mean(b)) / 2) * (with_b - a)
 

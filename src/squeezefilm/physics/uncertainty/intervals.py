@@ -8,8 +8,8 @@ from squeezefilm.core import quantities as si
 
 LEVEL: si.Dimensionless = 0.9
 MOST_REFUSED: si.Dimensionless = 0.02
-"""Of the draws: where more have no friction, an interval of the others would be a condition that
-nobody asked for."""
+"""Share of the draws: where more have no friction, an interval of the others would be a condition
+that nobody asked for."""
 
 
 def quantiles(
@@ -31,7 +31,7 @@ def quantiles(
 
 
 def ends(values: si.FloatArray) -> tuple[float, float, float]:
-    """As `quantiles`, of values without an upper bound, shape (n,): lower end, median, upper end.
+    """Lower end, median, upper end as by `quantiles`, of values without an upper bound, shape (n,).
 
     Infinite ones are those that nothing reaches; a refused one (NaN) counts as 0 at the lower end
     and as infinite at the upper. An end that lies among the infinite is infinite.
@@ -44,7 +44,7 @@ def ends(values: si.FloatArray) -> tuple[float, float, float]:
 
 
 def _quantile(values: si.FloatArray, share: float) -> float:
-    """At the position share × (n + 1) of the sorted values (Weibull's), between two in a line."""
+    """Value at position share × (n + 1) of the sorted values (Weibull's), between two in a line."""
     if not values.size:
         return float("nan")
     row = np.sort(values)

@@ -53,7 +53,7 @@ MECHANISM = "friction_model"
 
 @dataclass(frozen=True)
 class Option:
-    """One of several laws by its name, the probability it is given, and why."""
+    """A law of several by its name, the probability that it is given, and why."""
 
     name: str
     weight: si.Dimensionless
@@ -82,7 +82,7 @@ class Choice:
 
     @property
     def spread(self) -> tuple[str, ...]:
-        """Its options with their weights, in words."""
+        """Options with their weights, in words."""
         return tuple(f"{option.name} {si.percent(option.weight)}" for option in self.options)
 
 
@@ -137,7 +137,7 @@ _MOISTURES = {
 
 
 def model_choices(display: Display) -> tuple[Choice, ...]:
-    """What is drawn beside the parameters of a display.
+    """Choices drawn beside the parameters of a display.
 
     The moisture described gets one half, the others a quarter each. What the description gives as
     measured (``evidence = "measured"``) stands.

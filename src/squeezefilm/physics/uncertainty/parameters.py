@@ -1,4 +1,4 @@
-"""Which values of a display are uncertain, and the display with other values in their place."""
+"""Values of a display that are uncertain, and the display with other values in their place."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Knowledge = Literal["measurable", "unknown"]
 """Knowledge: an experiment on finger or display could settle it, or nobody knows."""
 
 SKIN_COMPLIANCE = "skin_compliance"
-"""Where the pad lies between all ridges at one mean gap (0) and each at its own balance (1)."""
+"""Position of the pad between all ridges at one mean gap (0) and each at its own balance (1)."""
 FORCE = "finger.normal_force"
 
 
@@ -61,7 +61,7 @@ def parameter_name(path: str) -> str:
 
 @dataclass(frozen=True)
 class Parameter:
-    """One uncertain value: its dotted path in the display, nominal value, distribution and origin.
+    """An uncertain value: its dotted path in the display, nominal value, distribution and origin.
 
     "given" distributions stand in the description; "assumed" ones are this package's, for values
     that control the friction and that nobody gave a spread. A value is drawn in `steps` of equal
@@ -86,7 +86,7 @@ class Parameter:
 
     @property
     def spread(self) -> tuple[str, ...]:
-        """Its least and its largest value, in words."""
+        """Least and largest value, in words."""
         return tuple(si.format_quantity(v, self.unit, 3) for v in self.distribution.support)
 
 
@@ -260,7 +260,7 @@ def number_paths(whole: Any) -> Iterator[str]:
 
 
 def _place(whole: Any, path: str) -> tuple[Any, str]:
-    """What holds the number at a dotted path, and its name there."""
+    """Holder of the number at a dotted path, and its name there."""
     owner = whole
     *heads, name = path.split(".")
     for part in heads:

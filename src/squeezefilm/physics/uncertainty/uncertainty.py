@@ -1,5 +1,5 @@
-"""How sure a friction is: quasi-Monte-Carlo over parameters, laws and mechanisms, and which of them
-matters."""
+"""Certainty of a friction: quasi-Monte-Carlo over parameters, laws and mechanisms, and which of
+them matters."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class UncertainFriction:
 
     @property
     def standing(self) -> str:
-        """Where the value as described stands among the draws."""
+        """Words for where the value as described stands among the draws."""
         low, high = self.interval
         share = float(np.mean(self.samples < self.nominal))
         where = f"{si.percent(share)} of the draws lie below the value as described"
@@ -220,7 +220,7 @@ def interval_or_reason(
 
 
 def refusal_words(refused: Refusals) -> str:
-    """Why there is no interval, and what to do."""
+    """Sentence on why there is no interval, and what to do."""
     return (
         f"{refused.sentence}. An interval of the other draws would leave these out in silence, so "
         f"above {si.percent(MOST_REFUSED)} there is none. The first one says: {refused.example}. "
@@ -252,9 +252,9 @@ def _design(mixture: Mixture, samples: int, seed: int) -> si.FloatArray:
 def _drawn(
     mixture: Mixture, samples: int, seed: int, tell: SayProgress
 ) -> tuple[Outcome, si.FloatArray, Refusals]:
-    """What comes of the points of the interval; µ′/µ of the design, shape (samples, inputs + 4)
-    less the rows with a refused draw, NaN where an input explained too little to be followed; and
-    what was refused."""
+    """Outcome of the points of the interval; µ′/µ of the design, shape (samples, inputs + 4) less
+    the rows with a refused draw, NaN where an input explained too little to be followed; and what
+    was refused."""
     points, design = sobol_points(mixture, POINTS * samples, seed), _design(mixture, samples, seed)
     found = np.full(design.shape[:2], np.nan)
     first, inputs = max(samples // 4, _FIRST_ROWS), design.shape[-1]
@@ -282,7 +282,7 @@ def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:
 
 
 def _interval(values: si.FloatArray) -> Interval | None:
-    """Both ends of an interval; None where refused draws leave no upper one."""
+    """Interval of both ends; None where refused draws leave no upper one."""
     low, _, high = ends(values)
     return Interval(low, high) if np.isfinite(high) else None
 

@@ -21,7 +21,7 @@ _SOURCE = (
     "1869"
 )
 EVIDENCE = dict.fromkeys(("stiffness", "damping", "mass"), _SOURCE)
-"""Where the defaults of `FingerpadDynamics` come from."""
+"""Sources of the defaults of `FingerpadDynamics`."""
 
 
 @si.checked_numbers

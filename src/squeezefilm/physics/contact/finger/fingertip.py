@@ -80,12 +80,12 @@ class Skin:
 Moisture = Literal["dry", "normal", "moist"]
 
 STIFFNESS_OF_MOISTURE: dict[Moisture, float] = {"dry": 2.0, "normal": 1.0, "moist": 0.4}
-"""How much stiffer than normal the outermost skin is: the factor of its modulus, and of what
-separate asperities carry at a gap.
-Assumed: water softens the stratum corneum; the factors are illustrative, not measured."""
+"""Stiffness of the outermost skin over that of a normal one: the factor of its modulus, and of what
+separate asperities carry at a gap. Assumed: water softens the stratum corneum; the factors are
+illustrative, not measured."""
 
 FRICTION_OF_MOISTURE: dict[Moisture, float] = {"dry": 0.6, "normal": 1.0, "moist": 1.8}
-"""How much the friction without vibration differs from normal. Assumed, illustrative."""
+"""Friction without vibration over normal. Assumed, illustrative."""
 
 EXPLORING_SPEED: si.MetrePerSecond = 0.08
 """Between 77 and 86 mm/s: Smith, Gosselin and Houde 2002, 10.1007/s00221-002-1240-4."""
@@ -187,7 +187,7 @@ class Finger:
 
     @property
     def ridge_height(self) -> si.Metre:
-        """From groove to crest, 2 h_e."""
+        """Height from groove to crest, 2 h_e."""
         return 2 * self.ridge_amplitude
 
     @si.checked_numbers
@@ -237,7 +237,7 @@ class Finger:
 
     @si.checked_numbers
     def asperity_law(self, surface_roughness: Annotated[si.Metre, si.AtLeast(0.0)]) -> ContactLaw:
-        """What the asperities of this skin carry on a surface of a roughness (m).
+        """Contact law of the asperities of this skin on a surface of a roughness (m).
 
         Heights add as independent ones do; the moisture scales the modulus.
         """
@@ -278,13 +278,13 @@ def _require_ridges(side: si.Metre, period: si.Metre) -> None:
 
 
 PEOPLE = 14
-"""How many made the strokes."""
+"""Number of people who made the strokes."""
 DECAY_LENGTH_SPREAD: si.Dimensionless = 0.345
 """Standard deviation of ln ℓ over the strokes."""
 REST_FRICTION_SPREAD: si.Dimensionless = 0.491
 """Standard deviation of ln µ0 over the strokes."""
 CORRELATION: si.Dimensionless = 0.34
-"""Of ln ℓ with ln µ0 over the strokes."""
+"""Correlation of ln ℓ with ln µ0 over the strokes."""
 MEAN_SPREAD: si.Dimensionless = DECAY_LENGTH_SPREAD / math.sqrt(PEOPLE)
 """Standard error of the mean of ln ℓ, with each person counted once."""
 

@@ -1,4 +1,4 @@
-"""What a finger does to the vibration: the dynamic stiffness that the film passes on to the plate.
+"""Load of a finger on the vibration: the dynamic stiffness that the film passes on to the plate.
 
 Plate and skin face each other across gas and asperities. Per area of plateau the interface has a
 complex stiffness K_i (film and asperities side by side), the skin D = k − mω² + iωc behind it, so

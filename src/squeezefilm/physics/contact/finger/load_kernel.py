@@ -60,7 +60,7 @@ def between(u: float, swing: float, finger: CompiledFinger, law: CompiledAsperit
 
 @compiled(error_model="numpy")
 def felt(u: float, swing: float, finger: CompiledFinger, law: CompiledAsperities) -> complex:
-    """What the plate feels of a finger per area of contact (Pa/m, complex): K_i D/(K_i + D) on the
-    plateaus' share of it, K_i from `between`, D of the skin; grooves are left out."""
+    """Stiffness of a finger that the plate feels per area of contact (Pa/m, complex): K_i D/(K_i +
+    D) on the plateaus' share of it, K_i from `between`, D of the skin; grooves are left out."""
     interface = between(u, swing, finger, law)
     return finger.plateau_share * interface * finger.skin / (interface + finger.skin)

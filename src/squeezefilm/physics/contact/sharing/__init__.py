@@ -1,1 +1,1 @@
-"""Who carries the finger: gas film and asperities in balance, and the models compared with it."""
+"""Sharing of the load: gas film and asperities in balance, and the models compared with it."""

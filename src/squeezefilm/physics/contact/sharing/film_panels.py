@@ -88,7 +88,7 @@ class Panel(NamedTuple):
         return np.append(rows[:, :-1], bound)
 
     def solved(self, slip_length: si.Dimensionless) -> si.FloatArray:
-        """As `at`, all films of it solved at this Λ/ℓ."""
+        """Panel as by `at`, all films of it solved at this Λ/ℓ."""
         nx, nt = self.nodes
         xi, eta = (np.cos(np.pi * np.arange(n) / (n - 1)) for n in (nx, nt))
         XI, ETA = np.meshgrid(xi, eta, indexing="ij")

@@ -18,7 +18,7 @@ from squeezefilm.physics.contact.asperity_kernel import asperity_mean, bessel
 from squeezefilm.physics.contact.finger.load_kernel import CompiledFinger, felt
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
-"""What became of a balance."""
+"""Outcomes of a balance."""
 
 # Columns of a balance's row.
 GAP, GAS, ASPERITIES, SWING, SKIN, RESIDUAL, STEPS, STATUS, PANEL = range(9)

@@ -57,9 +57,9 @@ class PadFriction:
 
 
 class PadPoints(NamedTuple):
-    """Where a pad's ridges are sampled, arrays of one shape: `along` the wave and `across` it (m
-    from the pad's centre), how far each point's cell reaches either way (m), and the `shares` of
-    the pad that they stand for, of sum 1."""
+    """Points at which a pad's ridges are sampled, arrays of one shape: `along` the wave and
+    `across` it (m from the pad's centre), how far each point's cell reaches either way (m), and the
+    `shares` of the pad that they stand for, of sum 1."""
 
     along: si.MetreArray
     across: si.MetreArray
@@ -87,7 +87,7 @@ def pad_points(
     contact_length: Annotated[si.Metre, si.Above(0.0)] | None = None,
     spread: Annotated[int, si.AtLeast(1), si.AtMost(1000)] = 1,
 ) -> PadPoints:
-    """Where the ridges of a square contact are sampled.
+    """Points at which the ridges of a square contact are sampled.
 
     Ridges stand at (i + ½) L along their normal, each in a cell of a period; with ridge_angle 0
     each has one x and `spread` points along it, at an angle 64 points along the contact's reach. A
@@ -124,8 +124,8 @@ def pad_points(
 def _within(
     half: float, middle: si.FloatArray, size: float
 ) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
-    """Of cells of a size about their middles: middle and size of what lies within ± half, and its
-    share of the cell."""
+    """Parts of cells of a size about their middles: middle and size of what lies within ± half, and
+    its share of the cell."""
     beyond = np.clip(np.abs(middle) + size / 2 - half, 0.0, size)
     return middle - np.sign(middle) * beyond / 2, size - beyond, 1 - beyond / size
 
@@ -204,7 +204,7 @@ def _tied(
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class FrictionRipple:
-    """What a pad feels of the standing wave itself as it moves along it at constant amplitude.
+    """Ripple of the standing wave itself under a pad that moves along it at constant amplitude.
 
     `relative_friction` at `position` (m from an antinode, half a wavelength), its mean, and
     `ripple`, from least to most over the mean (dimensionless).

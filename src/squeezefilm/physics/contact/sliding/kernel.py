@@ -61,7 +61,7 @@ class Drive(NamedTuple):
 
 
 class Track(NamedTuple):
-    """What a march writes; `position[0]` and `speed[0]` hold the start.
+    """Record of a march; `position[0]` and `speed[0]` hold the start.
 
     `work` (3, n) is the work done by the bone, lost to friction and to damping. `account` is the
     time stuck (s), slips begun, and the largest departure of the friction used from the friction

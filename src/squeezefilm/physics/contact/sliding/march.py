@@ -228,7 +228,7 @@ def _sliding(
     limit: si.FloatArray,
     track: Track,
 ) -> Sliding:
-    """What was marched, with its energies."""
+    """Result of the march, with its energies."""
     n = bone.size
     stretch = track.position - bone
     return Sliding(

@@ -20,7 +20,7 @@ class Skin(NamedTuple):
 
 
 class Forces(NamedTuple):
-    """On a skin that slides, over time: the coefficients of k x_bone + c v_bone, and the friction
+    """Forces on a sliding skin over time: the coefficients of k x_bone + c v_bone, and the friction
     force against it with its slope. Three numbers, not an array, whose references numba counts."""
 
     pull: tuple[float, float, float]
@@ -30,7 +30,7 @@ class Forces(NamedTuple):
 
 @compiled()
 def transition(s: float, skin: Skin) -> Any:
-    """What takes (y, ẏ) of the free skin to a time s later: y ← a y + b ẏ, ẏ ← c y + d ẏ."""
+    """Matrix that takes (y, ẏ) of the free skin to a time s later: y ← a y + b ẏ, ẏ ← c y + d ẏ."""
     mass, damping, stiffness = skin
     decay = damping / (2.0 * mass)
     omega2 = stiffness / mass

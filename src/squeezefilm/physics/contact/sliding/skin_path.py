@@ -145,7 +145,7 @@ def passes(
     ends: tuple[float, float, float],
     series: si.Array,
 ) -> float:
-    """When within span the speed passes a level upwards (side 1) or downwards (−1); −1 if not.
+    """Time within span at which the speed passes a level upwards (side 1) or down (−1); −1 if not.
 
     `ends` are the acceleration at the start, and speed and acceleration at the end. It may start on
     the level only where that is 0 and it is downwards: from rest. If it never moved from there, 0.

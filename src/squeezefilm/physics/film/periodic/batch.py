@@ -167,7 +167,7 @@ class _Solved(NamedTuple):
 def _as_batch(
     films: Films, solved: _Solved, form: tuple[int, ...], slip: str, tolerance: float
 ) -> FilmBatch:
-    """What is given back, in the shape of the inputs."""
+    """Batch that is given back, in the shape of the inputs."""
     u, out, total = compiled(), solved.rows, len(films.squeeze_number)
     shape = "strip" if films.shape == u.STRIP else "disc"
     law = f"slip {slip} at local Kn" if films.law else "no slip"

@@ -1,4 +1,4 @@
-"""One Newton solve of the periodic film on one grid, compiled: the inner loop of everything here.
+"""Newton solve of the periodic film on one grid, compiled: the inner loop of everything here.
 
 Unknowns are the pressure deviations p = P − 1 at m nodes × nt times; a row of nt times is padded
 to a multiple of eight lanes. The equation at node i, with M = P^{1/n} H the gas stored there,
@@ -41,7 +41,7 @@ _FAST = {"reassoc", "contract", "arcp", "nsz"}
 
 
 class _Flow(NamedTuple):
-    """Where in a solve's memory its rows begin: storage R = P^{1/n}, q = dp/dM, potential Φ at
+    """Offsets of the rows in a solve's memory: storage R = P^{1/n}, q = dp/dM, potential Φ at
     nodes; fluxes at faces and their slopes. Numbers and not arrays, whose references numba counts:
     that took a tenth of the time of a small film."""
 

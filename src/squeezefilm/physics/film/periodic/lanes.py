@@ -76,7 +76,7 @@ def _store(typingctx: Any, array: Any, index: Any, value: Any) -> Any:
 
 
 def _broadcast(typingctx: Any, value: Any) -> Any:
-    """One number in all eight lanes."""
+    """Vector of eight lanes with one number in all."""
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         empty = ir.Constant(_VECTOR, ir.Undefined)

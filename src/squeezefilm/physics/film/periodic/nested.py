@@ -1,4 +1,4 @@
-"""One film on nested grids, refined until its mean load and its force's harmonics are known.
+"""Film on nested grids, refined until its mean load and its force's harmonics are known.
 
 Where the field is asked for, the harmonics are read off it on every grid, each is extrapolated like
 the mean, and judged by the same rule: what the extrapolated value changed by from grid to grid, and
@@ -20,8 +20,8 @@ from squeezefilm.physics.film.periodic.resolution import Resolution, refined, re
 from squeezefilm.physics.film.periodic.solution import HARMONICS, Found
 
 NEWTON_SHARE = 0.03
-"""Of the tolerance, for Newton's method where the harmonics are judged too: it converges so fast
-that this costs a step at most, and what it leaves no longer blurs the estimate."""
+"""Share of the tolerance for Newton's method where the harmonics are judged too: it converges so
+fast that this costs a step at most, and what it leaves no longer blurs the estimate."""
 
 
 class Level(NamedTuple):
@@ -44,7 +44,7 @@ class Nested(NamedTuple):
 
 
 class Kind(NamedTuple):
-    """What the estimate of the error depends on: σ of the gas as it flows, the deepest relative
+    """Inputs of the estimate of the error: σ of the gas as it flows, the deepest relative
     excursion, the cells of the finest grid over those from the centre to an edge, the shape as
     compiled code knows it, the margins in space and in time, polytropic exponent, and σ itself."""
 
@@ -58,8 +58,8 @@ class Kind(NamedTuple):
 
 
 UNIFORM_MARGINS, PROFILE_MARGINS = (0.15, 2.5), (0.16, 4.5)
-"""How much of the last change of the extrapolated value is its error, and how many times the
-change by more times on the coarsest grid is the error in time: where the gap varies, the coarsest
+"""Share of the last change of the extrapolated value that is its error, and multiple of the change
+by more times on the coarsest grid that is the error in time: where the gap varies, the coarsest
 grid sees less of it."""
 
 
@@ -124,7 +124,7 @@ def _interpolant(times: int, count: int) -> si.FloatArray:
 
 
 def load_times(times: int, depth: float) -> int:
-    """How many times the load integral over 1/H needs for a relative error below 1e-10.
+    """Number of times that the load integral over 1/H needs for a relative error below 1e-10.
 
     The harmonics of 1/H fall like r^k with r = ε/(1 + √(1 − ε²)).
     """

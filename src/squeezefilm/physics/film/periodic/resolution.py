@@ -1,4 +1,4 @@
-"""How many cells and times a tolerance needs: first guess, and what to do when it was not enough.
+"""Numbers of cells and times for a tolerance: first guess, and what to do when it was not enough.
 
 The guesses were fitted to measured errors. They only save time: what is returned is judged by
 the error estimate of the solve itself, and refined until that meets the tolerance.
@@ -67,7 +67,7 @@ CHECKS = np.array([7, 9, 13, 15, 19, 19, 23, 31, 31, 39, 47, 63, 79, 95, 127, 15
 
 @lru_cache(maxsize=64)
 def collocation_times(nt: int) -> Times:
-    """So many times of a period, with what is computed with them.
+    """Times of a period, so many, with what is computed with them.
 
     `nt` is odd: an even number leaves the highest harmonic without a derivative.
     """

@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from squeezefilm.physics.film.periodic.uniform import Films
 
 NEXT_IN_LOAD, NEXT_IN_FORCE, NEXT_HARMONIC = 8.0, 3.0, 2.0
-"""What the next order is at most, in parts of ε²: of the over-pressure and of the first harmonic;
-and in parts of ε, what a harmonic is of the one before. Measured over σ, n and Kn."""
+"""Bounds of the next order in parts of ε²: of the over-pressure and of the first harmonic; and in
+parts of ε, what a harmonic is of the one before. Measured over σ, n and Kn."""
 _ROUNDING = 1e-12
 
 

@@ -14,12 +14,12 @@ from squeezefilm.physics.film.periodic.profile import GapProfile, evaluate
 
 _FIELD_TIMES = 64
 HARMONICS = 8
-"""As many harmonics of the force beyond its mean are given back."""
+"""Number of harmonics of the force beyond its mean that are given back."""
 
 
 @dataclass(frozen=True)
 class Asked:
-    """What a film is asked for; `profile` is None where H = 1 + ε cos T."""
+    """Question about a film; `profile` is None where H = 1 + ε cos T."""
 
     shape: str
     squeeze_number: si.Dimensionless
@@ -32,7 +32,7 @@ class Asked:
 
     @property
     def equation(self) -> str:
-        """What is solved, in words."""
+        """Words for the equation that is solved."""
         n = self.polytropic_exponent
         name = "isothermal" if n == 1.0 else f"polytropic (n = {n:g})"
         law = f"slip {self.slip} at local Kn" if self.knudsen_number > 0.0 else "no slip"
@@ -41,7 +41,7 @@ class Asked:
 
 @dataclass(frozen=True)
 class FilmSolution(Asked):
-    """One period of a gas film, with the inputs and the model that made it.
+    """A period of a gas film, with the inputs and the model that made it.
 
     Pressures are relative to ambient, gaps to the reference gap, T = ωt in radians. `position`
     is X = x/l0 from −1/2 to 1/2 for a strip or a profile, r/R from 0 to 1 for a disc.
@@ -79,9 +79,9 @@ class FilmSolution(Asked):
 
 @dataclass(frozen=True)
 class Found:
-    """What a solve came to; the force's harmonics and their errors, both (9,), are NaN where the
-    load alone was asked for. `force` is stiffness + i damping, and its error, where a closed form
-    gave it."""
+    """Result of a solve; the force's harmonics and their errors, both (9,), are NaN where the load
+    alone was asked for. `force` is stiffness + i damping, and its error, where a closed form gave
+    it."""
 
     over: float
     error: float
@@ -113,7 +113,7 @@ class Found:
         return replace(self, harmonics=self.harmonics * (-1.0) ** np.arange(HARMONICS + 1))
 
     def status(self, asked: Asked) -> str:
-        """How well it went."""
+        """Words for how well it went."""
         effort = f"{self.cells} cells and {self.times} times in {self.iterations} Newton steps"
         if self.closed:
             effort = "the closed form of a small vibration"
@@ -140,7 +140,7 @@ class Field(NamedTuple):
 
 
 NO_FIELD = Field(np.empty(0), np.empty(0), np.empty((0, 0)), np.empty((0, 0)))
-"""Where the load alone is asked for."""
+"""Empty field where the load alone is asked for."""
 
 
 def assembled(asked: Asked, found: Found, field: Field, excursion: float) -> FilmSolution:

@@ -179,7 +179,7 @@ def space_error(
 
 @compiled(error_model="numpy")
 def rounding(sigma: float, n: float, over: float) -> float:
-    """What double precision leaves of error in the over-pressure, from the scatter of solves.
+    """Error that double precision leaves in the over-pressure, from the scatter of solves.
 
     For n = 1 all is computed from P − 1; otherwise P itself is rounded.
     """

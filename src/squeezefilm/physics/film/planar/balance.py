@@ -170,7 +170,7 @@ _OVERSAMPLE = 6
 
 @dataclass(frozen=True)
 class Film:
-    """What is solved: gap, squeeze number, and the gas as compiled code knows it."""
+    """Film to be solved: gap, squeeze number, and the gas as compiled code knows it."""
 
     gap: GapFunction
     squeeze_number: float

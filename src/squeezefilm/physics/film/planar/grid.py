@@ -18,7 +18,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 
 _Sides = Literal["open", "turn", "segment"]
-"""Where columns end: at ambient gas, or in each other, with no line or one between two foci."""
+"""Ends of columns: at ambient gas, or in each other, with no line or one between two foci."""
 
 
 @dataclass(frozen=True)
@@ -175,7 +175,7 @@ def edge_layer(squeeze_number: float, least: float = 2e-3) -> float:
 def refined_line(
     line: si.FloatArray, mean_gap: Callable[[si.FloatArray], si.FloatArray]
 ) -> si.FloatArray:
-    """As many points as `line`, drawn also to where the mean gap is small.
+    """Points as many as `line` has, drawn also to where the mean gap is small.
 
     The density added goes with 1/√H: over a crest, where H = a + b x², that is the map x ~ sinh s,
     which resolves the crest and the groove alike. A gap that hardly varies leaves `line` as it is.

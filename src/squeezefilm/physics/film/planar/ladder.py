@@ -123,7 +123,7 @@ class Ladder:
 
 @dataclass(frozen=True)
 class Extrapolated:
-    """What two or three rungs together say of the over-pressure and the harmonics of the force,
+    """Estimate by two or three rungs together of the over-pressure and the harmonics of the force,
     `amplitudes` (9,), and how far each may be off."""
 
     amplitudes: si.ComplexArray
@@ -141,7 +141,7 @@ class Extrapolated:
 
 
 def _norm(amplitudes: si.ComplexArray) -> si.FloatArray:
-    """What errors are relative to: the mean to itself, the harmonics to the largest of them."""
+    """Scale of errors: for the mean itself, for the harmonics the largest of them."""
     size = np.abs(amplitudes)
     return np.concatenate([size[:1], np.full(len(size) - 1, size[1:].max())])
 
@@ -186,7 +186,7 @@ class _Times:
 
     @property
     def correction(self) -> si.ComplexArray:
-        """What the harmonics of the gas that are left out add."""
+        """Correction by the harmonics of the gas that are left out."""
         return self.high.amplitudes - self.low.amplitudes
 
 
@@ -200,7 +200,7 @@ class _Climber:
     iterations: int = 0
 
     def solved(self, rung: int, count: int, start: si.FloatArray | None) -> Balance:
-        """One rung at `count` times, from a start."""
+        """Solve a rung at `count` times, from a start."""
         grid = self.ladder.grid(rung)
         state = _solve_or_continue(self.ladder.film, grid, count, start, self.accuracy)
         self.iterations += state.iterations

@@ -75,7 +75,7 @@ def timoshenko_frequency(
 
 @dataclass(frozen=True, eq=False)
 class BeamMode:
-    """One bending mode of a free–free beam, w(x) scaled to 1 at its largest lobe inside the ends.
+    """A bending mode of a free–free beam, w(x) scaled to 1 at its largest lobe inside the ends.
 
     `deflection`, `rotation` (1/m per metre of w) and `position` are arrays over the length;
     `nodal_positions` where w = 0; `half_wavelength` is π/β of the oscillating part, with β its mean

@@ -35,7 +35,7 @@ from squeezefilm.physics.plate.laminate import CrossSection, Laminate, section_w
 from squeezefilm.physics.plate.layout import CeramicPatch, Face, RectangularPlate
 
 UNSTRESSED: si.Dimensionless = 0.6
-"""What is without stress at each end of a ceramic, in its thicknesses: so that the frequencies of
+"""Length without stress at each end of a ceramic, in its thicknesses: so that the frequencies of
 solved plates are met best (tests/verification/test_beam_beside_solid.py)."""
 _ORDER, _LONGEST = 4, 0.4
 """The order of elements, and their length at most in half wavelengths: 2e-5 of a frequency."""
@@ -49,7 +49,7 @@ _Strip = tuple[Face, si.Metre, si.Metre, si.Metre]
 
 @dataclass(frozen=True)
 class Piece:
-    """What a beam is from `begin` to `end`: its stiffnesses and its inertia, per unit width."""
+    """Piece of a beam from `begin` to `end`: its stiffnesses and its inertia, per unit width."""
 
     begin: si.Metre
     end: si.Metre
@@ -60,7 +60,7 @@ class Piece:
 
 
 def stressed_span(plate: RectangularPlate, patch: CeramicPatch) -> tuple[si.Metre, si.Metre]:
-    """From where to where along a plate (m) one of its ceramics stiffens and drives.
+    """Span along a plate (m) on which one of its ceramics stiffens and drives.
 
     Of a ceramic shorter than 2.4 thicknesses a quarter at each end does not; an end that meets
     another ceramic of the same face passes its stress on and counts whole.
@@ -210,7 +210,7 @@ class _Elements:
         yield from self._around(guess, nodal_lines)
 
     def _nearest(self, wave: float, guess: float, even: bool) -> tuple[float, si.FloatArray] | None:
-        """By Rayleigh quotients of ever better shapes, each squared nearer than the one before."""
+        """Refine a mode by Rayleigh quotients of ever better shapes, each squared nearer."""
         from scipy.linalg import LinAlgError, solve_banded
 
         phase = wave * (self.mesh.nodes - self.pieces[-1].end / 2)
@@ -231,7 +231,7 @@ class _Elements:
         return None
 
     def _around(self, guess: float, count: int) -> Iterator[tuple[float, si.FloatArray]]:
-        """So many modes, and four more, around a frequency."""
+        """Modes around a frequency, so many and four more."""
         from scipy.sparse import dia_array
         from scipy.sparse.linalg import eigsh
 

@@ -1,4 +1,4 @@
-"""What a driven free–free beam does: modal force, amplitude per volt, frequency response."""
+"""Response of a driven free–free beam: modal force, amplitude per volt, frequency response."""
 
 from __future__ import annotations
 
@@ -169,7 +169,7 @@ def _driven(
 def _finder(
     plate: RectangularPlate, theory: BeamTheory, cross_section: CrossSection
 ) -> Callable[[int], BeamMode]:
-    """What finds the mode of a number of nodal lines."""
+    """Function that finds the mode of a number of nodal lines."""
     if theory == "euler_bernoulli":
         section = plate_laminate(plate, cross_section)
         return functools.partial(free_beam_mode, section, plate.length, theory=theory)

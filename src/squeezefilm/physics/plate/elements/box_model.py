@@ -47,10 +47,10 @@ POTENTIAL_UNIT = 3e9
 
 @dataclass(frozen=True, eq=False)
 class Medium:
-    """What a cell is filled with: `stiffness` c at constant field (6 × 6, Pa), `stress_matrix` e
-    (3 × 6, C/m²), `permittivity` ε at constant strain (3 × 3, F/m), density and `loss` (the
-    structural loss factor 1/Q of c; None if only the assembly's is known). Voigt order xx, yy, zz,
-    yz, xz, xy; of rings r, θ, z in place of x, y, z."""
+    """Medium of a cell: `stiffness` c at constant field (6 × 6, Pa), `stress_matrix` e (3 × 6,
+    C/m²), `permittivity` ε at constant strain (3 × 3, F/m), density and `loss` (the structural loss
+    factor 1/Q of c; None if only the assembly's is known). Voigt order xx, yy, zz, yz, xz, xy; of
+    rings r, θ, z in place of x, y, z."""
 
     name: str
     stiffness: si.FloatArray

@@ -1,4 +1,4 @@
-"""One y–z slice of a box model, discretised: the matrices that every x element above it shares.
+"""A y–z slice of a box model, discretised: the matrices that every x element above it shares.
 
 The stiffness of an x element of length h and order p over a slice is
     K = ∫N′N′ᵀ ⊗ P2 + ∫N′Nᵀ ⊗ P1 + ∫N N′ᵀ ⊗ P1ᵀ + ∫N Nᵀ ⊗ P0,     M = ∫N Nᵀ ⊗ R,

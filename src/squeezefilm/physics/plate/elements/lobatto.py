@@ -154,7 +154,7 @@ class LineMesh:
         return out
 
     def located(self, points: si.FloatArray) -> tuple[si.IntArray, si.FloatArray]:
-        """In which element points lie (m; the nearest for those outside), and where in it, from −1
+        """Elements in which points lie (m; the nearest for those outside), and where in it, from −1
         to 1."""
         edges = np.array(self.edges)
         owner = np.clip(np.searchsorted(edges, points, side="right") - 1, 0, self.elements - 1)

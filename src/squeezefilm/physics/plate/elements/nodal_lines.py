@@ -1,4 +1,4 @@
-"""Where a vibration stands still: nodal lines, how many, and the half wavelength that follows."""
+"""Nodal lines of a vibration: nodal lines, how many, and the half wavelength that follows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How large a box model is, counted before any matrix of it is made: unknowns and memory."""
+"""Size of a box model, counted before any matrix of it is made: unknowns and memory."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class SlabCount(NamedTuple):
 
     @property
     def unknowns(self) -> int:
-        """Those of the whole model, with those held at its ends along x."""
+        """Number of unknowns of the whole model, with those held at its ends along x."""
         return int(np.sum(self.slices))
 
     @property

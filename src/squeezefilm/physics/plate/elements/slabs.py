@@ -43,7 +43,7 @@ class Slabs:
 
     @functools.cached_property
     def patterns(self) -> list[bytes]:
-        """What every slice is like, but for the numbers of its ceramics."""
+        """Patterns of the slices, alike but for the numbers of their ceramics."""
         return self._sliced[1]
 
     @functools.cached_property
@@ -93,7 +93,7 @@ class Slabs:
             self.held[at] |= np.isin(component, held_components(condition, 0))
 
     def places(self, element: int, local: int) -> si.IntArray:
-        """Where the unknowns of an element's section stand in the slice of its node `local`."""
+        """Indices of the unknowns of an element's section in the slice of its node `local`."""
         codes = self.codes[self.model.x.first_node[element] + local]
         mine = self.sections[element].codes
         return np.arange(mine.size) if codes.size == mine.size else np.searchsorted(codes, mine)

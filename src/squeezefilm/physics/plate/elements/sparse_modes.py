@@ -12,7 +12,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError
 
 Ordering = Literal["COLAMD", "MMD_AT_PLUS_A"]
-"""How SuperLU orders columns: the second for symmetric patterns."""
+"""Orders of columns in SuperLU: the second for symmetric patterns."""
 
 Entries = tuple[si.IntArray, si.IntArray, si.FloatArray]
 """Rows, columns and values of entries of a matrix."""

@@ -1,1 +1,1 @@
-"""What the plate loses warms it: temperature, drift, what both cost; and where a ceramic ends."""
+"""Heat that the plate loses: temperature, drift, what both cost; and where a ceramic ends."""

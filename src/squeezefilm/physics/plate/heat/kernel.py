@@ -174,8 +174,9 @@ def surpluses(
 
 @compiled()
 def time_until(wanted: float, step: float, most: int, warm: Any) -> float:
-    """When the amplitude has fallen to `wanted` (m), from cold (s), in steps of `step` (s); −1 if
-    not within `most` of them. `warm` is frequency, `Driven`, `Drifts`, capacity and `Cooling`."""
+    """Time until the amplitude has fallen to `wanted` (m), from cold (s), in steps `step` (s); −1
+    if not within `most` of them. `warm` is frequency, `Driven`, `Drifts`, capacity and
+    `Cooling`."""
     frequency, driven, drifts, capacity, cooling = warm
     rise, before = 0.0, -1.0
     for number in range(most):

@@ -25,11 +25,11 @@ from squeezefilm.physics.plate.heat.kernel import (
 from squeezefilm.physics.plate.heat.thermal import Cooling, Thermal, ThermalBody
 
 EMISSIVITIES = (0.1, 0.9)
-"""From bare metal to an adhesive film or glass: assumed range of faces of which none is told."""
+"""Emissivities from bare metal to a film or glass: assumed range of faces of which none is told."""
 ASSUMED_EMISSIVITY: si.Dimensionless = 0.5
-"""Of faces of which none is told: the middle of `EMISSIVITIES`."""
+"""Emissivity of faces of which none is told: the middle of `EMISSIVITIES`."""
 COEFFICIENT_SHARES = (0.5, 2.0)
-"""Of the described temperature coefficient of the resonance: assumed, with no source."""
+"""Shares of the described temperature coefficient of the resonance: assumed, with no source."""
 
 HOTTEST: si.Kelvin = 2000.0
 """Beyond it no state is looked for."""
@@ -77,7 +77,7 @@ class WarmState:
 
 
 def cooling_of(thermal: Thermal, body: ThermalBody) -> Cooling:
-    """How a body gives its heat away, by measurement where there is one."""
+    """Cooling of a body, by measurement where there is one."""
     measured = thermal.thermal_resistance
     fixed = 0.0 if measured is None else (math.inf if measured == 0 else 1 / measured)
     length = body.face_area / body.perimeter
@@ -86,7 +86,7 @@ def cooling_of(thermal: Thermal, body: ThermalBody) -> Cooling:
 
 
 def heat_capacity(thermal: Thermal, body: ThermalBody) -> si.JoulePerKelvin:
-    """What the body takes per kelvin (J/K): of its mass, or what a measured time constant says.
+    """Heat capacity of the body (J/K): of its mass, or what a measured time constant says.
 
     With a measured time constant and a computed resistance, by the one at a warmth of 20 K.
     """
@@ -109,7 +109,7 @@ def drifts_of(thermal: Thermal) -> Drifts:
 
 
 class WarmCase:
-    """One plate at one voltage, as compiled code takes it."""
+    """A plate at one voltage, as compiled code takes it."""
 
     def __init__(
         self, source: HeatSource, thermal: Thermal, body: ThermalBody, drifts: Drifts
@@ -149,7 +149,7 @@ class WarmCase:
         return tuple(self._state(frequency, float(root)) for root in roots)
 
     def time_to_fall(self, frequency: float, cold: si.Metre, time: si.Second) -> si.Second | None:
-        """When a tenth of the cold amplitude is gone (s)."""
+        """Time at which a tenth of the cold amplitude is gone (s)."""
         if not (cold > 0 and time > 0):
             return None
         warm = (float(frequency), self.driven, self.drifts, self.capacity, self.cooling)

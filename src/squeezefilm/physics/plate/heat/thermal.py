@@ -1,4 +1,4 @@
-"""How warm a plate gets and what that does to it, as a description says it; the body that is warm.
+"""Warmth of a plate and its effects, as a description says it; the body that is warm.
 
 Nothing here was measured on a display: every default is assumed, and says from what.
 """
@@ -22,13 +22,13 @@ Low temperature thermal conductivity, heat capacity and heat generation of PZT; 
 GLASS_CONDUCTIVITY = 1.0
 """W/(m K), taken for any substrate: metals conduct a hundred times better (handbooks)."""
 STATOR_THICKNESS: si.Metre = 4e-3
-"""Of a motor's stator, which no description of it states (assumed)."""
+"""Thickness of a motor's stator, which no description of it states (assumed)."""
 
 
 @si.checked_numbers
 @dataclass(frozen=True)
 class Thermal:
-    """How a display's plate warms and what warmth, speed and field do to it.
+    """Thermal description of a plate: how it warms and what warmth, speed and field do to it.
 
     Args:
         thermal_resistance: warmth per power lost in the plate (K/W), where it was measured; None
@@ -68,8 +68,8 @@ class Thermal:
 
 
 class Cooling(NamedTuple):
-    """How a body gives heat away: a fixed conductance (W/K; 0 where it is computed), the area of
-    one face (m²), area over perimeter (m), emissivity, the room's temperature (K)."""
+    """Cooling of a body: a fixed conductance (W/K; 0 where it is computed), the area of one face
+    (m²), area over perimeter (m), emissivity, the room's temperature (K)."""
 
     fixed: float
     area: float
@@ -80,7 +80,7 @@ class Cooling(NamedTuple):
 
 @dataclass(frozen=True)
 class ThermalBody:
-    """What is warm: one temperature, two faces that give heat away.
+    """Body that is warm: one temperature, two faces that give heat away.
 
     `face_area` is of one face, `perimeter` around it, `heat_capacity` of all that vibrates, without
     glue and supports. `through` is the thermal resistance of its thickness times area, which the

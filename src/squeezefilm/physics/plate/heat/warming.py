@@ -1,4 +1,4 @@
-"""How warm a driven plate gets, and what that costs: at a fixed frequency, and where it follows.
+"""Warming of a driven plate, and what that costs: at a fixed frequency, and where it follows.
 
 First order in time, C dθ/dt = P(θ) − G(θ) θ, one temperature for ceramic and substrate. At a fixed
 frequency the resonance moves away (or nearer) as the plate warms, which changes P: the state is
@@ -34,22 +34,23 @@ from squeezefilm.physics.plate.layout import Actuator, RectangularPlate
 from squeezefilm.physics.plate.working_mode import WorkingMode
 
 HARD_QUALITY = 200.0
-"""From it on a ceramic counts as hard (assumed)."""
+"""Quality factor from which a ceramic counts as hard (assumed)."""
 HARD_SPEED: si.MetrePerSecond = 0.3
 """R.m.s. speed at which hard ceramics level off: materials of more than 1 m/s have ten times the
 power density of commercial hard ones (Uchino et al. 2006, 10.1007/s10853-005-7201-0), and power
 goes with the square of the speed. Of the ceramic alone: a bending plate strains differently."""
 SOFT_SPEED: si.MetrePerSecond = 0.1
-"""For soft ceramics (assumed: no figure was found; at a tenth of the Q as much heat per volume)."""
+"""Speed for soft ceramics (assumed, no figure found; at a tenth of the Q as much heat per
+volume)."""
 FIELD_SHARE = 1 / 3
-"""Of the coercive field, warned of (assumed)."""
+"""Share of the coercive field from which a drive is warned of (assumed)."""
 KNOWN_RISE: si.Kelvin = 60.0
 """Up to it coefficients are taken to stay what they are (assumed)."""
 
 
 @dataclass(frozen=True)
 class Warming:
-    """What warmth does to a driven plate without a finger.
+    """Effect of warmth on a driven plate without a finger.
 
     `frequency` is the drive's; `cold_amplitude` and `cold_power` are those there when it is
     switched on. `tracked` is the state where the frequency follows the resonance, `fixed` the one
@@ -116,7 +117,7 @@ def warming(
     thermal: Thermal | None = None,
     frequency: Annotated[si.Hertz, si.Above(0.0)] | None = None,
 ) -> Warming:
-    """What warmth does to a plate that is driven at a constant voltage.
+    """Effect of warmth on a plate that is driven at a constant voltage.
 
     `frequency` (Hz) is the fixed one; the cold resonance without one. Coefficients are constant,
     which holds for some tens of kelvin, and neighbouring modes are left out. The plate is of one
@@ -169,7 +170,7 @@ def warming_of_mode(
     voltage: Annotated[si.Volt, si.AtLeast(0.0)],
     frequency: Annotated[si.Hertz, si.Above(0.0)] | None = None,
 ) -> Warming | None:
-    """What warmth does to a working mode at a voltage (V, zero-to-peak), see `warming`.
+    """Effect of warmth on a working mode at a voltage (V, zero-to-peak), see `warming`.
 
     It loses ½ M ω³ A²/Q in its materials, of its modal mass M, amplitude A and quality factor.
     None where the modal mass is not known, as of a measured stator, or nothing drives it.
@@ -186,7 +187,7 @@ def warming_of_mode(
 
 
 def _assumed(thermal: Thermal, body: ThermalBody) -> tuple[str, ...]:
-    """What stands behind the numbers that nobody measured."""
+    """Assumptions behind the numbers that nobody measured."""
     said = []
     if thermal.thermal_resistance is None:
         said.append(
@@ -205,7 +206,7 @@ def _assumed(thermal: Thermal, body: ThermalBody) -> tuple[str, ...]:
 
 
 def too_hot(found: Warming) -> str | None:
-    """That the plate gets warmer than the model knows, in a sentence; None where it does not."""
+    """Sentence that the plate gets warmer than the model knows; None where it does not."""
     rise = max(found.tracked.temperature_rise, found.fixed.temperature_rise)
     if found.tracked.temperature_rise >= HOTTEST:
         return (
@@ -222,7 +223,7 @@ def too_hot(found: Warming) -> str | None:
 
 
 def _doubts(found: Warming, source: HeatSource, thermal: Thermal) -> list[str]:
-    """What speaks against the cold, linear amplitude, in sentences."""
+    """Sentences on what speaks against the cold, linear amplitude."""
     said = []
     rise, drift = found.tracked.temperature_rise, found.tracked.resonance_drift
     if abs(drift) > 0.5 * found.half_bandwidth:

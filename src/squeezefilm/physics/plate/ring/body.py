@@ -1,4 +1,4 @@
-"""From a described disc or stator to the body that is solved: section, drive, working mode."""
+"""Body to be solved of a described disc or stator: section, drive, working mode."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def ring_body(actuator: AnnularStator | DiscPlate) -> RingBody:
 
 
 def stator_assumptions(actuator: AnnularStator) -> StatorAssumptions:
-    """What is not described of a stator, with what is described put in its place.
+    """Assumptions for what is not described of a stator, with what is described put in its place.
 
     Its outer diameter, Q and the teeth's fill are its own; a stator described without teeth has
     none. Materials, ceramic, height of the teeth and the channel stay assumed.

@@ -202,7 +202,7 @@ def disc_admittance(
 
 
 def _scales(system: DiscSystem, constants: si.ComplexArray) -> si.FloatArray:
-    """What brings displacements and potentials to one size; 1 for the voltage."""
+    """Factors that bring displacements and potentials to one size; 1 for the voltage."""
     diagonal = np.abs(np.einsum("p,pii->i", constants.real, system.parts))
     if not np.all(np.isfinite(diagonal) & (diagonal > 1e-200)):
         raise ConvergenceError(

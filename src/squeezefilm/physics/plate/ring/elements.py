@@ -209,8 +209,8 @@ def harmonic_system(
 def _element(
     m: int, degree: int, r: si.FloatArray, z: si.FloatArray
 ) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
-    """Of the cell between two radii and two heights (m), at its Gauss points: N (points, nodes), B
-    as `_strains` has it, and the area with the radius in it, r dr dz (points,)."""
+    """Matrices of the cell between two radii and two heights (m), at its Gauss points: N (points,
+    nodes), B as `_strains` has it, and the area with the radius in it, r dr dz (points,)."""
     points, weights = gauss_points(degree + 3)
     value, slope = lagrange(degree, tuple(points))
     half_r, half_z = (r[1] - r[0]) / 2, (z[1] - z[0]) / 2

@@ -26,7 +26,7 @@ DEFAULT_DEGREE = 5
 
 @dataclass(frozen=True, eq=False)
 class AnnularMode:
-    """One mode of a free ring or disc.
+    """A mode of a free ring or disc.
 
     `frequency_error` estimates the discretisation error, which is towards too high. The shape is
     u_r = U cos mθ, u_θ = V sin mθ, u_z = W cos mθ: `displacement` (nodes, 3) holds U, V, W at

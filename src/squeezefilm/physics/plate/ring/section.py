@@ -1,4 +1,4 @@
-"""What a ring or a disc is made of and where, in its (r, z) half section, and how it is driven.
+"""Materials and places of a ring or a disc in its (r, z) half section, and its drive.
 
 Solids are in their own axes (r, θ, z), with components in Voigt order rr, θθ, zz, θz, rz, rθ and
 engineering shear strains.
@@ -108,7 +108,7 @@ _SAME = 5e-10
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class RingLayer:
-    """One rectangle of the (r, z) section, revolved: radii and heights in metres.
+    """A rectangle of the (r, z) section, revolved: radii and heights in metres.
 
     A piezoelectric layer has electrodes on the whole of its lower and upper face, and is bonded,
     earthed, at its upper face unless `driven_face` is "upper".
@@ -277,7 +277,7 @@ def alternate_sectors(
 
 
 def full_drive() -> SectorDrive:
-    """One electrode all round: drives the axisymmetric modes of a disc."""
+    """Drive by one electrode all round: drives the axisymmetric modes of a disc."""
     return SectorDrive(((0.0, 2 * math.pi, 1),))
 
 

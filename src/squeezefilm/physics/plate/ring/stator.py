@@ -31,7 +31,7 @@ ToothModel = Literal["soft", "stiff"]
 _ROUGH, _NEAR = 3, 1e-9
 _M, _HZ = si.Unit("m"), si.Unit("Hz")
 PHOSPHOR_BRONZE = ElasticMaterial("phosphor bronze", 112e9, 0.33, 8800.0)
-"""What motor stators are commonly made of; handbook values (C51900), assumed for the USR60."""
+"""Material of most motor stators; handbook values (C51900), assumed for the USR60."""
 
 HARD_PZT = Piezoceramic(
     name="hard PZT (assumed)",
@@ -49,7 +49,7 @@ HARD_PZT = Piezoceramic(
 @si.checked_numbers
 @dataclass(frozen=True)
 class StatorAssumptions:
-    """What the paper does not give of its USR60 stator. Every default is assumed.
+    """Assumptions for what the paper does not give of its USR60 stator. Every default is assumed.
 
     `outer_diameter` 60 mm is read off the motor's name; ceramic, teeth and materials are of the
     usual size and kind for such motors. A channel of 8 half-wave sectors is what a 9-wave motor
@@ -216,7 +216,7 @@ class _Ring:
         return bending_mode(section, self.waves, degree=self.degree, quality_factor=quality)
 
     def frequency_of(self, thickness: float, teeth: ToothModel, degree: int | None = None) -> float:
-        """Its frequency (Hz), by elements of this degree or another."""
+        """Frequency (Hz), by elements of this degree or another."""
         section = stator_section(self.mean_diameter, thickness, self.assumptions, teeth)
         return bending_frequency(section, self.waves, degree=degree or self.degree)
 

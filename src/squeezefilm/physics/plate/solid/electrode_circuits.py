@@ -1,4 +1,4 @@
-"""What a mode's frequency owes to circuits at the electrodes: open terminals, floating electrodes,
+"""Shift of a mode's frequency by circuits at the electrodes: open terminals, floating electrodes,
 resistive shunts. All by a few bordered solves with the factorisation that has them shorted."""
 
 from __future__ import annotations

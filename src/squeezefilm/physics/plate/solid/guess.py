@@ -1,4 +1,4 @@
-"""Where to look for a mode of a plate.
+"""Guess of where to look for a mode of a plate.
 
 A uniform beam takes ceramic to be everywhere. Where a plate carries it on a part of its face only,
 the beam of pieces is the guide: it has the strips where they are.
@@ -64,7 +64,7 @@ def bare_frequency(plate: RectangularPlate, label: Label) -> si.Hertz:
 
 
 def _wave_number(plate: RectangularPlate, label: Label) -> float:
-    """That of a free plate's bending with these nodal lines (1/m): 0 for fewer than two."""
+    """Wave number of a free plate's bending with these nodal lines (1/m): 0 for fewer than two."""
     spans = (plate.length, plate.width)
     return math.hypot(
         *((n - 0.5) * math.pi / span for n, span in zip(label, spans, strict=True) if n > 1)

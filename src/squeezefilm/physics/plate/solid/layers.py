@@ -1,4 +1,4 @@
-"""How fine a plate is meshed, what its layers consist of, and the mesh through the thickness."""
+"""Fineness of a plate's mesh, what its layers consist of, and the mesh through the thickness."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def through_thickness(
     ceramics: dict[tuple[Face, int], tuple[int, int]] = {}
 
     def add(thickness: si.Metre, order: int, *, from_below: bool, from_above: bool) -> None:
-        """One layer, its elements shrinking towards the bond below or above it."""
+        """Add a layer, its elements shrinking towards the bond below or above it."""
         near = [c * thickness for c in resolution.bond_layers]
         inner = [d for d in near if from_below] + [thickness - d for d in near if from_above]
         bottom = edges[-1]

@@ -1,4 +1,4 @@
-"""From a described plate to a box model: cells, media, electrodes, symmetry, graded elements.
+"""Box model of a described plate: cells, media, electrodes, symmetry, graded elements.
 
 The `Resolution` says how fine. Its numbers come from measured convergence of the paper's plate:
 every strip edge is a singular line, and there layers that shrink towards it pay; across the
@@ -202,8 +202,8 @@ def _in_plane(
 
 
 def _work(x: LineMesh, y: LineMesh, z: LineMesh, trunk: float) -> int:
-    """What meshes take to be factorised, to compare: elements along x times the cube of the
-    functions of a slice."""
+    """Work of factorising meshes, to compare: elements along x times the cube of the functions of a
+    slice."""
     return x.elements * int(np.count_nonzero(kept_products(y, z, trunk))) ** 3
 
 

@@ -28,10 +28,10 @@ MODEL = "piezoelectric_solid_3d"
 # So near to a frequency that is asked for nodal lines still decide which mode is meant.
 _NEAR_WANTED = 0.03
 COARSE_ERROR: si.Dimensionless = 0.02
-"""Of a frequency on the coarse mesh alone, relative: 1.2 % at most on 32 random plates."""
+"""Error of a frequency on the coarse mesh alone, relative: 1.2 % at most on 32 random plates."""
 COARSE_AMPLITUDE_ERROR: si.Dimensionless = 0.05
-"""Of a driven mode's amplitude per volt there, relative: 1.5 % at most on seven of these plates; of
-modes that the drive does not move it is of any size."""
+"""Error of a driven mode's amplitude per volt there, relative: 1.5 % at most on seven of these
+plates; of modes that the drive does not move it is of any size."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ class PlateModes(SolvedAgain):
 
     @property
     def coarseness(self) -> str:
-        """What is said of modes that a deadline left on the coarse mesh; empty for others."""
+        """Sentence on modes that a deadline left on the coarse mesh; empty for others."""
         if not self.left_coarse:
             return ""
         return (
@@ -177,7 +177,7 @@ def label_of(surface: si.FloatArray, x: si.FloatArray, y: si.FloatArray) -> Labe
 
 
 def tracked(before: PlateModes, after: PlateModes) -> list[tuple[int, float]]:
-    """For each mode of `before` the mode of `after` that moves most alike, and how alike.
+    """Match for each mode of `before`: the mode of `after` that moves most alike, and how alike.
 
     The modal assurance criterion of the surface shapes, over relative coordinates: 1 for the same
     shape, 0 for orthogonal ones. For plates whose parameters differ a little.

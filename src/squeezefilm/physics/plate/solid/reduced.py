@@ -24,7 +24,7 @@ from squeezefilm.physics.plate.solid.symmetry import Symmetry, drive_signs
 
 @dataclass(frozen=True, eq=False)
 class ReducedClass:
-    """One class of symmetry, reduced: `basis` (unknowns × coordinates), mass, stiffness, loss
+    """A class of symmetry, reduced: `basis` (unknowns × coordinates), mass, stiffness, loss
     (mechanical and of supports) and electrode matrices, of the whole plate.
 
     `drive` is the potential of each model electrode per volt of the drive; `circuit` lists the
@@ -172,7 +172,7 @@ def _krylov_space(
 
 
 def class_slices(parts: list[ReducedClass]) -> list[slice]:
-    """Where the coordinates of each class stand among those of all."""
+    """Slices of the coordinates of each class among those of all."""
     ends = np.cumsum([0, *(part.basis.shape[1] for part in parts)]).tolist()
     return [slice(*pair) for pair in itertools.pairwise(ends)]
 

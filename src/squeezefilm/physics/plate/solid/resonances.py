@@ -23,7 +23,7 @@ from squeezefilm.physics.plate.solid.symmetry import Symmetry
 
 @dataclass(frozen=True, eq=False)
 class DrivenMode:
-    """One mode that the drive can move, by itself.
+    """A mode that the drive can move, by itself.
 
     `label` counts nodal lines across the length and across the width (None for motion in the
     plane) on the shape's dominant product, whose share of the shape's square is `straightness`.
@@ -47,7 +47,7 @@ class DrivenMode:
 
     @property
     def moving(self) -> Moving:
-        """What its neighbours are compared by, at its antinode."""
+        """Motion at its antinode by which its neighbours are compared."""
         half = self.frequency / (2 * self.quality_factor)
         return Moving(self.name, self.frequency, half, self.alone_per_volt)
 

@@ -94,8 +94,8 @@ _SIDES, _ENDS = ("length", "width"), ("left and right", "front and back")
 
 
 def forbidden_by(plate: RectangularPlate, label: Label) -> str | None:
-    """Why symmetry keeps the drive from a mode with these nodal lines, in a sentence; None where
-    it does not.
+    """Reason why symmetry keeps the drive from a mode with these nodal lines, in a sentence; None
+    where it does not.
 
     A mode with an odd number of lines across a side is turned over by the mirror in the middle of
     that side, one with an even number is its own image. Where the plate is symmetric, a drive that

@@ -1,4 +1,4 @@
-"""How large the three-dimensional solve of a plate will be, and how long it may take.
+"""Size of the three-dimensional solve of a plate, and how long it may take.
 
 Counted on the meshes that would be made, before anything is assembled.
 """
@@ -29,8 +29,8 @@ _BESIDES = 0.15
 
 
 class SolveSize(NamedTuple):
-    """What a plate's working mode takes: unknowns of its largest mesh, and seconds of the coarse
-    meshes, of the finer ones, and of the response on either."""
+    """Size of the solve of a plate's working mode: unknowns of its largest mesh, and seconds of the
+    coarse meshes, of the finer ones, and of the response on either."""
 
     unknowns: int
     coarse: si.Second

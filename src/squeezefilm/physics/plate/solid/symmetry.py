@@ -111,7 +111,7 @@ def all_classes(plate: RectangularPlate) -> list[Symmetry]:
 
 
 def told_of(parity: Symmetry) -> str:
-    """Which modes a class of symmetry holds, for those who are told how far a solve is."""
+    """Words for the modes of a class of symmetry, for those who are told how far a solve is."""
     moves = {"S": "alike", "A": "opposite"}
     said = [
         f"{moves[own]} on both halves of the {side}"

@@ -70,7 +70,7 @@ def response_frequencies(
 
 @dataclass(frozen=True, eq=False)
 class SolidMode:
-    """One mode of a plate, its response to one volt, and its centreline at resonance.
+    """A mode of a plate, its response to one volt, and its centreline at resonance.
 
     `modes` holds it at `index`; `response` surrounds the resonance. `position` and `deflection` are
     the mode along the centreline of the upper face that crosses its nodal lines (along the length,
@@ -111,12 +111,12 @@ class SolidMode:
 
     @property
     def coarseness(self) -> str:
-        """What is said of a mode that a budget left on the coarse mesh; empty for others."""
+        """Sentence on a mode that a budget left on the coarse mesh; empty for others."""
         return self.modes.coarseness
 
     @property
     def quality_factor(self) -> si.Dimensionless:
-        """From the materials' losses, weighted by their share of the energy."""
+        """Quality factor from the materials' losses, weighted by their share of the energy."""
         return float(self.modes.quality_factors[self.index])
 
     @property
@@ -131,8 +131,8 @@ class SolidMode:
 
     @property
     def circuit_said(self) -> str:
-        """What is to be said of the circuit: why there is none, or that neighbours draw most of
-        the power; empty for one that describes the plate near its resonance."""
+        """Sentence on the circuit: why there is none, or that neighbours draw most of the power;
+        empty for one that describes the plate near its resonance."""
         return self._circuit[1]
 
     @functools.cached_property
@@ -212,7 +212,7 @@ def _strongest(
     quality_factor: si.Dimensionless,
     lobe: tuple[si.Metre, si.Metre],
 ) -> tuple[int, si.MetrePerVolt]:
-    """Where the lobe answers most, of the frequencies within a mode's bandwidth, and how much."""
+    """Index at which the lobe answers most within a mode's bandwidth, and how much it does."""
     amplitude = response.amplitude_at(*lobe)
     # At the mode, not at the highest point of the band: a neighbour may move more.
     near = np.abs(response.frequencies / frequency - 1) < 1 / quality_factor
@@ -323,7 +323,7 @@ def _solved_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: P
 
 
 def _deadline_of_modes(plate: RectangularPlate, label: Label, pace: Pace) -> Deadline | None:
-    """When the modes must be there, so that their response is there in time.
+    """Time at which the modes must be there, so that their response is there in time.
 
     Raises `OutOfTimeError` where the coarse meshes alone would take longer.
     """
@@ -338,8 +338,8 @@ def _deadline_of_modes(plate: RectangularPlate, label: Label, pace: Pace) -> Dea
 def _answer_change(
     pieces: list[RefinedModes], frequency: si.Hertz, lobe: tuple[si.Metre, si.Metre]
 ) -> si.Dimensionless:
-    """How much a mode's answer to the drive at a point, F φ / ω², changed from the coarse mesh to
-    the refined one: the refined one lacks less than that."""
+    """Change of a mode's answer to the drive at a point, F φ / ω², from the coarse mesh to the
+    refined one: the refined one lacks less than that."""
 
     def answer(solved: PlateModel, value: float, vector: si.FloatArray) -> float:
         G, _ = solved.slabs.electrode_columns

@@ -1,1 +1,1 @@
-"""What reaches the finger of what was asked for: whole strokes, and numbers that compare them."""
+"""Fidelity of what reaches the finger: whole strokes, and numbers that compare them."""

@@ -43,7 +43,7 @@ _WINDOW_ROWS = 4096
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RenderedStroke:
-    """What a finger meets on a stroke, and what it should have met; arrays of shape (steps,).
+    """A stroke as a finger meets it, and as it should have met it; arrays of shape (steps,).
 
     Attributes:
         texture, trajectory, envelope, compensation, control_rate, sensor, estimator, seed: the
@@ -218,14 +218,14 @@ def _asked(texture: Texture, x: si.FloatArray, v: si.FloatArray, t: si.FloatArra
 def friction_of(
     law: RelativeFriction, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
 ) -> si.DimensionlessArray:
-    """What a law says at amplitudes (m) and speeds (m/s), as `per_sample` lets it pass (1)."""
+    """Friction of a law at amplitudes (m) and speeds (m/s), as `per_sample` lets it pass (1)."""
     return per_sample("relative_friction", law(amplitude, speed), amplitude, si.Unit("1"))
 
 
 def per_sample(
     name: str, values: si.FloatArray, given: si.FloatArray, unit: si.Unit
 ) -> si.FloatArray:
-    """What a callable `name` returned where samples were `given`.
+    """Values that a callable `name` returned where samples were `given`.
 
     Raises `InputError` unless that is one finite value, at least 0, per sample.
     """

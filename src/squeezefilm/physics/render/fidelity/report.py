@@ -40,7 +40,7 @@ _FAINT_LINE = 0.01
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FidelityReport:
-    """How near the friction rendered comes to the friction wanted; every field has a JSON form.
+    """Report on the friction rendered beside the friction wanted; every field has a JSON form.
 
     Attributes:
         texture, trajectory: as text.
@@ -331,7 +331,7 @@ def strongest_lines(stroke: RenderedStroke, period: si.Metre | None) -> si.Float
 
 
 def lag_rows(judged: FidelityReport, what: str = "Lag") -> list[tuple[str, str, str]]:
-    """How far the rendered pattern trails the finger, in a line; none where that is not known."""
+    """Row on how far the rendered pattern trails the finger; none where that is not known."""
     if not math.isfinite(judged.lag):
         return []
     word = "behind" if judged.lag >= 0 else "ahead of"

@@ -1,1 +1,1 @@
-"""How a finger moves, what a sensor sees of it, and where it is estimated to be."""
+"""Motion of a finger, what a sensor sees of it, and where it is estimated to be."""

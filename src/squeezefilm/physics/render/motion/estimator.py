@@ -1,4 +1,4 @@
-"""Where the finger is and how fast it moves, from samples that are noisy, late and irregular.
+"""Estimator of a finger's place and speed from samples that are noisy, late and irregular.
 
 The finger's acceleration (or jerk) is taken as white noise: over a time h without news its state
 (x, v, a) is carried along by x + v h + a h²/2, and its covariance grows by
@@ -37,7 +37,7 @@ JerkDensity = Annotated[float, si.Unit("m2/s5")]
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class MotionModel:
-    """What is assumed of a finger before any sample: how it starts and how it changes.
+    """Model of a finger before any sample: how it starts and how it changes.
 
     Args:
         acceleration_density: of white acceleration, q_a (m²/s³); at least 0.
@@ -133,7 +133,7 @@ class MotionEstimator:
 
 @dataclass(frozen=True, slots=True)
 class MotionCounts:
-    """What became of the samples, and how often the estimator started anew."""
+    """Counts of what became of the samples, and of how often the estimator started anew."""
 
     used: int
     not_finite: int

@@ -1,4 +1,4 @@
-"""One compiled step of the finger's motion estimator, and its prediction; nothing is allocated.
+"""A compiled step of the finger's motion estimator, and its prediction; nothing is allocated.
 
 The state is one array of `STATE_SIZE` floats, so that it can lie in shared memory and be read
 whole by another process; `STATE` indices name its places. See `motion` for the equations.
@@ -155,7 +155,7 @@ def motion_march(
     out: si.Array,
     code: si.Array,
 ) -> None:
-    """At each render time (s): take what has arrived, predict to `ahead` (s) after it.
+    """March through render times (s): take what has arrived, predict to `ahead` (s) after it.
 
     `out` takes rows of place, speed and their standard deviations, as `motion_at` gives them.
     """

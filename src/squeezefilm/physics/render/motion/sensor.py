@@ -98,7 +98,7 @@ SENSORS: dict[str, SensorModel] = {
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class SensorStream:
-    """What a sensor reported, in the order of arrival; arrays of shape (samples,).
+    """Samples that a sensor reported, in the order of arrival; arrays of shape (samples,).
 
     Attributes:
         sensor, seed: the inputs.
@@ -124,7 +124,7 @@ def sensor_stream(
     seed: Annotated[int, si.AtLeast(0)],
     start: si.Second = 0.0,
 ) -> SensorStream:
-    """What a sensor reports of a motion between `start` and `start + duration`.
+    """Samples that a sensor reports of a motion between `start` and `start + duration`.
 
     The first sample is taken at `start`, as if the sensor had woken to the touch. Samples arrive
     in the order in which they were taken, as over one wire.

@@ -160,7 +160,7 @@ def interpret(
 
 @compiled(error_model="numpy")
 def _friction_row(program: si.Array, v: float) -> tuple[int, float]:
-    """Where the inverse's row at or below the speed of `v` begins, and the share of the next."""
+    """Index of the inverse's row at or below the speed of `v`, and the share of the next."""
     count = int(program[at.H_INVERSE_COUNT])
     speeds = int(program[at.H_INVERSE_SPEEDS])
     first = int(program[at.H_INVERSE]) + count

@@ -1,4 +1,4 @@
-"""From a wanted friction to the amplitude that makes it: the display's friction law, inverted."""
+"""Amplitude that makes a wanted friction: the display's friction law, inverted."""
 
 from __future__ import annotations
 
@@ -241,7 +241,7 @@ class FrictionInverse:
 def _rows_of(
     law: LawOverSpeeds, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
 ) -> si.DimensionlessArray:
-    """What a law says at amplitudes and speeds, if it is one finite value for each."""
+    """Rows of a law at amplitudes and speeds, if it is one finite value for each."""
     grid = np.broadcast_to(amplitude, (speed.size, amplitude.size))
     return si.returned("law", law(amplitude, speed), grid, "a row of amplitudes for each speed")
 

@@ -1,4 +1,4 @@
-"""Where things stand in a program and in the state of a renderer: both are flat arrays of floats.
+"""Layout of a program and of the state of a renderer: both are flat arrays of floats.
 
 A program is ``[header, code, tables, inverse, wave]``. The numbers of the header::
 

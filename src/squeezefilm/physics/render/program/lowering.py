@@ -43,7 +43,7 @@ class Program:
 
     @property
     def quantity(self) -> Quantity:
-        """What the texture's values are before they become an amplitude."""
+        """Quantity of the texture's values before they become an amplitude."""
         return QUANTITIES[int(self.array[at.H_QUANTITY])]
 
     @property
@@ -58,12 +58,12 @@ class Program:
 
     @property
     def instructions(self) -> int:
-        """How many instructions one sample takes."""
+        """Number of instructions that one sample takes."""
         return len(_instructions(self.array))
 
     @property
     def depends_on(self) -> frozenset[str]:
-        """What its amplitude may depend on: any of "x", "y", "speed", "direction" and "time".
+        """Names of what its amplitude may depend on, of "x", "y", "speed", "direction" and "time".
 
         Read off the instructions: what is not named has no influence, what is named may have none.
         """
@@ -80,8 +80,8 @@ class Program:
 
     @property
     def wanted_depends_on(self) -> frozenset[str]:
-        """As `depends_on`, but without the speed by which a wanted friction becomes an amplitude:
-        what the texture and the wave depend on."""
+        """Names as by `depends_on`, but without the speed by which a wanted friction becomes an
+        amplitude: what the texture and the wave depend on."""
         found: set[str] = set()
         for code, operands in _instructions(self.array):
             if code == op.ALONG:

@@ -1,4 +1,4 @@
-"""What knows only a place, such as a device's tile or a file, was made for one speed of the finger.
+"""Cost of knowing only a place, as a device's tile or a file does: made for one speed.
 
 The friction that an amplitude makes depends on how fast the finger slides, and only a loop that
 knows the speed can follow it. This says what it costs not to.
@@ -41,8 +41,8 @@ class MadeForSpeed:
         amplitude: si.MetreArray,
         speed: Annotated[si.MetrePerSecond, si.Above(0.0)],
     ) -> MadeForSpeed:
-        """By a law, vibration amplitudes (m) and speeds (m/s) → µ′/µ (1), each of shape (n,): of
-        amplitudes over places (m) that were chosen for a speed (m/s, above 0).
+        """Cost by a law from vibration amplitudes (m) and speeds (m/s) to µ′/µ (1), each of shape
+        (n,): of amplitudes over places (m) that were chosen for a speed (m/s, above 0).
 
         Raises `InputError` for a law that returns another shape.
         """
@@ -63,7 +63,7 @@ class MadeForSpeed:
         }
 
     def sentence(self) -> str:
-        """In words, for people and for a file's description."""
+        """Sentence for people and for a file's description."""
         made = f"made for a finger at {si.format_quantity(self.speed, _SPEED)}"
         if self.error_at_half == 0.0 and self.error_at_double == 0.0:
             return f"{made}; by this model friction does not depend on the speed"

@@ -23,7 +23,7 @@ from squeezefilm.physics.render.texture.coordinate import finger_arguments
 
 @dataclass(frozen=True, slots=True)
 class Counters:
-    """What a renderer met since it was made or reset; see `layout` for what each counts."""
+    """Counts of what a renderer met since made or reset; see `layout` for what each counts."""
 
     ticks: int
     bad_place: int
@@ -81,12 +81,12 @@ class Renderer:
 
     @property
     def counters(self) -> Counters:
-        """What it met so far."""
+        """Counts so far."""
         return counters_of(self.state)
 
     @property
     def flags(self) -> int:
-        """What the last tick met: a sum of the flags in `layout`."""
+        """Flags of the last tick: a sum of the flags in `layout`."""
         return int(self.state[at.S_FLAGS])
 
 

@@ -55,7 +55,7 @@ def _area(u: si.FloatArray) -> si.FloatArray:
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class WaveCompensation:
-    """By what share the wave is weaker place by place; a renderer divides amplitudes by it.
+    """Compensation of the wave's weakness, place by place; a renderer divides amplitudes by it.
 
     Build it with `over_contact` or `from_ripple`.
 
@@ -90,7 +90,7 @@ class WaveCompensation:
         along: Coordinate = X_AXIS,
         count: Annotated[int, si.AtLeast(2), si.AtMost(_MOST_FACTORS)] = 256,
     ) -> WaveCompensation:
-        """From `wave_factor`, divided by its largest; `least` bounds what is made up for.
+        """Compensation by `wave_factor` over its largest; `least` bounds what is made up for.
 
         Where the contact meets less than the share `least`, the ripple is made up for in part.
 
@@ -114,7 +114,8 @@ class WaveCompensation:
         least: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 0.1,
         along: Coordinate = X_AXIS,
     ) -> WaveCompensation:
-        """From the friction of a pad that crosses the wave at one drive, computed or measured.
+        """Compensation by friction, computed or measured, of a pad that crosses the wave at a
+        drive.
 
         `position` (m) are evenly spaced places over one `half_wavelength` from 0 on, its end left
         out; `relative_friction` (1) the friction there; `inverse` that of the pad where friction

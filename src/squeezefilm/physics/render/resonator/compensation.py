@@ -87,7 +87,7 @@ class DrivenEnvelope:
 
     @si.checked_numbers
     def parameters(self, time_step: Annotated[si.Second, si.Above(0.0)]) -> si.FloatArray:
-        """What the compiled steps need at a time step (s): shape (4,), see the kernel."""
+        """Parameters of the compiled steps at a time step (s): shape (4,), see the kernel."""
         return np.array(
             [
                 math.exp(-time_step / self.rise_time_constant),
@@ -218,7 +218,7 @@ def preview_samples(
     time_step: Annotated[si.Second, si.Above(0.0)],
     preview: si.Second | None = None,
 ) -> int:
-    """How many samples a preview (s; three time constants without one) looks ahead.
+    """Number of samples that a preview (s; three time constants without one) looks ahead.
 
     Raises:
         InputError: a preview or time step not above 0.

@@ -147,7 +147,7 @@ def carrier_block(
 
 @si.checked_numbers
 def samples_per_command(command_rate: si.Hertz, sample_rate: si.Hertz = DAC_RATE) -> int:
-    """How many converter samples one command lasts, for rates that divide evenly.
+    """Number of converter samples that one command lasts, for rates that divide evenly.
 
     Raises:
         InputError: a rate not above 0, or a command rate that does not divide the sample rate.

@@ -84,7 +84,7 @@ def compensated_march(
 
 @compiled()
 def _least_place(places: si.Array, slopes: si.Array, knots: int) -> float:
-    """Where a rising piecewise linear slope crosses zero, or the end nearest to it."""
+    """Place where a rising piecewise linear slope crosses zero, or the end nearest to it."""
     if slopes[0] >= 0.0:
         return float(places[0])
     for i in range(1, knots):

@@ -51,7 +51,7 @@ from squeezefilm.physics.render.texture.pattern import (
 )
 
 Quantity = Literal["amplitude", "relative_friction", "friction_reduction"]
-"""What a texture's values are."""
+"""Quantities of a texture's values."""
 
 AT_REST: dict[Quantity, float] = {
     "amplitude": 0.0,
@@ -89,7 +89,7 @@ class Composable(Part):
 
     @property
     def quantity(self) -> Quantity:
-        """What the values are: amplitude (m), relative_friction or friction_reduction (1)."""
+        """Quantity of the values: amplitude (m), relative_friction or friction_reduction (1)."""
         return self._quantity
 
     def __add__(self, other: Composable) -> Sum:
@@ -119,7 +119,7 @@ class Composable(Part):
         return Masked(self, mask)
 
     def mask(self, mask: Pattern) -> Masked:
-        """This texture where `mask` is 1, the plate at rest where it is 0."""
+        """Texture that is this one where `mask` is 1, and the plate at rest where it is 0."""
         return Masked(self, mask)
 
     def when(self, condition: Pattern) -> Masked:
@@ -136,7 +136,7 @@ class Composable(Part):
         fade: si.Metre = 0.0,
         along: Coordinate | None = None,
     ) -> Sequence:
-        """This texture before the coordinate `at` (m; x unless `along` is given), then `other`."""
+        """Texture that is this one before `at` (m; x unless `along` is given), then `other`."""
         coordinate = along or X_AXIS
         # An edge before the last one cuts what is there off: that needs a sequence around it.
         if (
@@ -194,7 +194,7 @@ class _Several(Composable):
 
     @property
     def quantity(self) -> Quantity:
-        """That of its textures."""
+        """Quantity of its textures."""
         return self.textures[0].quantity
 
 
@@ -230,7 +230,7 @@ class _Changed(Composable):
 
     @property
     def quantity(self) -> Quantity:
-        """That of its texture."""
+        """Quantity of its texture."""
         return self.texture.quantity
 
 
@@ -302,7 +302,7 @@ class Masked(_Shaped):
 
 @part
 class Sequence(_Several):
-    """One texture after another in space: `textures[k]` up to `edges[k]`, the last beyond.
+    """Textures one after another in space: `textures[k]` up to `edges[k]`, the last beyond.
 
     Args:
         textures: of one quantity, one more than there are edges.

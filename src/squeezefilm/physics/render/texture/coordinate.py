@@ -57,7 +57,7 @@ class _Straight(Coordinate):
 
     @property
     def _direction(self) -> tuple[float, float]:
-        """Its components along x and y."""
+        """Components along x and y."""
         raise NotImplementedError
 
     def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:

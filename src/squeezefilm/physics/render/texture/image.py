@@ -20,7 +20,7 @@ MOST_PIXELS = int(PIXELS.most)
 """Pixels one image may have."""
 
 OUTSIDE = ("hold", "repeat", "zero")
-"""What an image does beyond its frame, in the order of the opcode's operand."""
+"""Ways of an image beyond its frame, in the order of the opcode's operand."""
 
 
 Share = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]

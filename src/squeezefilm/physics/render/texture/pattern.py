@@ -47,7 +47,7 @@ def part(cls: type[_T]) -> type[_T]:
 
 
 class Part:
-    """What has a value wherever a finger is: a pattern or a texture.
+    """Part with a value wherever a finger is: a pattern or a texture.
 
     Called with the finger's place `x`, `y` (m), its velocity `v` along its path (m/s; negative on
     the way back) and the time `t` (s), which broadcast; returns values in the broadcast shape.
@@ -100,7 +100,7 @@ class Pattern(Part):
         slowest: si.MetrePerSecond = 0.001,
         fastest: si.MetrePerSecond = 1.0,
     ) -> SpeedScaled:
-        """This pattern stretched by speed/`reference_speed`; see `SpeedScaled`."""
+        """Pattern like this, stretched by speed/`reference_speed`; see `SpeedScaled`."""
         return SpeedScaled(self, reference_speed, slowest, fastest)
 
 

@@ -55,7 +55,7 @@ class Constant(Pattern):
 
 
 class _Along(Pattern):
-    """What a shape along a coordinate has: it is one."""
+    """Base of a shape along a coordinate: it is one."""
 
     __slots__ = ()
     along: Coordinate
@@ -127,7 +127,7 @@ class SineWave(_Along):
 
 @part
 class Pulse(_Along):
-    """One localised rise to 1 at `centre`, ½ at `width`/2 to either side.
+    """A localised rise to 1 at `centre`, ½ at `width`/2 to either side.
 
     Args:
         centre: its place (m), within ±10 m.
@@ -162,7 +162,7 @@ class Pulse(_Along):
 
 @part
 class Ramp(_Along):
-    """From 0 at `start` to 1 at `end`, held beyond; falling if `end` lies before `start`.
+    """Rise from 0 at `start` to 1 at `end`, held beyond; falling if `end` lies before `start`.
 
     Args:
         start, end: its ends (m), within ±10 m and not the same.
