@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from squeezefilm.instruments.session.play.plan import PlayView
 
 ROW_PERIOD: si.Second = 2e-3
-"""Between two rows that the page's scope gets; the record has them all."""
+"""Time between two rows that the page's scope gets; the record has them all."""
 _STOPPED_BEFORE = "stopped before anything was played"
 
 

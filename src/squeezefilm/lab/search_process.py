@@ -124,7 +124,7 @@ def result(found: DesignSearch) -> dict[str, Any]:
 
 
 TELL_EVERY: si.Second = 0.25
-"""Between two glimpses that the pages get; a new stage and the end are told at once."""
+"""Time between two glimpses that the pages get; a new stage and the end are told at once."""
 _SLOWER = 100
 """Plates of a front for which it is twice as long, since each has a row."""
 

@@ -213,7 +213,7 @@ def radii_that_touch_all(
     tissue: Tissue,
     force: Annotated[si.Newton, hard.FORCE],
 ) -> tuple[si.Metre, si.Metre]:
-    """Between which radii across (m) of the cradle a fingertip under a force (N) touches every
+    """Radii across (m) of the cradle between which a fingertip under a force (N) touches every
     contactor; the upper is infinite, given as 1 m, where a straight cradle does.
 
     Looks at the radii from what half a circle needs to 1 m. Raises `UnreachableError` where none

@@ -49,7 +49,7 @@ class AreaOdds:
 
     @property
     def worst_interval(self) -> tuple[si.Dimensionless, si.Dimensionless]:
-        """Between which 90 % of the draws lie at the worst place."""
+        """Interval in which 90 % of the draws lie at the worst place."""
         low, _, high = quantiles(self.samples[:, 2]).tolist()
         return low, high
 

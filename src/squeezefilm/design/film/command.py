@@ -89,7 +89,7 @@ class FilmAnswer(Result):
 
 @dataclass(frozen=True, eq=False)
 class FilmMap:
-    """Over-pressure and the force's first harmonic, with their errors, over σ (rows) and ε
+    """Map of over-pressure and the force's first harmonic, with their errors, over σ (rows) and ε
     (columns)."""
 
     request: FilmRequest

@@ -248,7 +248,7 @@ class _Asking(Generic[K, A]):
         self._missed = missed
 
     def end(self) -> None:
-        """Nothing more is wanted."""
+        """End: nothing more is wanted."""
         with contextlib.suppress(Exception):
             self._client.cancel(list(self._futures.values()))
         self._futures.clear()

@@ -52,7 +52,7 @@ class Workers(Protocol):
 
 
 class ThisProcess:
-    """This process alone, which answers in the order of the tasks but for those alike."""
+    """Process of this program alone: answers in the order of the tasks but for those alike."""
 
     def answers(
         self,

@@ -1,1 +1,1 @@
-"""What `play` shows of a session: page, figures, the terminal while it plays."""
+"""Output of `play` about a session: page, figures, the terminal while it plays."""

@@ -68,7 +68,7 @@ def _middle_pass(way: PlayedWay) -> si.FloatArray:
 
 
 def _turns(way: PlayedWay) -> si.FloatArray:
-    """Where the finger turns: the ends of a lazy follower's moves of more than 1 mm."""
+    """Places where the finger turns: the ends of a lazy follower's moves of more than 1 mm."""
     found, extreme, at, rising = [], float(way.x[0]), 0, True
     for k, x in enumerate(way.x.tolist()):
         if (x >= extreme) if rising else (x <= extreme):
@@ -126,7 +126,7 @@ def amplitude(session: PlayedSession) -> Figure:
 
 @style.drawn
 def lateness(session: PlayedSession) -> Figure:
-    """How late ticks were made, and how long samples wait for their command."""
+    """Figure of how late ticks were made, and how long samples wait for their command."""
     said = session.last("loop").get("lateness")
     if not said or not said["made"]:
         return style.message_figure("The loop could not say how late it was", "It made no tick.")

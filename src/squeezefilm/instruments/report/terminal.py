@@ -1,4 +1,4 @@
-"""What the terminal shows of a device, and of a session on it, while it plays and after."""
+"""Terminal output of a device, and of a session on it, while it plays and after."""
 
 from __future__ import annotations
 
@@ -277,7 +277,7 @@ def _micro(seconds: float | None) -> str:
 
 
 def play_warnings(session: PlayedSession) -> list[str]:
-    """What is doubtful of a session, a sentence each."""
+    """Sentences on what is doubtful of a session, one each."""
     said = []
     if session.setup.assumed_limits:
         said.append(

@@ -67,7 +67,7 @@ class Measured:
         raise InputError("a measurement presents nothing")
 
     def stop(self) -> TrialMotion:
-        """Nothing plays."""
+        """Stop nothing, for nothing plays."""
         return TrialMotion()
 
 
@@ -85,7 +85,7 @@ class _Held:
     halted: bool = False
 
     def forget(self) -> None:
-        """Nothing of a trial counts any more: it comes again."""
+        """Forget what was felt of a trial: it comes again."""
         self.token, self.playing, self.felt, self.halted = "", None, {}, False
 
 

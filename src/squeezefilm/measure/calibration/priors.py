@@ -196,7 +196,7 @@ def ceramic_with_shares(
 
 
 class NormalScores:
-    """Between values of parameters and independent standard normal numbers, one for each.
+    """Transformation of values of parameters into independent standard normal numbers.
 
     In these scores every prior is N(0, 1), so that a sampler sees one scale and no walls.
     `coordinates` are what an emulator takes: logarithms of the values, −1 and 1 at the ends of the

@@ -116,7 +116,7 @@ class FrictionTable:
 
 
 def _place(knots: si.FloatArray, values: si.FloatArray) -> tuple[si.IntArray, si.FloatArray]:
-    """Between which knots values lie, and where between them (0 to 1); held at both ends."""
+    """Indices of the knots below values, and places up to the next (0 to 1); held at both ends."""
     at = np.clip(np.searchsorted(knots, values, side="right") - 1, 0, knots.size - 2)
     part = (values - knots[at]) / (knots[at + 1] - knots[at])
     return at, np.clip(part, 0.0, 1.0)

@@ -31,7 +31,7 @@ from squeezefilm.physics.perception.senses import COARSEST_PERIOD, FINEST_LINE
 FINEST_TRIED: si.Metre = 0.125e-3
 """The finest at which thresholds were measured."""
 _SAMPLES = 256
-"""Over a period; the fifteenth harmonic, the last that counts, has seventeen."""
+"""Number of samples over a period; the fifteenth harmonic, the last that counts, has seventeen."""
 
 
 @si.checked_numbers

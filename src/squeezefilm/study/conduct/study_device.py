@@ -126,26 +126,26 @@ class StudyDevice(Protocol):
 
 
 class NoDevice:
-    """No device: surfaces are presented by hand, or not at all, and nothing can be verified."""
+    """Stand-in for a device: surfaces come by hand, or not at all, and nothing can be verified."""
 
     def identity(self) -> DeviceIdentity:
         """The name "none" and no hashes."""
         return DeviceIdentity("none")
 
     def verify_device(self) -> DeviceVerification:
-        """Nothing to measure, and says so."""
+        """Verification that says that there is nothing to measure."""
         return DeviceVerification(measurable=False, remark="no device: nothing was verified")
 
     def present(self, stimulus: Stimulus, seed: int) -> None:
-        """Nothing."""
+        """Present nothing."""
 
     def stop(self) -> TrialMotion:
-        """Nothing is known of the finger."""
+        """Motion of which nothing is known."""
         return TrialMotion()
 
 
 class ByHand(NoDevice):
-    """No device: the experimenter puts each surface under the finger, and is told which.
+    """Stand-in for a device: the experimenter puts each surface under the finger as told.
 
     Args:
         tell: where the experimenter reads it, and the participant does not.

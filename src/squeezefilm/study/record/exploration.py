@@ -26,8 +26,7 @@ RESTING_SPEED: si.MetrePerSecond = 5e-3
 CELL: si.Metre = 5e-3
 """Side of the cells that a face is divided into for `coverage`: half a contact; assumed."""
 PATH_PERIOD: si.Second = 10e-3
-"""Between samples of a path that a study keeps: slow against a sensor's noise, fast against a
-hand."""
+"""Time between samples of a study's paths: slow against a sensor's noise, fast against a hand."""
 _PER_CELL = 50
 """Places looked at along the way of a cell: a corner that is cut more finely is not seen."""
 _FARTHEST: si.Metre = 10.0
@@ -188,7 +187,7 @@ def coverage(
 
 
 LONGEST_STEP: si.Second = 1.5 * PATH_PERIOD
-"""Between two samples of a path; a longer one is a lifted finger."""
+"""Longest time between two samples of a path; a longer one is a lifted finger."""
 MEASURES = ("peak_speed_m_per_s", "time_in_touch_s", "passes", "along_x_share", "coverage")
 """Keys of `ExploredTrials.measures`, units in the names."""
 NO_MEASURES: dict[str, float | None] = dict.fromkeys(MEASURES)

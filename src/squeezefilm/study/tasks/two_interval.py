@@ -238,7 +238,7 @@ def condition_finding(
 def _mean_d_prime(
     main: Answers, here: NDArray[np.bool_], level: float, seed: int
 ) -> Estimate | None:
-    """Over people; the comparison counts as the signal where it is right to choose it."""
+    """Mean d′ over people; the comparison counts as the signal where it is right to choose it."""
     counts = []
     for person in np.unique(main.participant[here]):
         mine = here & (main.participant == person)

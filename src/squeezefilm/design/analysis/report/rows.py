@@ -117,7 +117,7 @@ def surface_rows(analysis: Analysis) -> list[Row]:
 
 
 def rival_rows(analysis: Analysis) -> list[Row]:
-    """Between what rival models lie, beside the width of the interval, which leaves them out."""
+    """Rows of the range of rival models, beside the interval's width, which leaves them out."""
     rivals, unsure = analysis.rivals.values(), analysis.uncertainty
     if unsure is None or not rivals:
         return []

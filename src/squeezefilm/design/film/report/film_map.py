@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @style.drawn
 def film_map(found: FilmMap) -> Figure:
-    """Over-pressure (left) and its share of the asymptote (right) over σ and ε."""
+    """Figure of over-pressure (left) and its share of the asymptote (right) over σ and ε."""
     request = found.request
     figure = style.new_figure(
         f"The {request.shape}'s over-pressure grows with both; below σ of about 100 it falls short "

@@ -45,10 +45,10 @@ from squeezefilm.instruments.session.play.usability import Usability
 from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 
 PAUSE: si.Second = 1e-3
-"""Between two looks of the player at its device."""
+"""Time between two looks of the player at its device."""
 SHOW_PERIOD: si.Second = 0.1
 LONGEST_SILENCE: si.Second = 35e-3
-"""Between two steps of the player, with which a device's watchdog is fed in time for certain."""
+"""Longest time between two steps of the player, which feed a device's watchdog."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -66,7 +66,7 @@ class VirtualStream:
         self._under_way.append((round((self.now + self.latency) * 1e6), data))
 
     def close(self) -> None:
-        """Nothing to close."""
+        """Close nothing."""
 
 
 def virtual_play(

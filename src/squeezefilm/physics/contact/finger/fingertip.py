@@ -88,7 +88,7 @@ FRICTION_OF_MOISTURE: dict[Moisture, float] = {"dry": 0.6, "normal": 1.0, "moist
 """Friction without vibration over normal. Assumed, illustrative."""
 
 EXPLORING_SPEED: si.MetrePerSecond = 0.08
-"""Between 77 and 86 mm/s: Smith, Gosselin and Houde 2002, 10.1007/s00221-002-1240-4."""
+"""Speed between 77 and 86 mm/s: Smith, Gosselin and Houde 2002, 10.1007/s00221-002-1240-4."""
 
 CONTACT_DECAY_LENGTH: si.Metre = 9.6e-6
 """Geometric mean of what friction at 10 mm/s (7.4 µm, three people) and in free strokes (12.5 µm,

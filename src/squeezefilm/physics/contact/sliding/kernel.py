@@ -122,7 +122,7 @@ def strongest_and_fall(rows: Rows, force: si.Array) -> tuple[float, float]:
 
 @compiled()
 def bounds_on(speed: si.Array, j: int, free: bool) -> tuple[float, float]:
-    """Between which speeds (m/s) the line above knot j is followed: a little beyond its knots, but
+    """Speeds (m/s) between which the line above knot j is followed: a little beyond its knots, but
     not below rest; where friction vanishes there (`free`), to the line's mirror image."""
     last = speed.size - 1
     width = speed[min(j + 1, last)] - speed[min(j, last - 1)]

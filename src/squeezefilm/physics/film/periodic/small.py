@@ -114,7 +114,7 @@ def small_pressure(
 
 
 LARGEST = 0.02
-"""No closed form is asked of a film of a larger excursion."""
+"""Largest excursion of a film that a closed form is asked of."""
 LEAST_DEPTH = 1e-4
 """The relative excursion of a profile below which a larger motion is solved in its place."""
 _NEXT_OF_PROFILE = 100.0  # ε² of the over-pressure that the next order is: its crests are closer

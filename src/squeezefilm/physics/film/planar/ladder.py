@@ -269,7 +269,8 @@ class _Climber:
 
 
 def _richardson(rungs: list[si.ComplexArray]) -> tuple[si.ComplexArray, si.FloatArray]:
-    """Over-pressure and harmonics extrapolated from the last two rungs, and the errors in space."""
+    """Extrapolation from the last two rungs of over-pressure and harmonics, with errors in
+    space."""
 
     def extrapolated(place: int) -> si.ComplexArray:
         gain = (RUNGS[place] / RUNGS[place - 1]) ** 2 - 1.0

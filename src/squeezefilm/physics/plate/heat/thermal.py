@@ -127,7 +127,7 @@ def thermal_body(actuator: Actuator) -> ThermalBody:
 
 
 def driven_thickness(actuator: Actuator) -> si.Metre | None:
-    """Between the electrodes of the thinnest ceramic (m); None where no ceramic is described."""
+    """Distance of the electrodes of the thinnest ceramic (m); None where none is described."""
     if isinstance(actuator, RectangularPlate):
         driven = [patch.thickness for patch in actuator.patches if patch.electrode == "driven"]
         return min(driven, default=None)

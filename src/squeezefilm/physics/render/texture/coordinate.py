@@ -15,13 +15,13 @@ from squeezefilm.physics.render.opcodes import ALONG, RADIUS, Assembler
 
 METRE = si.Unit("m")
 FARTHEST: si.Metre = 10.0
-"""No display is ten metres long (m): a place beyond is a slip of unit."""
+"""Farthest place (m): no display is ten metres long, and a place beyond is a slip of unit."""
 
 Place = Annotated[si.Metre, si.AtLeast(-FARTHEST), si.AtMost(FARTHEST)]
 """A place on a display, in annotations: at most 10 m from the origin."""
 
 FINEST: si.Metre = 1e-9
-"""No texture is finer than a nanometre (m): a width below is a slip of unit."""
+"""Finest width (m): no texture is finer than a nanometre, and less is a slip of unit."""
 
 Length = Annotated[si.Metre, TEXTURE_LENGTH]
 """A period or a width on a display, in annotations: from 1 nm to 0.5 m."""

@@ -17,7 +17,7 @@ from squeezefilm.physics.render.texture.pattern import Pattern, part, require_pa
 from squeezefilm.physics.render.texture.shapes import Constant
 
 LARGEST_AMPLITUDE: si.Metre = 1e-3
-"""No vibrating plate reaches a millimetre (m): what lies beyond is a slip of unit (2 for 2 um)."""
+"""Largest amplitude (m) of a vibrating plate; what lies beyond is a slip of unit (2 for 2 um)."""
 
 VibrationAmplitude = Annotated[si.Metre, si.AtLeast(0.0), si.AtMost(LARGEST_AMPLITUDE)]
 FrictionShare = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]

@@ -118,7 +118,7 @@ def one_each(reference: str, others: Sequence[str]) -> tuple[Condition, ...]:
 
 
 def nothing_is_right(surfaces: Sequence[Stimulus], judged: Judged) -> str:
-    """No answer, whatever was presented."""
+    """Empty answer, whatever was presented."""
     del surfaces, judged
     return ""
 
