@@ -37,21 +37,20 @@ PLATE = DISPLAY.actuator
 assert isinstance(PLATE, RectangularPlate)
 
 
-@pytest.mark.parametrize("name", sorted(ALL))
-def test_every_limit_is_one_and_says_what_was_asked_what_is_allowed_and_why(name: str) -> None:
-    limit = ALL[name]
-    require_within(limit, limit.least)
-    require_within(limit, limit.most)
-    beyond = max(2 * limit.most, limit.most + 1)
-    for wrong in (beyond, np.array([limit.least, beyond]), float("nan"), float("inf")):
-        with pytest.raises(InputError, match="cannot be used: it must be at least") as caught:
-            require_within(limit, wrong, "the_field", enough="half would do")
-        said = str(caught.value)
-        assert said.startswith("the_field = ")
-        assert limit.range in said
-        assert limit.reason in said
-        assert said.endswith("half would do")
-        assert caught.value.quantity == "the_field"
+def test_every_limit_is_one_and_says_what_was_asked_what_is_allowed_and_why() -> None:
+    for name, limit in ALL.items():
+        require_within(limit, limit.least)
+        require_within(limit, limit.most)
+        beyond = max(2 * limit.most, limit.most + 1)
+        for wrong in (beyond, np.array([limit.least, beyond]), float("nan"), float("inf")):
+            with pytest.raises(InputError, match="cannot be used: it must be at least") as caught:
+                require_within(limit, wrong, name, enough="half would do")
+            said = str(caught.value)
+            assert said.startswith(f"{name} = ")
+            assert limit.range in said
+            assert limit.reason in said
+            assert said.endswith("half would do")
+            assert caught.value.quantity == name
 
 
 def test_fields_are_checked_by_name_and_none_is_left_alone() -> None:

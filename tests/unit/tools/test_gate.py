@@ -25,9 +25,8 @@ def test_the_rows_are_the_kinds_of_fault() -> None:
     assert all(row.covers and row.leaves_out and row.tests for row in ROWS)
 
 
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.name)
-def test_every_test_of_a_row_exists(row: gate.Row) -> None:
-    for test in row.tests:
+def test_every_test_of_a_row_exists() -> None:
+    for test in (test for row in ROWS for test in row.tests):
         path, _, function = test.partition("::")
         tree = ast.parse((gate.ROOT / path).read_text("utf-8"))
         functions = {node.name for node in tree.body if isinstance(node, ast.FunctionDef)}

@@ -51,10 +51,10 @@ def test_every_material_builds_a_display_and_gives_a_source_for_each_value(one: 
     assert one.title
 
 
-@pytest.mark.parametrize("one", materials.materials(), ids=lambda one: one.name)
-def test_a_material_is_found_by_each_of_its_names_and_no_other_has_them(one: Material) -> None:
-    for word in (one.name, *one.also, one.name.upper(), one.name.replace(" ", "-")):
-        assert materials.named(word) is one
+def test_a_material_is_found_by_each_of_its_names_and_no_other_has_them() -> None:
+    for one in materials.materials():
+        for word in (one.name, *one.also, one.name.upper(), one.name.replace(" ", "-")):
+            assert materials.named(word) is one
     assert materials.named("aluminum 5083") is materials.named("aluminium 5083")
 
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import get_args
 
-import pytest
-
 from squeezefilm.design.analysis.published_claims import (
     MEANINGS,
     VERDICT_OF_GROUNDS,
@@ -26,14 +24,11 @@ def test_every_verdict_has_a_meaning() -> None:
     assert set(VERDICT_OF_GROUNDS) | {"compared"} == set(get_args(Grounds))
 
 
-@pytest.mark.parametrize("claim", CLAIMS, ids=lambda one: one.name)
-def test_a_verdict_is_no_more_than_its_grounds_allow(claim: object) -> None:
-    passed = VERDICT_OF_GROUNDS.get(claim.grounds)  # type: ignore[attr-defined]
-    verdict = claim.verdict  # type: ignore[attr-defined]
-    if passed is None:
-        assert verdict in ("reproduces", "misprint", "holds", *FAILED)
-    else:
-        assert verdict == passed or verdict in FAILED
+def test_a_verdict_is_no_more_than_its_grounds_allow() -> None:
+    for claim in CLAIMS:
+        passed = VERDICT_OF_GROUNDS.get(claim.grounds)
+        allowed = ("reproduces", "misprint", "holds") if passed is None else (passed,)
+        assert claim.verdict in (*allowed, *FAILED), claim.name
 
 
 def test_a_claim_is_asked_once_of_a_model() -> None:

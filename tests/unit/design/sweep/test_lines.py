@@ -54,17 +54,18 @@ def test_a_damaged_line_is_named_and_set_aside(damage: bytes, tmp_path: Path) ->
     assert read(file) == [1, 3]
 
 
-@pytest.mark.parametrize("position", range(1, 26))
-def test_any_changed_byte_of_a_line_is_found(position: int, tmp_path: Path) -> None:
+def test_any_changed_byte_of_a_line_is_found(tmp_path: Path) -> None:
     """What is read is what was written, or nothing."""
     file = tmp_path / "lines.jsonl"
     Lines(file).append([{"n": 1234}, {"n": 5}])
-    data = bytearray(file.read_bytes())
-    data[position] ^= 1
-    file.write_bytes(data)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", SqueezefilmWarning)
-        assert read(file) == [5]
+    written = file.read_bytes()
+    for position in range(1, 26):
+        data = bytearray(written)
+        data[position] ^= 1
+        file.write_bytes(data)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SqueezefilmWarning)
+            assert read(file) == [5], position
 
 
 @pytest.mark.skipif(os.name == "nt", reason="no pipes with names")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import itertools
 import math
 
 import numpy as np
@@ -38,16 +39,15 @@ SOME_FORCES = (0.1, 0.15, 0.4, 0.45, 0.5, 0.9, 2.0)
 SOME_AMPLITUDES = (0.0, 0.01e-6, 0.12e-6, 0.3e-6, 1.0e-6, 1.92e-6, 2.5e-6, 2.999e-6, 3e-6)
 
 
-@pytest.mark.parametrize("force", SOME_FORCES)
-@pytest.mark.parametrize("amplitude", SOME_AMPLITUDES)
-def test_tables_are_read_linearly_between_their_points(force: float, amplitude: float) -> None:
-    i, p, j, q, beyond = table_place(force, amplitude, FINGERS)
-    assert not beyond
-    assert 0.0 <= p <= 1.0
-    assert 0.0 <= q <= 1.0
-    for table in (FRICTION, LOAD):
-        expected = RegularGridInterpolator((FORCES, AMPLITUDES), table)([[force, amplitude]])[0]
-        assert between(table, i, p, j, q) == pytest.approx(expected, rel=1e-9)
+def test_tables_are_read_linearly_between_their_points() -> None:
+    for force, amplitude in itertools.product(SOME_FORCES, SOME_AMPLITUDES):
+        i, p, j, q, beyond = table_place(force, amplitude, FINGERS)
+        assert not beyond
+        assert 0.0 <= p <= 1.0
+        assert 0.0 <= q <= 1.0
+        for table in (FRICTION, LOAD):
+            expected = RegularGridInterpolator((FORCES, AMPLITUDES), table)([[force, amplitude]])
+            assert between(table, i, p, j, q) == pytest.approx(expected[0], rel=1e-9)
 
 
 def test_what_lies_outside_the_tables_is_held_at_their_edge() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 from squeezefilm.physics.film.gas import FIRST, NO_SLIP, SECOND, SLIP_LAWS
@@ -27,11 +29,9 @@ def test_no_slip_asks_for_no_free_path() -> None:
 
 
 @pytest.mark.parametrize("law", [NO_SLIP, *SLIP_LAWS.values()])
-@pytest.mark.parametrize("n", [1.0, 1.4])
-@pytest.mark.parametrize("pressure", [0.6, 1.0, 1.6])
-def test_the_slope_is_the_derivative_in_the_pressure(law: int, n: float, pressure: float) -> None:
+def test_the_slope_is_the_derivative_in_the_pressure(law: int) -> None:
     step = 1e-5
-    above, below = (mobility(H, pressure + d, n, KN, law)[0] for d in (step, -step))
-    assert mobility(H, pressure, n, KN, law)[1] == pytest.approx(
-        (above - below) / (2 * step), rel=1e-8
-    )
+    for n, pressure in itertools.product((1.0, 1.4), (0.6, 1.0, 1.6)):
+        above, below = (mobility(H, pressure + d, n, KN, law)[0] for d in (step, -step))
+        slope = (above - below) / (2 * step)
+        assert mobility(H, pressure, n, KN, law)[1] == pytest.approx(slope, rel=1e-8)

@@ -22,15 +22,15 @@ CRITICAL = 2 * math.sqrt(MASS * STIFFNESS)
 
 
 @pytest.mark.parametrize("ratio", [0.0, 0.05, 0.7, 1 - 1e-7, 1.0, 1 + 1e-7, 1.3, 30.0])
-@pytest.mark.parametrize("phase", [0.004, 0.1, 1.0, 4.0])
-def test_the_free_skin_moves_as_its_matrix_says(ratio: float, phase: float) -> None:
+def test_the_free_skin_moves_as_its_matrix_says(ratio: float) -> None:
     damping = ratio * CRITICAL
     matrix = np.array([[0.0, 1.0], [-STIFFNESS / MASS, -damping / MASS]])
-    exact = expm(matrix * phase / W)
-    found = np.array(transition(phase / W, Skin(MASS, damping, STIFFNESS))).reshape(2, 2)
     # In units in which places and speeds are alike.
     scale = np.array([[1.0, W], [1 / W, 1.0]])
-    assert found * scale == pytest.approx(exact * scale, rel=1e-11, abs=1e-13)
+    for phase in (0.004, 0.1, 1.0, 4.0):
+        exact = expm(matrix * phase / W)
+        moved = np.array(transition(phase / W, Skin(MASS, damping, STIFFNESS))).reshape(2, 2)
+        assert moved * scale == pytest.approx(exact * scale, rel=1e-11, abs=1e-13)
 
 
 @pytest.mark.parametrize("sign", [1, -1])

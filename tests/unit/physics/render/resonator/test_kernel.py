@@ -128,16 +128,17 @@ def least_plan(amplitude: float, parameters: np.ndarray, wanted: np.ndarray) -> 
 
 
 @pytest.mark.parametrize("bottom", [0.0, -1.5])
-@pytest.mark.parametrize("seed", range(12))
-def test_the_first_step_of_a_plan_is_that_of_the_least_error(seed: int, bottom: float) -> None:
-    random = np.random.default_rng(seed)
-    parameters = limits(bottom, 2.0, *(0.4 + 0.5 * random.random(2)))
-    amplitude = 2.0 * random.random()
-    wanted = random.choice([0.0, 0.3, 1.0, 1.9], 6) + 0.1 * random.random(6)
-    state = start(amplitude)
-    command, _ = previewed_step(state, parameters, wanted, np.empty((5, 14)))
-    assert bottom <= command <= 2.0
-    assert state[AMPLITUDE] == pytest.approx(least_plan(amplitude, parameters, wanted), abs=1e-5)
+def test_the_first_step_of_a_plan_is_that_of_the_least_error(bottom: float) -> None:
+    for seed in range(12):
+        random = np.random.default_rng(seed)
+        parameters = limits(bottom, 2.0, *(0.4 + 0.5 * random.random(2)))
+        amplitude = 2.0 * random.random()
+        wanted = random.choice([0.0, 0.3, 1.0, 1.9], 6) + 0.1 * random.random(6)
+        state = start(amplitude)
+        command, _ = previewed_step(state, parameters, wanted, np.empty((5, 14)))
+        assert bottom <= command <= 2.0
+        least = least_plan(amplitude, parameters, wanted)
+        assert state[AMPLITUDE] == pytest.approx(least, abs=1e-5), seed
 
 
 def test_a_plan_of_one_sample_is_the_step_without_a_view() -> None:
