@@ -381,6 +381,7 @@ if TYPE_CHECKING:
         compensation: str = ...,
         amplitude_per_pickup: MetrePerVolt | str | None = ...,
         bench_only: bool = ...,
+        hold: bool = ...,
         out: str | Path | None = ...,
         seed: int = ...,
         show: Callable[[PlayView], None] | None = ...,

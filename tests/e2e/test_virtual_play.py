@@ -67,6 +67,31 @@ def played(
     return outcome, judge_session(setup, read_trace(outcome.trace), folder / "truth.csv")
 
 
+def test_loops_hold_what_is_played_and_the_record_says_how(
+    display: Display, point: WorkingPoint, tmp_path: Path
+) -> None:
+    """A grating under a finger: the plate is searched for, locked, and stays so."""
+    known = KnownDevice(amplitude_per_pickup=1 / settings().pickup.sensitivity)
+    setup = play_setup(display, load_texture("biet2008-square-4mm"), device=known, hold=True)
+    assert setup.plan.hold is not None
+    # What is played is compensated for the loops' slowness, and not for the plate's.
+    envelope = setup.plan.loop.envelope
+    assert envelope.rise_time_constant == envelope.fall_time_constant == 1.5e-3
+    outcome, session = played(setup, point, tmp_path, 1.0)
+    assert (outcome.ending, outcome.message) == (Ending.DURATION, "")
+    assert session.last("loops") == {"held": True, "message": ""}
+    trace = session.trace
+    locked = trace.column("loops_locked") == 1.0
+    assert np.mean(locked[len(locked) // 2 :]) > 0.9
+    detuning = trace.column("detuning_half_bandwidths")[locked]
+    amplitude = trace.column("amplitude_m")
+    strong = amplitude[locked] > 0.5 * np.nanmax(amplitude)
+    assert np.median(np.abs(detuning[strong])) < 0.2
+    for name in ("drive_reserve_V", "finger_load_share", "plate_temperature_degC"):
+        assert np.isfinite(trace.column(name)[locked]).all()
+    assert np.median(trace.column("finger_load_share")[locked]) > 0.05
+
+
 @pytest.mark.slow
 def test_a_grating_is_felt_where_it_is(
     display: Display, point: WorkingPoint, tmp_path: Path

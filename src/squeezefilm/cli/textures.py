@@ -170,6 +170,9 @@ class PlayOptions:
     bench_only: Annotated[
         bool, typer.Option("--bench-only", help="Allow a drive that does not stop by itself.")
     ] = False
+    hold: Annotated[
+        bool, typer.Option("--hold", help="The device's loops hold resonance and amplitude.")
+    ] = False
     out: Annotated[
         Path | None, written_to("Folder for the record, numbers, figures and a page.")
     ] = None

@@ -65,14 +65,16 @@ class _Watched:
     def show(self, view: PlayView) -> None:
         """The moment."""
         state, fault = view.state.name, view.fault.name
-        self._tell({"type": "device view", **to_json(view), "state": state, "fault": fault})
+        words = "" if view.held is None else view.held.words.partition(", ")[2]
+        named = {"state": state, "fault": fault, "loops": words}
+        self._tell({"type": "device view", **to_json(view), **named})
 
 
 def play(connection: Connection, display: str, texture: str, out: str, **how: Any) -> None:
     """Play a file's texture on a file's display into a folder, and tell of it.
 
-    `how` goes to `play_texture` as it is: drive, mode, stroke, sensor, compensation, seed, duration
-    (s) and voltage (V or None).
+    `how` goes to `play_texture` as it is: drive, mode, stroke, sensor, compensation, hold, seed,
+    duration (s) and voltage (V or None).
     """
     from squeezefilm.instruments.bench.play import JUDGING, play_texture
     from squeezefilm.physics.texture_files.texture_file import load_texture

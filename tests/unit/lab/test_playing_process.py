@@ -132,7 +132,7 @@ def test_what_there_is_to_see_is_told_with_its_units(played: Played) -> None:
         "type": "device view", "state": "PLAYING", "fault": "NONE", "time_s": 1.0, "x_m": 2.0,
         "speed_m_per_s": 3.0, "relative_friction": 4.0, "amplitude_m": 5.0, "wanted_m": 6.0,
         "level_V": 7.0, "lag_m": 8.0, "lateness_s": 9.0, "readings": 10, "rows": 11,
-        "flags": ["a", "b"],
+        "flags": ["a", "b"], "held": None, "loops": "",
     }  # fmt: skip
 
 

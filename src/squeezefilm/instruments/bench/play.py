@@ -93,6 +93,7 @@ class PlayRequest:
     compensation: str = "none"
     amplitude_per_pickup: si.MetrePerVolt | None = None
     bench_only: bool = False
+    hold: bool = False
     out: str | Path | None = None
     seed: int = 0
     show: Callable[[PlayView], None] | None = None
@@ -120,6 +121,8 @@ def play_texture(asked: PlayRequest) -> PlayResult:
         compensation: of the resonator's slowness, "none" or "inverse".
         amplitude_per_pickup: of a device's pickup (m/V); a twin's is known.
         bench_only: whether a drive that does not stop by itself may be used.
+        hold: whether the device's loops shall hold resonance and amplitude; one that has none
+            plays without, and the outcome says so.
         out: where the record (trace.sqft) and a twin's truth (truth.csv) go; thrown away without.
         seed: of the twin's noise.
         show: is told what there is to see.
@@ -156,6 +159,7 @@ def play_texture(asked: PlayRequest) -> PlayResult:
         rate=asked.rate,
         compensation=asked.compensation,
         mode=asked.mode,
+        hold=asked.hold,
     )
     with _folder(kept) as folder:
         truth = folder / TRUTH_NAME if device.twin else None

@@ -8,7 +8,9 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
+from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims
 from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
 from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.instruments.session.loop.tick import make_tick
@@ -28,6 +30,10 @@ OUTPUT_DELAY: si.Second = 6e-3
 """Time from a tick to its command at the plate: the player's pause, a block's length, the link and
 what its jitter may be (assumed; commands that come later than this are counted, and not played)."""
 _FINEST_PITCH: si.Metre = 1e-6
+_SEARCHED, _SEARCH_SHARE = 8.0, 0.1
+"""Half-bandwidths above the resonance from which a search comes; of the voltage in it."""
+_PICKUP_NOISE: si.Volt = 1e-3
+"""Of each quadrature in a tick (assumed); the loops learn less at amplitudes near it."""
 _LONGEST_TILE_WAY: si.Metre = 0.1
 
 
@@ -98,6 +104,7 @@ def play_setup(
     rate: si.Hertz = 5e3,
     compensation: str = "none",
     mode: str = "stream",
+    hold: bool = False,
 ) -> PlaySetup:
     """The plan for a texture on a display.
 
@@ -110,10 +117,13 @@ def play_setup(
         rate: of the loop (Hz).
         compensation: "none" or "inverse".
         mode: "stream" or "tile".
+        hold: whether the device's loops shall hold resonance and amplitude. Levels are then those
+            of the free plate, and what the plate's slowness is compensated for is the loops'.
 
     Raises:
         InputError: a display that does not vibrate, limits that do not fit, an unknown
-            compensation or mode, or a texture that no tile can hold.
+            compensation or mode, a texture that no tile can hold, or a device that shall hold and
+            whose pickup is not known.
     """
     p = predict(display, voltage=voltage, surface=surface)
     largest = p.vibration_amplitude
@@ -125,11 +135,15 @@ def play_setup(
     limits = display.limits(p.frequency, p.voltage, twin=device.twin)
     loaded = p.touch.mode or p.mode
     tau = float(envelope_time_constant(loaded.quality_factor, loaded.resonance_frequency))
+    held, per_volt = None, largest / p.voltage
+    if hold:
+        held, per_volt = _held(p, device, limits), p.mode.amplitude_per_volt
+        tau = held[1].amplitude_time
     loop = LoopPlan(
         program=lowered(texture, p, p.inverse),
         rate=rate,
         envelope=DrivenEnvelope(tau, tau, largest),
-        drive=DriveTable.linear(largest / p.voltage, p.voltage),
+        drive=DriveTable.linear(per_volt, largest / per_volt),
         estimator=MotionEstimator.for_sensor(device.sensor),
         compensation=compensation,  # type: ignore[arg-type] # checked with a message by LoopPlan
         relative_friction=FrictionTable.of_inverse(p.inverse),
@@ -145,9 +159,34 @@ def play_setup(
         tile=_tile(loop, device.way, p) if mode == "tile" else None,
         sensor_latency=device.sensor.latency,
         amplitude_per_pickup=device.amplitude_per_pickup,
+        hold=held,
     )
     assumed = display.drive.assumed_limits
     return PlaySetup(display, texture, p, p.inverse, device.sensor, plan, assumed)
+
+
+def _held(p: Prediction, device: KnownDevice, limits: Limits) -> tuple[IdentifiedPlate, LoopAims]:
+    """The free plate as predicted, and aims within the limits; the search begins just above it."""
+    if device.amplitude_per_pickup is None:
+        raise InputError(
+            "to hold its amplitude a device needs a pickup that is known; give "
+            "amplitude_per_pickup, or do not hold",
+            quantity="amplitude_per_pickup",
+        )
+    mode = p.mode
+    plate = IdentifiedPlate(
+        mode.resonance_frequency,
+        mode.quality_factor,
+        mode.amplitude_per_volt / device.amplitude_per_pickup,
+    )
+    aims = LoopAims(
+        limits.lowest_frequency,
+        min(limits.highest_frequency, plate.frequency + _SEARCHED * plate.half_bandwidth),
+        limits.voltage,
+        _SEARCH_SHARE * limits.voltage,
+        noise=_PICKUP_NOISE,
+    )
+    return plate, aims
 
 
 def _tile(loop: LoopPlan, way: tuple[si.Metre, si.Metre] | None, p: Prediction) -> TextureTile:

@@ -98,6 +98,7 @@ def view_line(view: PlayView) -> str:
         f"amplitude {_number(view.amplitude, 1e6)} µm",
         f"lag {_number(view.lag, 1e3, 3)} mm",
         f"late {_number(view.lateness, 1e6, 0)} µs",
+        *(() if view.held is None else (view.held.words,)),
         *view.flags,
     ]
     return ", ".join(parts)
@@ -128,6 +129,8 @@ def view_table(view: PlayView) -> Group:
         ("lag", f"{_number(view.lag, 1e3, 3)} mm", "predicted across"),
         ("lateness", f"{_number(view.lateness, 1e6, 1)} µs", ""),
     ]
+    if view.held is not None:
+        lines.append(("loops", view.held.mode, view.held.words.partition(", ")[2]))
     for name, value, remark in lines:
         grid.add_row(Text(name, style="dim"), value, remark)
     said = Text("; ".join(view.flags), no_wrap=True, overflow="ellipsis")

@@ -48,6 +48,7 @@ class PlayDevice(OnDrive):
     duration: str = Field("10 s", max_length=50)
     voltage: str | None = Field(None, max_length=50)
     compensation: Literal["none", "inverse"] = "none"
+    hold: bool = False
     seed: int = Field(0, ge=0, le=2**53)
 
 
@@ -95,7 +96,7 @@ class DeviceArea:
     async def _play(self, asked: PlayDevice) -> Answer:
         if not asked.armed:
             raise InputError("the device is not armed; arm it on the page first")
-        how = asked.model_dump(include={"mode", "stroke", "sensor", "compensation", "seed"})
+        how = asked.model_dump(include={"mode", "stroke", "sensor", "compensation", "hold", "seed"})
         typed = (asked.display, _drive(asked.drive), asked.duration, asked.voltage, asked.stroke)
         how["duration"], how["voltage"] = await self._lab.workers.quick.do(
             None, require_playable, *typed
@@ -105,7 +106,7 @@ class DeviceArea:
         texture = str(await _texture(self._lab, asked))
         drive, out = _drive(asked.drive), str(self._lab.folder / "sessions" / name)
         # Both go to the process that plays: `files` are its paths as texts, `how` has mode, stroke,
-        # sensor, compensation, seed, duration (s) and voltage (V; None: the display's own).
+        # sensor, compensation, hold, seed, duration (s) and voltage (V; None: the display's own).
         files = {"display": display, "texture": texture, "out": out}
         self._start(f"a texture on {drive}", device_process.play, drive=drive, **files, **how)
         return {"type": "playing", "folder": f"sessions/{name}"}

@@ -144,6 +144,7 @@ export const MOTION = {
   finger_position: { name: "position", symbol: "x", text: "Of the finger as estimated for now from the sensor's samples.", source: "the sensor, through the motion estimator" },
   finger_speed: { name: "speed", symbol: "v", text: "Of the finger along its path, as estimated.", source: "the motion estimator" },
   loop_lag: { name: "lag", text: "How far the finger goes between the newest sample and the moment the command acts: sensor, loop and drive together. A loop that did not predict would be behind by so much; this one predicts, and the session's report says how far it was off.", source: "time × speed, for every tick" },
+  device_loops: { name: "loops", text: "What the device's loops say of the plate that they hold: how far the carrier is off its resonance, how far the amplitude is off the one asked for, how much more the drive may give, the finger's loss over the plate's own, and the plate's temperature where it is known.", source: "the device, about fifty times a second" },
   lateness: { name: "lateness of the loop", text: "From when a tick was due to when it was made. Ticks later than a period are lost and counted.", source: "this computer's monotonic clock" },
   fault: { name: "fault", text: "Why the device stopped by itself: watchdog, limit, sensor. It latches with the output at zero.", source: "docs/development/protocol.md" },
 };

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import math
 from types import SimpleNamespace
@@ -24,6 +25,7 @@ from squeezefilm.instruments.report.terminal import (
     view_line,
     view_table,
 )
+from squeezefilm.instruments.session.play.held import HeldState
 from squeezefilm.instruments.session.play.plan import PlayView
 from squeezefilm.instruments.session.play.usability import Usability
 from squeezefilm.instruments.session.record.trace import TraceExport
@@ -47,6 +49,17 @@ def test_a_line_says_all_of_a_moment() -> None:
         "late 12 µs, ticks were lost just before this one"
     )
     assert "fault (watchdog), x       – mm" in view_line(UNKNOWN)
+
+
+def test_what_the_loops_say_is_in_line_and_table() -> None:
+    from rich.console import Console
+
+    held = HeldState("locked", 0.1, -0.02, 12.0, 0.4, 30.0)
+    view = dataclasses.replace(VIEW, held=held)
+    assert f"late 12 µs, {held.words}, ticks were lost" in view_line(view)
+    stream = io.StringIO()
+    Console(file=stream, width=120).print(view_table(view))
+    assert "amplitude -2.0 %, reserve 12.0 V, finger 0.40, 30.0 °C" in stream.getvalue()
 
 
 @pytest.mark.parametrize("width", [60, 100])

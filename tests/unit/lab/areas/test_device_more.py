@@ -73,7 +73,7 @@ def test_ports_are_listed_as_drives(lab: Talk, monkeypatch: pytest.MonkeyPatch) 
 def test_what_a_page_asks_is_what_is_played(lab: Talk, session: Session) -> None:
     how = {
         "mode": "tile", "stroke": "80 mm/s over 3 cm", "sensor": "lvdt", "duration": "2.5 s",
-        "voltage": "90 V", "compensation": "inverse", "seed": 9,
+        "voltage": "90 V", "compensation": "inverse", "hold": True, "seed": 9,
     }  # fmt: skip
     found = lab.say("play device", **HOW, **how)
     assert found["type"] == "playing"

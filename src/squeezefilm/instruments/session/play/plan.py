@@ -14,9 +14,12 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError, UnreachableError
+from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims
 from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
 from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.loop.rows import COLUMNS
+from squeezefilm.instruments.session.play.held import HELD_COLUMNS, HeldState
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.render.fidelity.rendered_stroke import RelativeFriction
 from squeezefilm.physics.render.program.layout import FASTEST
@@ -168,6 +171,8 @@ class PlayPlan:
         sensor_latency: of the device's sensor (s), by which its places are older than their stamp.
         amplitude_per_pickup: vibration amplitude per signal of the pickup (m/V); None if unknown.
         twin: whether the device is a twin, whose watchdog counts its own time.
+        hold: the identified plate and what its loops shall do, where the device has loops; None
+            for a carrier and levels as they are asked for.
 
     Raises:
         InputError: a value outside its range, a tile without its mode, or the other way round.
@@ -182,6 +187,7 @@ class PlayPlan:
     sensor_latency: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(1.0)] = 0.0
     amplitude_per_pickup: si.MetrePerVolt | None = None
     twin: bool = False
+    hold: tuple[IdentifiedPlate, LoopAims] | None = None
 
     def __post_init__(self) -> None:
         limits = self.limits
@@ -202,6 +208,11 @@ class PlayPlan:
                 quantity="loop",
             )
 
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Of the record: the loop's, and those of a device's loops where these shall hold."""
+        return COLUMNS if self.hold is None else COLUMNS + HELD_COLUMNS
+
 
 class Ending(Enum):
     """Reason why a session ended."""
@@ -219,7 +230,8 @@ class PlayView:
 
     Time (s), the finger's place (m) and speed (m/s), wanted amplitude, amplitude by the pickup
     (m), relative friction, the device's level (V), lag (m), lateness of the last tick (s), the
-    device's state and fault, readings heard, rows recorded, flags of the last tick.
+    device's state and fault, readings heard, rows recorded, flags of the last tick, and how the
+    device's loops are where they hold the plate.
     """
 
     time: si.Second
@@ -236,3 +248,4 @@ class PlayView:
     readings: int
     rows: int
     flags: tuple[str, ...]
+    held: HeldState | None = None

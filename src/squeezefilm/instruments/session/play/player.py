@@ -29,6 +29,7 @@ from squeezefilm.instruments.device.wire.messages import (
 from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.rows import flag_meanings
+from squeezefilm.instruments.session.play.held import HeldState, held_columns
 from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, PlayView
 from squeezefilm.instruments.session.play.usability import TickCount, Usability
 from squeezefilm.instruments.session.record.trace_writer import TraceWriter
@@ -84,6 +85,7 @@ class Player:
         self._ticks = TickCount(plan.loop.period)
         self._gap, self._gap_at = 0.0, -math.inf
         self._sending = False
+        self.unheld = ""
         self._row: si.FloatArray = np.full(len(column.COLUMNS), math.nan)
         self._row[[column.TICK, column.FLAGS]] = 0.0
 
@@ -105,6 +107,9 @@ class Player:
         """
         host, plan = self.host, self.plan
         host.open(plan.limits)
+        if plan.hold is not None:
+            self.unheld = host.hold(*plan.hold)
+            self._note("loops", {"held": not self.unheld, "message": self.unheld})
         if plan.tile is not None:
             levels = plan.tile.voltage(plan.loop.drive)
             host.load_tile(plan.tile.origin, plan.tile.pitch, levels)
@@ -192,6 +197,11 @@ class Player:
         self._note("usability", found.to_json())
         return found
 
+    @property
+    def _held(self) -> HeldState | None:
+        said = self.host.loops
+        return None if said is None else HeldState.of(said)
+
     def view(self) -> PlayView:
         """View of what there is to see now."""
         row = self._row
@@ -210,6 +220,7 @@ class Player:
             readings=self.readings,
             rows=self.writer.acknowledged,
             flags=tuple(flag_meanings(int(row[column.FLAGS]) & ~column.NEW_SAMPLE)),
+            held=self._held,
         )
 
     def _hear(self, now: si.Second) -> list[tuple[float, ...]]:
@@ -310,7 +321,8 @@ class Player:
     def _write(self) -> None:
         made = self.loop.take_rows()
         if len(made):
-            self.writer.append(made)
+            held = None if self.plan.hold is None else held_columns(self._held, len(made))
+            self.writer.append(made if held is None else np.hstack((made, held)))
             if self.state is State.PLAYING and math.isnan(self._faded):
                 self._ticks.take(made)
             if self.tap is not None:

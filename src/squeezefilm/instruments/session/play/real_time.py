@@ -37,7 +37,7 @@ from squeezefilm.instruments.device.wire.safety import Use, require_safe_drive
 from squeezefilm.instruments.device.wire.states import Fault
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.loop.process import LoopProcess
-from squeezefilm.instruments.session.loop.rows import COLUMNS, SAMPLE_COLUMNS
+from squeezefilm.instruments.session.loop.rows import SAMPLE_COLUMNS
 from squeezefilm.instruments.session.loop.simulated import SimulatedLoop
 from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, PlayView
 from squeezefilm.instruments.session.play.player import FADE, Player
@@ -117,7 +117,7 @@ def run_play(
     """
     with (
         contextlib.closing(open_stream(drive)) as stream,
-        TraceWriter(trace, COLUMNS, metadata) as writer,
+        TraceWriter(trace, plan.columns, metadata) as writer,
         _interruptible(until) as interrupted,
     ):
         loop = LoopProcess(plan.loop)
@@ -198,7 +198,7 @@ def played(
         return Ending.LOOP, str(error)
     if player.faulted:
         return Ending.FAULT, fault_sentence(player)
-    return (Ending.INTERRUPTED if interrupted() else Ending.DURATION), ""
+    return (Ending.INTERRUPTED if interrupted() else Ending.DURATION), player.unheld
 
 
 def fault_sentence(player: Player) -> str:

@@ -16,7 +16,6 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.results import to_json
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.wire.link import Link
-from squeezefilm.instruments.session.loop.rows import COLUMNS
 from squeezefilm.instruments.session.loop.simulated import SimulatedLoop
 from squeezefilm.instruments.session.play.plan import PlayPlan
 from squeezefilm.instruments.session.play.player import Player
@@ -104,7 +103,7 @@ def virtual_play(
         return stream.now - start
 
     stream.together = lambda now: loop.advance(now - start)
-    with TraceWriter(trace, COLUMNS, metadata) as writer:
+    with TraceWriter(trace, plan.columns, metadata) as writer:
         link = Link(stream, clock, stream.wait)
         player = Player(plan, loop, DeviceHost(link), writer, clock)
         ending, message = played(player, clock, lambda: stream.wait(step), duration)

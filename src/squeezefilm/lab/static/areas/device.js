@@ -45,6 +45,7 @@ class DeviceView {
     this.texture = element("select", { id: "device-texture", onchange: () => this.disarm() });
     this.mode = element("select", { id: "mode", onchange: () => this.disarm() }, element("option", { value: "stream", text: "this computer renders" }), element("option", { value: "tile", text: "the device renders (tile)" }));
     this.compensation = element("select", { id: "compensation" }, ...["none", "inverse"].map((one) => element("option", { value: one, text: one })));
+    this.hold = element("input", { type: "checkbox", id: "hold" });
     this.stroke = text("stroke", "60 mm/s over 4 cm", 16);
     this.duration = text("duration", "10 s", 6);
     this.voltage = text("voltage-limit", "", 6);
@@ -58,6 +59,7 @@ class DeviceView {
     this.numbers = {
       state: number("state", "device_state"), position: number("position", "finger_position"), friction: number("relative friction", "relative_friction"),
       amplitude: number("vibration amplitude", "vibration_amplitude"), level: number("voltage", "voltage"), lag: number("lag", "loop_lag"), late: number("lateness of the loop", "lateness"), fault: number("fault", "fault"),
+      loops: number("loops", "device_loops"),
     };
     const canvases = ["position (mm)", "command and level (V)", "amplitude wanted and measured (µm)", "lateness (µs)"].map((name) => {
       const canvas = element("canvas", { class: "scope small", role: "img", "aria-label": name });
@@ -73,7 +75,7 @@ class DeviceView {
     this.age = new Age(this.lab, "updated");
     this.place.append(element("div", { class: "columns device" },
       element("section", { class: "card side" }, element("h2", { text: "Device" }), this.display, field("drive", this.drive), field("texture", this.texture), field("mode", this.mode),
-        field("compensation of the resonator", this.compensation), field("the twin's finger", this.stroke), field("for", this.duration), field("most voltage", this.voltage),
+        field("compensation of the resonator", this.compensation), field("hold resonance and amplitude", this.hold), field("the twin's finger", this.stroke), field("for", this.duration), field("most voltage", this.voltage),
         this.checkButton, this.armButton, this.playButton, this.error),
       this.moment = element("div", { class: "results" },
         element("section", { class: "card" }, this.age.box, element("div", { class: "numbers" }, ...Object.values(this.numbers).map((one) => one.box))),
@@ -150,7 +152,7 @@ class DeviceView {
     this.results.hidden = true;
     const fields = {
       display: this.store.current.text, drive: this.drive.value, armed: this.armed, preset: this.texture.value,
-      mode: this.mode.value, stroke: this.stroke.value, duration: this.duration.value, compensation: this.compensation.value,
+      mode: this.mode.value, stroke: this.stroke.value, duration: this.duration.value, compensation: this.compensation.value, hold: this.hold.checked,
     };
     if (this.voltage.value.trim()) fields.voltage = this.voltage.value;
     await this.lab.during(this.lab.stopBar.begin("starting…", "play device", fields));
@@ -170,6 +172,8 @@ class DeviceView {
     n.late.value.textContent = quantity(view.lateness_s, "s", 2);
     n.fault.value.textContent = view.fault === "NONE" ? "none" : view.fault;
     n.fault.note.textContent = view.flags.join(", ");
+    n.loops.value.textContent = view.held === null ? "off" : view.held.mode;
+    n.loops.note.textContent = view.loops;
   }
 
   rows({ columns, rows }) {

@@ -61,6 +61,7 @@ class Bench:
         self.notes: list[tuple[str, dict[str, Any]]] = []
         self.gone = False
         host: Any = SimpleNamespace(
+            loops=None,
             clock=Clock(), poll=self._poll,
             play=lambda volts, period, start: self._note("play", volts.tolist(), period, start),
             pump=lambda: self._note("pump"),

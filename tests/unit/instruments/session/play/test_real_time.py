@@ -52,8 +52,9 @@ class Bench:
         self.steps = 0
         self.at: dict[int, Any] = {}
         self.begins_with: BaseException | None = None
-        self.plan: Any = SimpleNamespace(loop=plan, limits="limits", twin=True)
+        self.plan: Any = SimpleNamespace(loop=plan, limits="limits", twin=True, columns=())
         self.ending: Ending | None = None
+        self.unheld = ""
         self.fault, self.held_up = Fault.NONE, 0.0
         self.state = State.ARMED
         for name, made in {
