@@ -154,6 +154,38 @@ def test_a_wave_moves_over_the_contactors_as_the_finger_does(array: SkinStretchA
         cradle.pattern_voltages(wave, array.cradle, np.zeros(0), (0.1, 0.0), 100.0)
 
 
+def test_contactors_may_touch_and_fill_their_cradle() -> None:
+    full = cradle.FingerCradle(
+        columns=5, rows=3, pitch_along=2e-3, pitch_across=1e-3, contactor_length=2e-3,
+        contactor_width=1e-3, length=10e-3, width=3e-3,
+    )  # fmt: skip
+    assert full.count == 15
+    assert full.active_area == pytest.approx(30e-6)
+    for wrong, message in (
+        ({"columns": 6}, "6 columns of contactors at a pitch of 2 mm .* 10 mm holds, .* for 5;"),
+        ({"rows": 4}, "4 rows of contactors at a pitch of 1 mm .* 3 mm holds, .* for 3;"),
+        ({"contactor_length": 2.001e-3}, "overlap"),
+        ({"contactor_width": 1.001e-3}, "overlap"),
+        ({"length": 1.9e-3, "columns": 1}, "room for 0"),
+        ({"radius_across": 0.95e-3}, "more than half around"),
+        ({"radius_along": 3.1e-3}, "more than half around"),
+    ):
+        with pytest.raises(GeometryError, match=message):
+            dataclasses.replace(full, **wrong)  # type: ignore[arg-type]
+    curved = dataclasses.replace(full, radius_across=0.96e-3, radius_along=3.2e-3)
+    x, y = curved.places
+    np.testing.assert_allclose(x, np.repeat([-4e-3, -2e-3, 0, 2e-3, 4e-3], 3))
+    np.testing.assert_allclose(y, np.tile([-1e-3, 0, 1e-3], 5))
+    # Arcs of circles: the finger's falls away from it, the cradle's towards it.
+    finger = cradle.Fingertip(radius_across=2e-3, radius_along=20e-3)
+    fall = [
+        radius * (1 - np.cos(place / radius))
+        for place, radius in ((x, 20e-3), (x, 3.2e-3), (y, 2e-3), (y, 0.96e-3))
+    ]
+    gap = fall[0] - fall[1] + fall[2] - fall[3]
+    np.testing.assert_allclose(cradle.gaps(curved, finger), gap - gap.min(), atol=1e-15)
+
+
 def test_what_cannot_be_is_refused_in_words(array: SkinStretchArray) -> None:
     with pytest.raises(GeometryError, match=r"12 columns .* more than a cradle of 13 mm holds"):
         dataclasses.replace(array.cradle, columns=12)

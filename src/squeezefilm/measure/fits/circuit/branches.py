@@ -157,7 +157,8 @@ def poles(
         bottom = under @ coefficients
         # A pole right on the axis would weigh its neighbours without bound.
         bottom = np.where(np.abs(bottom) < 1e-9, 1e-9, bottom)
-    roots = polyutils.mapdomain(chebyshev.chebroots(coefficients), chebyshev.chebdomain, ends)
+    unit = chebyshev.chebroots(coefficients)
+    roots = np.asarray(polyutils.mapdomain(unit, chebyshev.chebdomain, ends), dtype=complex)
     roots = roots[np.argsort(roots.real)]
     imaginary = np.where(roots.imag == 0, 1e-30, roots.imag)
     return roots.real, roots.real / (2 * imaginary)
