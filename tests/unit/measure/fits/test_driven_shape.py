@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -139,3 +142,46 @@ def test_the_papers_plate_is_described_by_its_own_shape() -> None:
     # A scan at another mode's frequency is not compared with this one.
     other = fit_recording(LineScan(x, w, 0.6 * mode.frequency, 15.0), display)
     assert not other.adequacy.adequate
+
+
+@pytest.mark.parametrize("lengthwise", [True, False])
+def test_a_line_runs_through_the_best_antinode_across_the_nodal_lines(lengthwise: bool) -> None:
+    x, y = np.linspace(0.0, 0.06, 13), np.linspace(0.0, 0.04, 9)
+    # What a cubic follows exactly, with another value on every line.
+    swing, rest = x[:, None] ** 2 + 3 * y, x[:, None] - 2 * y**3
+    shape = DrivenShape(x, y, swing, rest, (0.01, 0.03), lengthwise, 8e-3)
+    along = np.array([0.004, 0.02, 0.037])
+    at_x, at_y = (along, 0.03) if lengthwise else (0.01, along)
+    expected = np.stack(np.broadcast_arrays(at_x**2 + 3 * at_y, at_x - 2 * at_y**3))
+    np.testing.assert_allclose(shape.along(along), expected, rtol=1e-9)
+    np.testing.assert_allclose(shape.at(np.full(3, 0.05), along)[0], 0.0025 + 3 * along)
+    assert shape.antinode == (0.01 if lengthwise else 0.03)
+
+
+@pytest.mark.parametrize(("lines", "lengthwise"), [((8, 0), True), ((0, 9), False), (None, True)])
+def test_the_shape_of_a_mode_is_turned_to_its_best_antinode(
+    lines: tuple[int, int] | None, lengthwise: bool
+) -> None:
+    """Whatever the phase of the drive: 1 there, and of the rest nothing."""
+    x, y = np.linspace(0.0, 0.06, 7), np.linspace(0.0, 0.04, 5)
+
+    def motion(at: int, over: np.ndarray, across: np.ndarray) -> np.ndarray:
+        assert at == 4
+        return np.asarray(np.exp(0.7j) * (over[:, None] + 2 * across + 0.1j * over[:, None]))
+
+    mode: Any = SimpleNamespace(
+        driven_at=lambda: (SimpleNamespace(motion=motion), 4),
+        modes=SimpleNamespace(x=x, y=y, labels=[(3, 3), lines]),
+        index=1,
+        lobe=(0.02, 0.01),
+        half_wavelength=8e-3,
+    )
+    shape = DrivenShape.of(mode)
+    assert shape.lengthwise == lengthwise
+    np.testing.assert_allclose(
+        shape.at(np.array([0.02]), np.array([0.01])), [[1.0], [0.0]], atol=1e-9
+    )
+    turned = (x[:, None] + 2 * y + 0.1j * x[:, None]) / (0.04 + 0.002j)
+    np.testing.assert_allclose(shape.swing, turned.real)
+    np.testing.assert_allclose(shape.rest, turned.imag, atol=1e-12)
+    assert (shape.lobe, shape.half_wavelength) == ((0.02, 0.01), 8e-3)
