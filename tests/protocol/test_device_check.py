@@ -138,8 +138,14 @@ class NoWindow(Machine):
 class NoVoltageLimit(Machine):
     __slots__ = ()
 
-    def _play(self, message: m.Envelope, limits: device.DeviceLimits) -> Reason:
-        return super()._play(message, replace(limits, voltage=2 * limits.voltage))
+    def _obey(self, message: m.Message) -> Reason:
+        kept = self.limits
+        if kept is None or not isinstance(message, m.Envelope):
+            return super()._obey(message)
+        self.limits = replace(kept, voltage=2 * kept.voltage)
+        reason = super()._obey(message)
+        self.limits = kept
+        return reason
 
 
 class NoSequence(Machine):
@@ -153,16 +159,16 @@ class NoSequence(Machine):
 class NoWatchdog(Machine):
     __slots__ = ()
 
-    def _advance(self, now: int) -> int:
+    def _advance(self, now: int, ticked: bool = False) -> int:
         self._heard = now & device.CLOCK
-        return super()._advance(now)
+        return super()._advance(now, ticked)
 
 
 class NoLatch(Machine):
     __slots__ = ()
 
-    def _advance(self, now: int) -> int:
-        level = super()._advance(now)
+    def _advance(self, now: int, ticked: bool = False) -> int:
+        level = super()._advance(now, ticked)
         if self.state is device.State.FAULT and self.level == 0:
             self.state, self.fault = device.State.OFF, device.Fault.NONE
         return level
