@@ -1,4 +1,4 @@
-"""The tables of docs/explanation/psychometrics.md from the answers of the campaign.
+"""The tables of docs/explanation/perception.md from the answers of the campaign.
 
     python tools/interval_tables.py
 
@@ -14,7 +14,7 @@ import re
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PAGE = ROOT / "docs" / "explanation" / "psychometrics.md"
+PAGE = ROOT / "docs" / "explanation" / "perception.md"
 ANSWERS = ROOT / "campaigns" / "statistics.jsonl"
 PEOPLE = {
     "constant": "constant stimuli", "adaptive": "adaptive series",

@@ -43,7 +43,7 @@ def test_tolerances_have_their_defaults() -> None:
 
 
 def test_the_file_of_the_how_to_is_one() -> None:
-    page = (DOCS / "how-to" / "design-a-plate.md").read_text(encoding="utf-8")
+    page = (DOCS / "how-to" / "design.md").read_text(encoding="utf-8")
     found = re.search(r'^```toml title="mine.toml"\n(.*?)^```', page, re.MULTILINE | re.DOTALL)
     assert found is not None
     read = config.load_text(wanted.Requirements, found[1])

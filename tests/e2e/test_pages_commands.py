@@ -1,7 +1,7 @@
 """What the tutorial and the how-tos tell to type is typed, and what they tell to write is written.
 
 Commands stand in blocks fenced as `sh`, files in blocks with a title, or taken from the examples
-by `--8<--`. All of one page share a folder. Nothing is compared with what a page shows of the
+by `--8<--`. All of one part share a folder. Nothing is compared with what a page shows of the
 output: that it works is checked here. Samples, points, designs and people are few.
 """
 
@@ -11,10 +11,9 @@ from pathlib import Path
 
 import pytest
 
+from .pages import ROOT, Part, parts
 from .program import run
 
-DOCS = Path(__file__).parents[2] / "docs"
-PAGES = sorted([*DOCS.glob("how-to/*.md"), *DOCS.glob("tutorial/*.md")])
 BLOCK = re.compile(
     r'^```(?P<kind>sh|[a-z]+ title="(?P<file>[^"]+)")\n(?P<text>.*?)^```', re.MULTILINE | re.DOTALL
 )
@@ -29,23 +28,24 @@ def _commands(text: str) -> list[list[str]]:
 def _included(text: str) -> str:
     """A file that stands in the checkout once, and on the page by the name of it."""
     taken = re.fullmatch(r'--8<-- "([^"]+)"\n', text)
-    return text if taken is None else (DOCS.parent / taken[1]).read_text(encoding="utf-8")
+    return text if taken is None else (ROOT / taken[1]).read_text(encoding="utf-8")
 
 
 WITH_COMMANDS = [
-    page
-    for page in PAGES
-    if any(found["kind"] == "sh" for found in BLOCK.finditer(page.read_text(encoding="utf-8")))
+    part
+    for part in parts()
+    if part.page.parent.name in ("how-to", "tutorial")
+    and any(block["kind"] == "sh" for block in BLOCK.finditer(part.text))
 ]
 
 
-# Pages whose commands take more than a minute where the machine is slow: at night.
+# Parts whose commands take more than a minute where the machine is slow: at night.
 LONG = (
     "design-a-plate",
     "glue-tolerance",
     "have-it-built",
     "how-many-participants",
-    "sweep",
+    "sweep-a-value",
     "thickness-for-a-frequency",
     "threshold-on-your-plate",
     "your-own-plate",
@@ -72,21 +72,21 @@ def _small(words: list[str]) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "page",
+    "part",
     [
         pytest.param(
-            page, id=page.stem, marks=pytest.mark.nightly if page.stem in LONG else pytest.mark.slow
+            part, id=part.name, marks=pytest.mark.nightly if part.name in LONG else pytest.mark.slow
         )
-        for page in WITH_COMMANDS
+        for part in WITH_COMMANDS
     ],
 )
-def test_what_a_page_tells_to_type_works(page: Path, tmp_path: Path) -> None:
-    for found in BLOCK.finditer(page.read_text(encoding="utf-8")):
-        if found["file"]:
-            (tmp_path / found["file"]).write_text(_included(found["text"]), encoding="utf-8")
+def test_what_a_page_tells_to_type_works(part: Part, tmp_path: Path) -> None:
+    for block in BLOCK.finditer(part.text):
+        if block["file"]:
+            (tmp_path / block["file"]).write_text(_included(block["text"]), encoding="utf-8")
             continue
-        for name, *words in _commands(found["text"]):
-            assert name == "squeezefilm", f"{page.name} tells to type {name}"
+        for name, *words in _commands(block["text"]):
+            assert name == "squeezefilm", f"{part.page.name} tells to type {name}"
             ran = run(*_small(words), cwd=tmp_path)
             assert ran.returncode == 0, (words, ran.stderr)
             assert "Traceback" not in ran.stderr

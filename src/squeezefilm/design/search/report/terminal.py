@@ -110,6 +110,6 @@ def show_requirements() -> None:
     table(console, ("requirements", "what they are"), rows, fixed=(0,))
     console.print(
         "squeezefilm design NAME searches for plates that meet them. For your own, write a TOML "
-        "file: docs/reference/requirements.md lists every key, and docs/how-to/design-a-plate.md "
+        "file: docs/reference/requirements.md lists every key, and docs/how-to/design.md "
         "begins with one."
     )
