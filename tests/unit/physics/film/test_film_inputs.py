@@ -95,8 +95,8 @@ def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
     assert "not converged" in error.partial.status
     with pytest.raises(ConvergenceError) as caught:
         solve_films([1.0, 10.0], 0.9, tolerance=1e-6)
-    assert caught.value.partial.mean_load.shape == (2,)
-    kept = solve_films([1.0, 10.0], 0.9, tolerance=1e-6, strict=False)
+    kept = caught.value.partial
+    assert kept.mean_load.shape == (2,)
     assert np.all(kept.over_pressure_error > 1e-6 * kept.over_pressure)
 
 

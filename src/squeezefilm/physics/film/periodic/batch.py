@@ -109,7 +109,6 @@ def solve_films(
     tolerance: float = 5e-3,
     workers: Annotated[int, si.AtLeast(1)] | None = None,
     progress: CountProgress | None = None,
-    strict: bool = True,
     force: bool = False,
 ) -> FilmBatch:
     """Mean load and first force harmonic of many films, H = 1 + ε cos T; inputs broadcast.
@@ -118,9 +117,8 @@ def solve_films(
     number is on a strip's full length or on a disc's radius. `tolerance` is relative, on the
     over-pressure, and with `force` on the first harmonic too (relative to its size). `workers`
     threads share the work (None: one per core). `progress(done, total)` is called after each
-    portion. With `strict`, a case that does not reach the tolerance raises `ConvergenceError`
-    carrying the batch as `partial`; without, its error estimate shows it (NaN where nothing
-    converged).
+    portion. A case that does not reach the tolerance raises `ConvergenceError` carrying the batch
+    as `partial`, where its error estimate shows it (NaN where nothing converged).
     """
     si.require_one_of("shape", shape, ("strip", "disc"))
     check_film(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, tolerance)
@@ -134,11 +132,11 @@ def solve_films(
     solved = solve_all(films, tolerance, workers or os.cpu_count() or 1, progress, force=force)
     films = films._replace(excursion_ratio=signed)
     batch = _as_batch(films, solved, inputs[0].shape, slip, tolerance)
-    if strict and not solved.met.all():
+    if not solved.met.all():
         at = int(np.flatnonzero(~solved.met)[0])
         raise ConvergenceError(
             f"{batch.status}; the first has squeeze_number {sigma[at]:.4g}, excursion_ratio "
-            f"{signed[at]:.4g}. Ask a larger tolerance, or pass strict=False to keep the others",
+            f"{signed[at]:.4g}. Ask a larger tolerance; the others are in the error's `partial`",
             partial=batch,
             residual=float(solved.rows[at, u.RESIDUAL]),
             iterations=int(solved.rows[at, u.ITERATIONS]),
