@@ -75,8 +75,8 @@ def predict_unseen(
     from squeezefilm.measure.calibration.solved_answers import question
     from squeezefilm.measure.report.calibration_page import prediction_lines
 
-    for one in ask:
-        question(one)  # refused before the display is looked at
+    for text in ask:
+        question(text)  # refused before the display is looked at
     described = to_be_solved(display, quiet=as_json)
     with working(as_json) as step:
         found = predict_measurement(described, ask, out, seed=seed, progress=step)

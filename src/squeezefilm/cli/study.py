@@ -267,7 +267,7 @@ def gratings(
     within = read_option(tolerance, "tolerance", "m")
     page = write_boards(found, out, within)
     made = boards(found)
-    show_boards(HEAD, board_rows(made, within), [one.says for one in made])
+    show_boards(HEAD, board_rows(made, within), [difference.says for difference in made])
     typer.echo(f"page: {page}")
 
 

@@ -91,9 +91,9 @@ def _quantities(unit: si.Unit | None, name: str, value: Any) -> Any:
     if unit is None:
         return value
     if isinstance(value, list | tuple):
-        if not any(isinstance(one, str) for one in value):
+        if not any(isinstance(item, str) for item in value):
             return value
-        return type(value)(_quantities(unit, name, one) for one in value)
+        return type(value)(_quantities(unit, name, item) for item in value)
     if not isinstance(value, str):
         return value
     try:

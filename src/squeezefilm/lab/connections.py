@@ -216,8 +216,8 @@ class Playing:
 
     def stop(self) -> None:
         """Silence everything; whoever holds it notes when it is silent."""
-        for one in list(self._held.values()):
-            one.stop()
+        for playing in list(self._held.values()):
+            playing.stop()
 
     def message(self) -> Message:
         """Message that a page gets."""

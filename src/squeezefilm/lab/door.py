@@ -98,8 +98,8 @@ class Door:
     def close(self) -> None:
         """Accept no more, and end what has not begun; the listener stays open."""
         self._keeper.cancel()
-        for one in self._beginning:
-            one.cancel()
+        for handshake in self._beginning:
+            handshake.cancel()
 
     async def _keep(self) -> None:
         loop = asyncio.get_running_loop()
@@ -140,16 +140,16 @@ class Door:
 
     def _has_room(self, address: str) -> bool:
         """True where a newcomer may stay; a stranger may have had to go for it."""
-        own = [one for one in self._open if one.address == address]
+        own = [connection for connection in self._open if connection.address == address]
         if len(own) >= self._most_of_address:
-            return self._end_stranger([one for one in own if one.is_stranger])
+            return self._end_stranger([connection for connection in own if connection.is_stranger])
         strangers = self._strangers()
         if len(self._open) >= self._most or len(strangers) >= self._most // 3:
             return self._end_stranger(strangers)
         return True
 
     def _strangers(self) -> list[Connection]:
-        return [one for one in self._open if one.is_stranger]
+        return [connection for connection in self._open if connection.is_stranger]
 
     def _end_stranger(self, strangers: list[Connection]) -> bool:
         if not strangers:

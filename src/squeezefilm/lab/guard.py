@@ -220,7 +220,7 @@ class Guard:
 
 
 def _open_to(path: str) -> bool:
-    return any(path == one or path.startswith(one) for one in _PARTICIPANT)
+    return any(path == allowed or path.startswith(allowed) for allowed in _PARTICIPANT)
 
 
 def _bounded(receive: Receive) -> Receive:

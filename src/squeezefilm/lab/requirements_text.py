@@ -64,11 +64,11 @@ def asked_of(text: str, folder: Path) -> dict[str, Any]:
         "note": asked.note,
         "objectives": [
             {
-                "key": one.key,
-                "said": one.said,
-                "unit": "" if one.unit.symbol == "1" else one.unit.symbol,
+                "key": criterion.key,
+                "said": criterion.said,
+                "unit": "" if criterion.unit.symbol == "1" else criterion.unit.symbol,
             }
-            for one in map(criterion_of, asked.objectives)
+            for criterion in map(criterion_of, asked.objectives)
         ],
         "limits": [one.limit_said(bound) for one, bound in bounded(asked.limits)],
         "shapes": [

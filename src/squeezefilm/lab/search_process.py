@@ -82,7 +82,7 @@ def glimpse(requirements: Requirements, seen: Glimpse) -> dict[str, Any]:
 
 def _thinned(points: Sequence[Sequence[float]]) -> list[list[float]]:
     every = max(1, -(-len(points) // MOST_POINTS))
-    return [list(one) for one in sorted(map(tuple, points))[::every]]
+    return [list(point) for point in sorted(map(tuple, points))[::every]]
 
 
 def reference(requirements: Requirements, one: Evaluated | None) -> dict[str, Any] | None:
@@ -108,7 +108,7 @@ def result(found: DesignSearch) -> dict[str, Any]:
         "front": [plate(asked, member.evaluated, member.made) for member in found.front],
         "reference": reference(asked, found.reference),
         "chosen": None if chosen is None else chosen.name,
-        "beats": [one.name for one in found.beats_reference],
+        "beats": [member.name for member in found.beats_reference],
         "plates_better": found.plates_better,
         "limits": [
             limit_in_words(limit, len(found.screened)) for limit in found.limits if limit.broken

@@ -114,7 +114,7 @@ def _ended_by_signals(server: UnheardServer) -> Iterator[None]:
     server runs: a Ctrl-C between the two was lost, or ended in a traceback.
     """
     signals = (signal.SIGINT, signal.SIGTERM)
-    before = [(one, signal.signal(one, server.handle_exit)) for one in signals]
+    before = [(number, signal.signal(number, server.handle_exit)) for number in signals]
     try:
         yield
     finally:

@@ -87,8 +87,8 @@ class Lab:
 
     def close(self) -> None:
         """Stop what runs: devices, workers."""
-        for one in self.closing:
-            one()
+        for close in self.closing:
+            close()
         self.workers.close()
 
 

@@ -150,7 +150,7 @@ class Busy:
         self._jobs.append(job)
         running = asyncio.create_task(self._in_turn(job, work, arguments))
         # Nobody may wait for it any more when it fails.
-        running.add_done_callback(lambda one: one.cancelled() or one.exception())
+        running.add_done_callback(lambda done: done.cancelled() or done.exception())
         try:
             # What writes a file is not torn where the page that asked for it is closed.
             return await asyncio.shield(running)

@@ -175,11 +175,11 @@ class MotorAnalysis(Result):
             "drawn": to_json(self.drawn),
             "over_frequency": [
                 {
-                    "frequency_Hz": one.working.frequency,
-                    "force_N": one.force,
-                    "amplitude_m": one.amplitude,
+                    "frequency_Hz": point.working.frequency,
+                    "force_N": point.force,
+                    "amplitude_m": point.amplitude,
                 }
-                for one in self.tuned
+                for point in self.tuned
             ],
             "over_place_of_the_feet": [
                 {"shift_m": shift, "force_N": None if one is None else one.force}
@@ -213,7 +213,7 @@ def analyze_motor(
     working = Working(voltage=volts)
     tell("speed and force")
     curve = speed_force_curve(motor, working)
-    best = max(curve, key=lambda one: one.efficiency)
+    best = max(curve, key=lambda point: point.efficiency)
     tell("in time")
     motion = simulate(motor, working, speed=best.speed, periods=_PERIODS, traced=_TRACED)
     resolved = _resolved(motor, working, curve)
@@ -294,9 +294,9 @@ def _resolved(
 ) -> si.FloatArray:
     """Speed and force left for a load, in time, at every so many points of an averaged curve."""
     found = []
-    for one in curve[:: len(curve) // _RESOLVED]:
-        there = simulate(motor, working, speed=one.speed, periods=_PERIODS, traced=0)
-        found.append((one.speed, there.thrust - (one.thrust - one.force)))
+    for point in curve[:: len(curve) // _RESOLVED]:
+        there = simulate(motor, working, speed=point.speed, periods=_PERIODS, traced=0)
+        found.append((point.speed, there.thrust - (point.thrust - point.force)))
     return np.array(found)
 
 

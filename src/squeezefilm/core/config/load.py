@@ -129,7 +129,7 @@ def _depth(tree: Any) -> int:
         node, depth = todo.pop()
         deepest = max(deepest, depth)
         inner = node.values() if isinstance(node, dict) else node
-        todo += [(one, depth + 1) for one in inner if isinstance(one, dict | list)]
+        todo += [(item, depth + 1) for item in inner if isinstance(item, dict | list)]
     return deepest
 
 
@@ -192,9 +192,9 @@ def _options(hint: Any) -> list[Any]:
     if typing.get_origin(hint) in (Union, types.UnionType):
         parts = typing.get_args(hint)
         return [
-            one
+            member
             for part in parts
-            for one in ((part,) if dataclasses.is_dataclass(part) else family(part))
+            for member in ((part,) if dataclasses.is_dataclass(part) else family(part))
         ]
     return list(family(hint))
 

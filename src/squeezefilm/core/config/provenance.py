@@ -232,7 +232,7 @@ def source_doubt(provenance: Mapping[str, Provenance]) -> str | None:
     if not provenance:
         return "Nothing says where the values of this display are from: it was read from no file."
     total, bare = len(provenance), len(unstated(provenance))
-    assumed = sum(one.evidence == "assumed" for one in provenance.values())
+    assumed = sum(source.evidence == "assumed" for source in provenance.values())
     parts = []
     if bare:
         parts.append(f"{bare} of {total} values of this display have no source")

@@ -86,7 +86,7 @@ def _as_assumed(library: Mapping[str, Any], source: str) -> dict[str, Any]:
         if not isinstance(value, dict):
             found[key] = value
         elif "value" in value:
-            because = "; ".join(one for one in (source, str(value.get("source", ""))) if one)
+            because = "; ".join(text for text in (source, str(value.get("source", ""))) if text)
             found[key] = {**value, "source": because, "evidence": "assumed"}
         else:
             found[key] = _as_assumed(value, source)

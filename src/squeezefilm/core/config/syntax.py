@@ -103,10 +103,10 @@ def _lines(text: str, pattern: str, before: int) -> list[int]:
 def _of_characters(line: _Line) -> str | None:
     """Characters that look like others: typographic quotation marks, blanks that are none."""
     bare = re.sub(r"\"[^\"]*\"|'[^']*'", "", line.text.split("#")[0])
-    if found := next((one for one in bare if one in _CURLY), None):
+    if found := next((character for character in bare if character in _CURLY), None):
         straight = re.sub(f"[{_CURLY}]+", '"', line.text.split("#")[0]).strip()
         return f"{found} is a typographic quotation mark; write straight ones: {straight}"
-    if found := next((one for one in bare if one in _BLANKS), None):
+    if found := next((character for character in bare if character in _BLANKS), None):
         column = line.text.index(found) + 1
         return f"{_BLANKS[found]} stands in column {column}; write an ordinary blank there"
     if found := next((one for one in bare if ord(one) < 32 and one != "\t"), None):

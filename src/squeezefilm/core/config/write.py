@@ -117,7 +117,7 @@ def _is_default(field: dataclasses.Field[Any], item: Any) -> bool:
 
 def _holds_tables(item: Any) -> bool:
     if isinstance(item, tuple):
-        return any(_holds_tables(one) for one in item)
+        return any(_holds_tables(item_of_list) for item_of_list in item)
     return dataclasses.is_dataclass(item)
 
 
@@ -134,7 +134,7 @@ def _fits_a_line(item: Any) -> bool:
 def _inline(item: Any, hint: Any) -> str:
     if isinstance(item, tuple):
         inner = typing.get_args(hint)[0]
-        return "[" + ", ".join(_inline(one, inner) for one in item) + "]"
+        return "[" + ", ".join(_inline(value, inner) for value in item) + "]"
     if dataclasses.is_dataclass(item):
         pairs = [f"{name} = {_inline(one, hint)}" for name, one, hint in _written(item)]
         return "{ " + ", ".join(pairs) + " }"

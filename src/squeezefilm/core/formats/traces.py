@@ -82,7 +82,7 @@ def csv_text(table: Table) -> str:
 def _one_cell(text: str) -> str:
     """JSON of which no text is cut into cells, the second of which might begin like a formula."""
     return _JSON_TEXT.sub(
-        lambda found: found.group().replace(",", "\\u002c").replace(";", "\\u003b"), text
+        lambda match: match.group().replace(",", "\\u002c").replace(";", "\\u003b"), text
     )
 
 

@@ -60,7 +60,7 @@ def printable(text: str) -> str:
         "".join(" " if unicodedata.category(c) in ("Cc", "Cf", "Cs") else c for c in text).split()
     )
     line = _TYPED_OHM.sub(r"\1Ω", _TYPED_MICRO.sub("µ", line))
-    line = _TYPED_POWER.sub(lambda found: found[1] + _RAISED[found[2]], line)
+    line = _TYPED_POWER.sub(lambda match: match[1] + _RAISED[match[2]], line)
     return _MINUS.sub("−", line)
 
 

@@ -52,7 +52,7 @@ def bounds_of(hint: Any) -> tuple[dict[str, Any], tuple[Limit, ...]]:
     """The bounds in an annotation, as `require` takes them, and its other limits."""
     found = list(_beside(hint))
     bounds = {_WORDS[type(one)]: float(one.value) for one in found if isinstance(one, _Bound)}
-    return bounds, tuple(one for one in found if hasattr(one, "refuse_outside"))
+    return bounds, tuple(bound for bound in found if hasattr(bound, "refuse_outside"))
 
 
 def _beside(hint: Any) -> Iterator[Any]:

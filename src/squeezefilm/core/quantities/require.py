@@ -135,7 +135,7 @@ def require_one_of(name: str, value: Any, allowed: Iterable[Any]) -> None:
     """Refuse a word that is not among those allowed. Raises `InputError` that lists them."""
     allowed = tuple(allowed)
     if not isinstance(value, str | int) or value not in allowed:
-        words = [str(one) for one in allowed]
+        words = [str(word) for word in allowed]
         hint = did_you_mean(value, words) if isinstance(value, str) else ""
         raise InputError(
             f"{name} = {shortened(value)} is not known.{hint} Allowed: {', '.join(words)}",

@@ -160,7 +160,7 @@ def _of_amplitudes(number: str, rest: str) -> Iterator[Meant]:
 
 def _of_the_unit(number: str, rest: str, wanted: str, allowed: tuple[str, ...]) -> Iterator[Meant]:
     """Units by name, of other systems, in other letters, or cut short."""
-    name = next((one for one in (rest, rest.lower(), rest.rstrip(".")) if one in _WORDS), None)
+    name = next((word for word in (rest, rest.lower(), rest.rstrip(".")) if word in _WORDS), None)
     if name is not None:
         unit, scale = _WORDS[name]
         own = scale == "1"

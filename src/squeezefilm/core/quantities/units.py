@@ -232,7 +232,7 @@ def _meant(text: str, unit: Unit) -> str | None:
         except QuantityError:
             continue
         where = f" (units allowed here: {units})" if unit.label else ""
-        return f"{why}; write " + " or ".join(f'"{one}"' for one in candidates) + where
+        return f"{why}; write " + " or ".join(f'"{symbol}"' for symbol in candidates) + where
     return None
 
 

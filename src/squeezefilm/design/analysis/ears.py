@@ -137,11 +137,11 @@ def ear_exposure(
         low, high = (20 * math.log10(float(end) / p.vibration_amplitude) for end in ends)
     low, high = level + low - MODEL_ERROR_dB, level + high + MODEL_ERROR_dB
     duty = display.drive.duty
-    found = [exposure_guidance(p.frequency, one) for one in ("public", "occupational")]
+    found = [exposure_guidance(p.frequency, people) for people in ("public", "occupational")]
     limits = tuple(
-        EarLimit(one, _standing(low + 10 * math.log10(duty), high, one.level_dB))
-        for one in found
-        if one is not None
+        EarLimit(guidance, _standing(low + 10 * math.log10(duty), high, guidance.level_dB))
+        for guidance in found
+        if guidance is not None
     )
     return EarExposure(p.frequency, EAR_DISTANCE, duty, level, low, high, limits)
 

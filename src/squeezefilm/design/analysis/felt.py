@@ -73,7 +73,7 @@ class FeltGratings:
     @property
     def here(self) -> FeltAt:
         """Gratings felt at the prediction's speed."""
-        return next(one for one in self.at if one.speed == self.speed)
+        return next(speed for speed in self.at if speed.speed == self.speed)
 
     def summary(self) -> dict[str, Any]:
         """The numbers for ``--json``, with units in the keys: those at the prediction's speed,
@@ -86,7 +86,7 @@ class FeltGratings:
             "draws": self.draws,
             "why_no_interval": self.why_no_interval,
             "model": self.model,
-            "by_speed": [_row(one) for one in self.at],
+            "by_speed": [_row(felt) for felt in self.at],
         }
 
 

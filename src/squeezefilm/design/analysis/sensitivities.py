@@ -154,9 +154,9 @@ def display_sensitivities(
     bench = _Bench(display, p, mixture, effort)
     nominal = bench.friction(display, p.mode)
     rows = []
-    for one in _every(display, mixture):
-        low, high = (bench.shift(one, value) for value in one.parameter.drawn(_ENDS))
-        known = one.parameter
+    for changed in _every(display, mixture):
+        low, high = (bench.shift(changed, value) for value in changed.parameter.drawn(_ENDS))
+        known = changed.parameter
         rows.append(
             DisplaySensitivity(
                 known.path, known.nominal, known.unit.symbol, known.origin, known.source, low, high
@@ -175,10 +175,10 @@ def _every(display: Display, mixture: Mixture) -> Iterator[_Changed]:
         return
     # Of a calibrated plate, whose amplitude is drawn as a whole, what its own values may be.
     of_plate = uncertain_parameters(display, mixture.prediction.surface.name, driven=True)
-    for one in of_plate:
-        if one.path.startswith("actuator.") and one.path not in mixture.paths:
-            yield _Changed(one, functools.partial(_with, path=one.path))
-    known_paths = {*mixture.paths, *(one.path for one in of_plate)}
+    for parameter in of_plate:
+        if parameter.path.startswith("actuator.") and parameter.path not in mixture.paths:
+            yield _Changed(parameter, functools.partial(_with, path=parameter.path))
+    known_paths = {*mixture.paths, *(parameter.path for parameter in of_plate)}
     given = {path.replace(".0.", ".*.") for path in known_paths}
     for path, usual in _USUAL.items():
         try:

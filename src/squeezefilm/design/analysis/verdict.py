@@ -272,7 +272,7 @@ def model_form(
     laws = len(unsure.influences) - values
     unknown = [group for group in unsure.groups if group.knowledge == "unknown"]
     part = f" ({si.percent(unknown[0].total)} of its variance)" if unknown else ""
-    drawn = [one for one in unsure.influences if one.parameter.path == MECHANISM]
+    drawn = [influence for influence in unsure.influences if influence.parameter.path == MECHANISM]
     among = f", among them the friction model ({si.percent(drawn[0].total)})," if drawn else ""
     text = (
         f"The interval varies {values} inputs and {laws} laws{part}{among} by stated or assumed "

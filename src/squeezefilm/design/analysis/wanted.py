@@ -62,7 +62,7 @@ class VoltageInterval:
     @property
     def sentence(self) -> str:
         """The interval, and what lies beyond the drive."""
-        low, high = (_volts(one) for one in self.interval)
+        low, high = (_volts(end) for end in self.interval)
         said = f"{self.level:.0%} interval {low} to {high}, median {_volts(self.median)}"
         if self.beyond > 0:
             said += f"; {self.beyond:.0%} of the draws need more than the drive's {self.limit:g} V"

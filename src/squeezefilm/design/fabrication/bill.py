@@ -52,7 +52,7 @@ def bill_of(
             base.material,
             _size(base),
             CUT,
-            math.fsum(one.mass for one in substrate),
+            math.fsum(part.mass for part in substrate),
             True,
             remark,
         ),
@@ -99,7 +99,7 @@ def _ceramics(parts: Sequence[Part]) -> list[BillRow]:
             material,
             size,
             CUT,
-            math.fsum(one.mass for one in same),
+            math.fsum(part.mass for part in same),
             True,
             same[0].assumed or f"each {1e3 * same[0].mass:.3g} g; electrodes on both faces",
         )

@@ -97,7 +97,7 @@ test_plan.__test__ = False  # type: ignore[attr-defined] # pytest collects by na
 
 def _of(known: Known, answer: str, what: str, value: float | None, remark: str = "") -> Check:
     """A check of an answer, with the interval that was drawn of it."""
-    found = [one for one in known.expected if one.answer == answer]
+    found = [predicted for predicted in known.expected if predicted.answer == answer]
     interval, level = (found[0].interval, found[0].level) if found else (None, None)
     if value is None and found:
         value = found[0].median
@@ -127,7 +127,7 @@ def _band(known: Known) -> str:
         if one.answer in ("resonance_frequency", "parallel_resonance_frequency"):
             low, high = min(low, one.interval[0] - 2 * half), max(high, one.interval[1] + 2 * half)
     points = max(_POINTS, 8 * math.ceil((high - low) / half))
-    ends = " to ".join(si.format_quantity(one, _HZ, 4) for one in (low, high))
+    ends = " to ".join(si.format_quantity(end, _HZ, 4) for end in (low, high))
     return f"from {ends} in {points} points"
 
 
@@ -317,7 +317,7 @@ def _strokes(known: Known) -> TestStep:
             value = p.relative_friction if here else p.law.at(amplitude)
             under = tuple(one.conditions.items())
             checks.append(Check(what, FRICTION, "1", float(value), one.interval, one.level, under))
-    if not any(one.answer == FRICTION for one in known.expected):
+    if not any(predicted.answer == FRICTION for predicted in known.expected):
         ends = None if unsure is None else unsure.interval
         checks.append(Check("µ′/µ", FRICTION, "1", p.relative_friction, ends, level))
     return TestStep(

@@ -44,7 +44,7 @@ def electrodes_of(actuator: Actuator, parts: Sequence[Part] | None = None) -> tu
     """
     if isinstance(actuator, RectangularPlate):
         return _of_plate(actuator)
-    ceramic = next(one for one in parts or parts_of(actuator) if one.kind == "ceramic")
+    ceramic = next(part for part in parts or parts_of(actuator) if part.kind == "ceramic")
     ring = ceramic.footprint
     assert isinstance(ring, Sector), "a round body has a round ceramic"
     return tuple(

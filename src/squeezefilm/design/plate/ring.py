@@ -296,7 +296,7 @@ def modes_in_band(
             "around the working mode",
             quantity="band",
         )
-    return tuple(sorted(found, key=lambda one: one.frequency))
+    return tuple(sorted(found, key=lambda mode: mode.frequency))
 
 
 def _sound(display: Display, mode: AnnularMode, response: RingResponse) -> SoundField:

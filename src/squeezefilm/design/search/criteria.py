@@ -144,13 +144,13 @@ class Breach:
 
 def bounded(limits: Limits) -> Iterator[tuple[Criterion, float]]:
     """The criteria that limits bound, each with its bound (SI)."""
-    for one in CRITERIA.values():
-        bound = getattr(limits, one.limit) if one.limit else None
+    for criterion in CRITERIA.values():
+        bound = getattr(limits, criterion.limit) if criterion.limit else None
         if bound is None:
             continue
-        if one.key == "relative_friction" and limits.confidence == "95 %":
-            one = CRITERIA["surest_friction"]
-        yield one, float(bound)
+        if criterion.key == "relative_friction" and limits.confidence == "95 %":
+            criterion = CRITERIA["surest_friction"]
+        yield criterion, float(bound)
 
 
 def breaches(numbers: Mapping[str, float], limits: Limits) -> tuple[Breach, ...]:
@@ -164,7 +164,7 @@ def breaches(numbers: Mapping[str, float], limits: Limits) -> tuple[Breach, ...]
         excess = excess_of(one, value, bound)
         if excess > 0:
             found.append(Breach(one.key, value, bound, excess))
-    return tuple(sorted(found, key=lambda one: -one.excess))
+    return tuple(sorted(found, key=lambda broken: -broken.excess))
 
 
 def excess_of(criterion: Criterion, value: float, bound: float) -> float:

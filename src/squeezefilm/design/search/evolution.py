@@ -103,7 +103,7 @@ class Proposals:
             return found
         draw = np.random.default_rng(self._seed)
         for _ in range(_LOOKED_AT * count):
-            places = {one.name: float(draw.random()) for one in self._space.free}
+            places = {variable.name: float(draw.random()) for variable in self._space.free}
             design = design_of(self._shape, self._space.at(places))
             if low <= rough_frequency(self._requirements, design) <= high:
                 found.append(places)

@@ -114,7 +114,7 @@ class DesignSearch(Result):
     @property
     def plates_better(self) -> int:
         """Number of plates of the front that beat the reference at one voltage or more."""
-        return _plates(one.evaluated for one in self.beats_reference)
+        return _plates(member.evaluated for member in self.beats_reference)
 
     @functools.cached_property
     def worst(self) -> si.FloatArray:
@@ -203,9 +203,9 @@ class DesignSearch(Result):
             else {
                 "name": self.requirements.compare_with,
                 **_numbers(self.reference),
-                "breaks": [one.sentence for one in self.reference.broken],
+                "breaks": [limit.sentence for limit in self.reference.broken],
                 "reason": self.reference.reason,
-                "beaten_by": [one.name for one in self.beats_reference],
+                "beaten_by": [member.name for member in self.beats_reference],
             },
             "hypervolume": self.hypervolume,
             "hypervolume_corner": self.worst.tolist(),
@@ -258,7 +258,7 @@ def glimpse_of(
     reference: Evaluated | None,
 ) -> Glimpse:
     """The glimpse of a stage (in words) that whoever watches is shown of what was seen."""
-    feasible = [one for one in seen["screened"].values() if one.is_feasible]
+    feasible = [candidate for candidate in seen["screened"].values() if candidate.is_feasible]
     rows = objectives_of(requirements, feasible)
     screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows))
     counts = len(seen["screened"]), len(plates_of(seen["solved"]))

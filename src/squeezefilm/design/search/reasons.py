@@ -58,7 +58,7 @@ def limit_reasons(
             for candidate in screened
             if any(b.key == criterion.key for b in candidate.broken)
         ]
-        alone = [one for one in broken if len(one.broken) == 1]
+        alone = [candidate for candidate in broken if len(candidate.broken) == 1]
         without = _best(requirements, alone)
         gained = {
             key: value
@@ -66,7 +66,7 @@ def limit_reasons(
             if np.isfinite(value) and value < best.get(key, np.inf)
         }
         found.append(LimitReason(criterion.key, bound, len(broken), len(alone), gained))
-    return tuple(sorted(found, key=lambda one: -one.broken))
+    return tuple(sorted(found, key=lambda reason: -reason.broken))
 
 
 def _best(requirements: Requirements, designs: Sequence[Evaluated]) -> dict[str, float]:
@@ -85,25 +85,25 @@ def empty_corners(
         here = [candidate for candidate in screened if candidate.design.shape == number]
         for variable in space.free:
             parts: dict[str, list[Evaluated]] = {}
-            for one in here:
-                parts.setdefault(_part(variable, one.design.settings), []).append(one)
+            for candidate in here:
+                parts.setdefault(_part(variable, candidate.design.settings), []).append(candidate)
             for where, inside in parts.items():
                 if len(inside) < _LEAST_DESIGNS or any(one.is_feasible for one in inside):
                     continue
                 found.append(_corner(space, where, inside))
-    return tuple(sorted(found, key=lambda one: -one.designs))
+    return tuple(sorted(found, key=lambda corner: -corner.designs))
 
 
 def _corner(space: Space, where: str, inside: Sequence[Evaluated]) -> EmptyCorner:
-    counts = Counter(key for one in inside for key in {b.key for b in one.broken})
-    built = sum(bool(one.reason) for one in inside)
+    counts = Counter(key for candidate in inside for key in {b.key for b in candidate.broken})
+    built = sum(bool(candidate.reason) for candidate in inside)
     if not counts or built > max(counts.values()):
-        example = next(one.reason for one in inside if one.reason)
+        example = next(candidate.reason for candidate in inside if candidate.reason)
         return EmptyCorner(space.shape, where, len(inside), "", built / len(inside), example)
     key, count = counts.most_common(1)[0]
     # The one that comes nearest to the limit.
     nearest = min(
-        (b for one in inside for b in one.broken if b.key == key), key=lambda one: one.excess
+        (b for one in inside for b in one.broken if b.key == key), key=lambda limit: limit.excess
     )
     return EmptyCorner(
         space.shape, where, len(inside), key, count / len(inside), f"at best {nearest.sentence}"

@@ -264,7 +264,7 @@ class Requirements:
         """Choices that there are, shape by shape. Raises `InputError` for ranges that are none."""
         least = self.drive.least_voltage or self.drive.voltage
         volts = number(VOLTAGE, least, self.drive.voltage, "V")
-        names = [shape_called(one) for one in self.shapes]
+        names = [shape_called(shape) for shape in self.shapes]
         return tuple(
             Space(
                 name if names.count(name) == 1 else f"{name} {1 + names[:k].count(name)}",
@@ -285,8 +285,8 @@ class Requirements:
             "the contact's constants (asperities and plateaus), which decide the friction",
             "tolerances as the file has them, normal and independent",
             *(
-                f"the yield asks nothing of {one}: only a solved plate can be asked"
-                for one in self.limits.unasked_of_made
+                f"the yield asks nothing of {name}: only a solved plate can be asked"
+                for name in self.limits.unasked_of_made
             ),
         )
 

@@ -170,7 +170,7 @@ class SearchRun:
                 found = self._evaluated(pool, [design for _, design in asked], "screened")
                 proposals.tell([(trial, found[design]) for trial, design in asked])
                 self._show()
-        if all(one.reason for one in self._seen["screened"].values()):
+        if all(candidate.reason for candidate in self._seen["screened"].values()):
             first = next(iter(self._seen["screened"].values()))
             raise InputError(
                 f"none of the screened designs can be built, for example: {first.reason}"
@@ -182,7 +182,7 @@ class SearchRun:
         if done:
             seconds = (time.monotonic() - begun) / done * (every - done)
             left = f", {about(max(seconds, 0.0))} left"
-        feasible = sum(one.is_feasible for one in self._seen["screened"].values())
+        feasible = sum(candidate.is_feasible for candidate in self._seen["screened"].values())
         self._tell(f"screening {shape}: {done} of {every} designs, {feasible} feasible{left}")
 
     def _proposals(self, shape: int, level: Level) -> Proposals:
@@ -261,7 +261,7 @@ class SearchRun:
     def _propose(self, pool: Workers) -> None:
         """Let a Bayesian sampler propose plates beside the front, and solve them."""
         solved = self._seen["solved"]
-        shapes = sorted({one.design.shape for one in self._front()})
+        shapes = sorted({candidate.design.shape for candidate in self._front()})
         batch = 0
         studies = {}
         for shape in shapes:
@@ -293,7 +293,7 @@ class SearchRun:
         left = ""
         # Nobody knows how many workers a cluster has.
         if solved and self._asked.scheduler is None:
-            took = sum(one.seconds for one in self._seen["solved"].values()) / solved
+            took = sum(candidate.seconds for candidate in self._seen["solved"].values()) / solved
             rest = (self._asked.solved - solved) * took / self._asked.jobs
             left = f", {about(rest)} left at most"
         on_front = len(plates_of(evaluated.design for evaluated in self._front()))
@@ -306,9 +306,9 @@ class SearchRun:
         """Draw what is made of the front's drawings; where a yield is asked for, leave out what
         misses it, and draw what comes to the front in its place."""
         asked: set[Design] = set()
-        while front := [one for one in self._front() if one.design not in asked]:
-            asked.update(one.design for one in front)
-            kept = ((one.design, self._store.made(one.design)) for one in front)
+        while front := [candidate for candidate in self._front() if candidate.design not in asked]:
+            asked.update(candidate.design for candidate in front)
+            kept = ((candidate.design, self._store.made(candidate.design)) for candidate in front)
             self._made.update((design, made) for design, made in kept if made is not None)
             tasks = {o.design: (self.requirements, o) for o in front if o.design not in self._made}
             for done, (design, made) in enumerate(pool.answers(made_of, tasks)):

@@ -132,15 +132,15 @@ class Strips(Shape):
         ]
         above = [
             CeramicPatch(
-                one.x,
-                one.y,
-                one.length,
-                one.width,
-                one.thickness,
-                polarity=-1 if one.polarity == 1 else 1,
+                patch.x,
+                patch.y,
+                patch.length,
+                patch.width,
+                patch.thickness,
+                polarity=-1 if patch.polarity == 1 else 1,
                 face="top",
             )
-            for one in below
+            for patch in below
             if self.both_faces
         ]
         return RectangularPlate(

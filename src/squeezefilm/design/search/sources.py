@@ -30,7 +30,7 @@ def plate_sources(
     own = f"the requirements '{requirements.name}'"
     chosen = Provenance(f"chosen by squeezefilm design for {own}", "derived")
     given = Provenance(f"given by {own}", "assumed")
-    of_fixed = {one.name for one in requirements.spaces[shape] if one.is_fixed}
+    of_fixed = {variable.name for variable in requirements.spaces[shape] if variable.is_fixed}
     found["drive.voltage"] = given if VOLTAGE in of_fixed else chosen
     for leaf in _stated(display):
         name = leaf.path[1]

@@ -66,7 +66,7 @@ class Step:
     @property
     def is_fixed(self) -> bool:
         """True where there is nothing to choose."""
-        return all(len(one) == 1 for one in self.lists.values())
+        return all(len(values_of_one) == 1 for values_of_one in self.lists.values())
 
     def _values(self, chosen: Values) -> tuple[float, ...]:
         return self.lists[str(chosen[self.by]) if self.by else ""]
@@ -78,7 +78,7 @@ class Step:
 
     def share(self, values: Values) -> float:
         """Position of a design's value among all that there are, from 0 to 1."""
-        every = [value for one in self.lists.values() for value in one]
+        every = [value for choices in self.lists.values() for value in choices]
         low, high = min(every), max(every)
         return (float(values[self.name]) - low) / ((high - low) or 1.0)
 
@@ -134,7 +134,7 @@ class Space:
 
     def variable(self, name: str) -> Variable:
         """The variable of a name, which there is."""
-        return next(one for one in self if one.name == name)
+        return next(variable for variable in self if variable.name == name)
 
     def at(self, shares: Mapping[str, float]) -> dict[str, Setting]:
         """The values at shares (0 to 1) by name; what is fixed needs none."""
@@ -145,20 +145,20 @@ class Space:
 
     def places(self, values: Values) -> dict[str, float]:
         """Shares from which `at` makes these values, by name, of what is free."""
-        return {one.name: one.place(values) for one in self.free}
+        return {variable.name: variable.place(values) for variable in self.free}
 
     def moved(self, places: Mapping[str, float], draw: np.random.Generator) -> dict[str, float]:
         """Places a little beside others: lengths and voltages by some percent of their range, each
         with even odds, steps to one near by or any other now and then, names to any other."""
         found = dict(places)
-        for one in self.free:
+        for variable in self.free:
             chance, step = draw.random(), _STEP * draw.standard_normal()
-            if isinstance(one, Number) and chance < 0.5:
-                found[one.name] = float(np.clip(places[one.name] + step, 0.0, 1.0))
-            elif not isinstance(one, Number) and chance < _JUMP:
-                found[one.name] = float(draw.random())
-            elif isinstance(one, Step) and chance < _JUMP + _NEAR_BY:
-                found[one.name] = float(np.clip(places[one.name] + 2 * step, 0.0, 1.0))
+            if isinstance(variable, Number) and chance < 0.5:
+                found[variable.name] = float(np.clip(places[variable.name] + step, 0.0, 1.0))
+            elif not isinstance(variable, Number) and chance < _JUMP:
+                found[variable.name] = float(draw.random())
+            elif isinstance(variable, Step) and chance < _JUMP + _NEAR_BY:
+                found[variable.name] = float(np.clip(places[variable.name] + 2 * step, 0.0, 1.0))
         return found
 
     def beside(self, places: Mapping[str, float]) -> Iterator[dict[str, float]]:
@@ -172,7 +172,7 @@ class Space:
 
     def shares(self, values: Values) -> list[float]:
         """Positions of values, each from 0 to 1, of what is free: features of a design."""
-        return [one.share(values) for one in self.free]
+        return [variable.share(values) for variable in self.free]
 
 
 # What a workshop, and whoever sets a voltage, does not go below.
@@ -186,7 +186,7 @@ def number(name: str, low: float, high: float, unit: str) -> Number:
     """
     if high < low:
         symbol = si.Unit(unit)
-        first, last = (si.format_quantity(one, symbol) for one in (low, high))
+        first, last = (si.format_quantity(bound, symbol) for bound in (low, high))
         raise InputError(
             f"{name} may be from {first} to {last}, which is no range; make the largest at least "
             "the least",

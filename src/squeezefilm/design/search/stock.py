@@ -144,7 +144,7 @@ class Shape:
         for name, stock in (("sheets", self.sheets), ("ceramics", self.ceramics)):
             if not stock:
                 raise InputError(f"{name} is empty; give at least one to build from", quantity=name)
-            names = [one.material for one in stock]
+            names = [piece.material for piece in stock]
             if len(set(names)) < len(names):
                 raise InputError(
                     f"{name} names a material twice ({', '.join(names)}); give all its "
@@ -198,4 +198,4 @@ def counts(name: str, least: int, most: int) -> Variable:
             f"{name} may be from {least} to {most}, which is no range; make most at least least",
             quantity=f"most_{name}",
         )
-    return step(name, {"": tuple(float(one) for one in range(least, most + 1))}, "1")
+    return step(name, {"": tuple(float(count) for count in range(least, most + 1))}, "1")

@@ -113,11 +113,11 @@ class DesignStore:
         """Keep evaluated designs, together on the disk. What might be another one another time is
         kept in memory only."""
         lines = []
-        for one in found:
-            self._known[one.design, one.level] = one
+        for candidate in found:
+            self._known[candidate.design, candidate.level] = candidate
             self.computed += 1
-            if one.lasting:
-                lines.append(self._line(one))
+            if candidate.lasting:
+                lines.append(self._line(candidate))
         self._append(lines)
 
     def made(self, design: Design) -> Made | None:

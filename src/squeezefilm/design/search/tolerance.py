@@ -63,8 +63,8 @@ def made_of(
     for numbers in found:
         wrong = breaches(numbers, limits) if numbers else ()
         kept += bool(numbers) and not wrong
-        for one in wrong:
-            broken[one.key] = broken.get(one.key, 0) + 1
+        for limit in wrong:
+            broken[limit.key] = broken.get(limit.key, 0) + 1
     keys = [key for key in solved.numbers if key in CORRECTED]
     intervals = {}
     for key in keys:

@@ -47,7 +47,7 @@ def worth_solving(
     layer, of a layer too large those far apart. No two are of one plate."""
     pool = list(_expected(requirements, seen, corrections))
     rows = objectives_of(requirements, pool)
-    solved = [one for one in seen["solved"].values() if one.is_feasible]
+    solved = [candidate for candidate in seen["solved"].values() if candidate.is_feasible]
     known = objectives_of(requirements, solved)
     # What the front beats by more than the correction errs has no chance.
     nearest = rows * (1 - _error(requirements, corrections))
@@ -112,8 +112,8 @@ def _adding_most(
     shares = qmc.Sobol(worst.size, seed=1).random(_POINTS)
     points = best + shares * np.maximum(worst - best, 0.0)
     free = np.ones(_POINTS, dtype=bool)
-    for one in known:
-        free &= ~np.all(one <= points, axis=1)
+    for row in known:
+        free &= ~np.all(row <= points, axis=1)
     reached = np.array([np.all(row <= points, axis=1) for row in rows])
     together = np.zeros((plates.max() + 1, _POINTS), dtype=bool)
     np.logical_or.at(together, plates, reached)
@@ -141,7 +141,7 @@ def _expected(
             for one in seen["screened"].values()
             if one.design.shape == shape and not one.reason and one.design.plate not in known
         ]
-        numbers: list[Mapping[str, float]] = [one.numbers for one in here]
+        numbers: list[Mapping[str, float]] = [candidate.numbers for candidate in here]
         doubt, of_frequency = _DOUBT, _OF_FREQUENCY
         if correction is not None:
             numbers, doubt = list(correction.of_all(here)), _CORRECTED_DOUBT

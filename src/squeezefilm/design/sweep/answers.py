@@ -63,7 +63,7 @@ def _units() -> dict[str, si.Unit]:
     marks = (si.unit_of(value) for value in vars(si).values() if typing.get_args(value))
     units = [mark for mark in marks if mark is not None and mark.suffix]
     others = {"_per_m": si.Unit("1/m")}
-    return others | {one.suffix: one for one in (*units, si.Unit("dB"), si.Unit("VA"))}
+    return others | {unit.suffix: unit for unit in (*units, si.Unit("dB"), si.Unit("VA"))}
 
 
 _UNITS = _units()
@@ -121,7 +121,7 @@ def _pattern(known: str) -> re.Pattern[str]:
 
 
 def _known(verb: str, key: str) -> bool:
-    return any(_pattern(one).fullmatch(key) for one in catalogue()[verb])
+    return any(_pattern(pattern).fullmatch(key) for pattern in catalogue()[verb])
 
 
 def asked_for(texts: Sequence[str]) -> tuple[Asked, ...]:
@@ -154,12 +154,12 @@ def _asked_by(name: str) -> list[Asked]:
     wanted = rest if verbs == [head] else name
     for verb in verbs:
         keys = catalogue()[verb]
-        exact = [wanted] if any(_pattern(one).fullmatch(wanted) for one in keys) else []
+        exact = [wanted] if any(_pattern(key).fullmatch(wanted) for key in keys) else []
         plain = exact or _spelled_out(wanted, keys)
         if len(plain) > 1:
             raise InputError(f"ask {name} may be {' or '.join(plain)}; say which", quantity="ask")
-        group = [one for one in keys if without_units(one).startswith(f"{without_units(wanted)}.")]
-        if found := plain or [one for one in group if "*" not in one]:
+        group = [key for key in keys if without_units(key).startswith(f"{without_units(wanted)}.")]
+        if found := plain or [key for key in group if "*" not in key]:
             return [Asked(verb, key) for key in found]
         if group:
             raise InputError(
@@ -187,8 +187,8 @@ def _unknown(name: str, verbs: Sequence[str], wanted: str) -> InputError:
     near = f" Did you mean {', '.join(dict.fromkeys(inside[:5]))}?" if inside else ""
     told: dict[str, str] = {}
     for verb in verbs:
-        for one in plain[verb]:
-            told.setdefault(one.partition(".")[0], verb)
+        for key in plain[verb]:
+            told.setdefault(key.partition(".")[0], verb)
     heads = "; ".join(
         f"{verb}: {', '.join(head for head, of in told.items() if of == verb)}" for verb in verbs
     )

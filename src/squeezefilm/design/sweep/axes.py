@@ -107,12 +107,12 @@ def axis_of(name: str, values: Any, display: Display) -> Axis:
         found = [_value(name, value, option, unit) for value in values]
     require_within(SWEEP_STEPS, len(found), f"steps of {name}")
     if whole:
-        found = [_whole(name, one) for one in found]
+        found = [_whole(name, value) for value in found]
     if len(set(found)) < len(found):
         raise InputError(
             f"{name} takes a value twice; give each once, or fewer steps", quantity=name
         )
-    return Axis((name,), (unit,), tuple((one,) for one in found), logarithmic)
+    return Axis((name,), (unit,), tuple((value,) for value in found), logarithmic)
 
 
 def axis_of_file(path: str | Path, display: Display) -> Axis:
@@ -221,7 +221,7 @@ def _spaced(name: str, asked: re.Match[str], unit: si.Unit) -> Iterator[float]:
             f"{name} cannot be spaced by its logarithm from {asked['first'].strip()}; start above 0"
         )
     # 1.1 mm, and not 1.1000000000000001 mm.
-    yield from (first, *(float(f"{one:.12g}") for one in middle[1:-1]), last)
+    yield from (first, *(float(f"{value:.12g}") for value in middle[1:-1]), last)
 
 
 def _value(name: str, given: Any, option: Option | None, unit: si.Unit | None) -> Value:

@@ -73,8 +73,8 @@ def varied_values(sweep: Sweep) -> tuple[Varied, ...]:
             if len(set(said)) < 2:
                 continue
             if unit is None:
-                words = tuple(dict.fromkeys(str(one) for one in said))
-                values = np.array([float(words.index(str(one))) for one in said])
+                words = tuple(dict.fromkeys(str(word) for word in said))
+                values = np.array([float(words.index(str(word))) for word in said])
                 made.append(Varied(name, None, values, words))
             else:
                 log = axis.sampled[k] == "log" if axis.sampled else axis.logarithmic
@@ -126,11 +126,11 @@ def _of_points(
     """The shares of a fit by orthogonal polynomials; None where the points are too few."""
     y = column.values[there]
     y = (y - y.mean()) / y.std()
-    single = [_functions(one, there) for one in varied]
+    single = [_functions(value, there) for value in varied]
     best: tuple[float, si.FloatArray, list[tuple[int, ...]]] | None = None
     for degree in _DEGREES:
         most = len(y) // 2
-        counts = [len(one) for one in single]
+        counts = [len(functions) for functions in single]
         terms = list(itertools.islice(_terms(counts, degree, varied), most + 1))
         if len(terms) > most:
             break
@@ -147,7 +147,7 @@ def _of_points(
     for _ in range(_REDRAWN):
         rows = random.integers(len(y), size=len(y))
         again.append(_sums(_coefficients(matrix[rows], y[rows]), terms, len(varied)))
-    errors = [np.std([one[k] for one in again], axis=0) for k in range(3)]
+    errors = [np.std([row[k] for row in again], axis=0) for k in range(3)]
     shares = tuple(
         Share(float(f), float(t), float(ef), float(et))
         for f, t, ef, et in zip(own[0], own[1], errors[0], errors[1], strict=True)

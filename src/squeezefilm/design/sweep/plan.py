@@ -72,7 +72,7 @@ class _Range:
             found = low * (high / low) ** shares
         else:
             found = low + shares * (high - low)
-        values = [float(f"{one:.12g}") for one in found.tolist()]
+        values = [float(f"{value:.12g}") for value in found.tolist()]
         if self.whole:
             return [int(value) for value in values]
         return values if self.option is None else [self.option.number(value) for value in values]
@@ -125,10 +125,10 @@ def _axis(ranges: Sequence[_Range], count: int, seed: int) -> Axis:
     )[:count]
     columns = [one.values(shares[:, k]) for k, one in enumerate(ranges)]
     return Axis(
-        tuple(one.name for one in ranges),
-        tuple(one.unit for one in ranges),
+        tuple(axis.name for axis in ranges),
+        tuple(axis.unit for axis in ranges),
         tuple(zip(*columns, strict=True)),
-        sampled=tuple("log" if one.logarithmic else "linear" for one in ranges),
+        sampled=tuple("log" if axis.logarithmic else "linear" for axis in ranges),
     )
 
 
@@ -164,7 +164,7 @@ def plan_of(
     varied = axes_of_ranges(displays[0], vary, *sample)
     axes = (*varied.axes, *axes_of(displays[0], varied.others, over))
     require_each_once(axes)
-    if varied.axes and any(one.verb == FOLLOWED for one in asked):
+    if varied.axes and any(answer.verb == FOLLOWED for answer in asked):
         raise InputError("modes are followed over a grid, not over samples; give ranges steps")
     if len(displays) > 1:
         labels = tuple((name,) for name in told_apart(displays))
@@ -193,7 +193,7 @@ def _check_options(
     axes: Sequence[Axis], asked: Sequence[Asked], displays: Sequence[Display]
 ) -> None:
     """Refuse options that mean nothing to what is asked, before anything is computed."""
-    verbs = [VERBS[name] for name in dict.fromkeys(one.verb for one in asked)]
+    verbs = [VERBS[name] for name in dict.fromkeys(answer.verb for answer in asked)]
     options = [name for axis in axes for name in axis.names if name in OPTIONS]
     for name in options:
         strangers = [verb.name for verb in verbs if not verb.knows(name)]
@@ -208,7 +208,7 @@ def _check_options(
             )
     if {"voltage", "vibration_amplitude"} <= set(options):
         raise InputError("a voltage and an amplitude are both varied; vary one of them")
-    if any(one.verb == "render" for one in asked) and "texture" not in options:
+    if any(answer.verb == "render" for answer in asked) and "texture" not in options:
         raise InputError(
             'what is asked of render needs a texture; give vary = "texture=sine-3mm"',
             quantity="vary",
@@ -235,12 +235,12 @@ class Plan:
     @functools.cached_property
     def verbs(self) -> tuple[str, ...]:
         """The verbs that are asked, the quickest first; `analyze` says what `predict` says."""
-        wanted = {one.verb for one in self.asked}
+        wanted = {answer.verb for answer in self.asked}
         return tuple(v for v in VERBS if v in wanted and not (v == "predict" and self._whole))
 
     @functools.cached_property
     def _whole(self) -> bool:
-        return any(one.verb == "analyze" for one in self.asked)
+        return any(answer.verb == "analyze" for answer in self.asked)
 
     def verb_of(self, asked: Asked) -> str:
         """The verb that answers it here."""
@@ -271,7 +271,7 @@ class Plan:
             display = with_values(display, values) if values else display
         except InputError as error:
             return {}, str(error)
-        draws = SAMPLES if any(one.draws for one in self.asked) else 0
+        draws = SAMPLES if any(answer.draws for answer in self.asked) else 0
         return {verb: Point(display, options, verb, draws) for verb in self.verbs}, ""
 
     def begin(self) -> int:

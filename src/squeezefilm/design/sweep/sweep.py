@@ -135,8 +135,8 @@ class Run:
         reasons = tuple(self._reason(k) for k in range(len(plan.points)))
         follows = self._followed()
         columns: list[Column] = []
-        for one in plan.asked:
-            columns += self._columns(one, follows)
+        for number in plan.asked:
+            columns += self._columns(number, follows)
         hashed = [config_hash(display) for display in plan.displays]
         fingers = "; ".join(dict.fromkeys(display.whose_finger for display in plan.displays))
         origin = stamp(None) | {
@@ -187,7 +187,7 @@ class Run:
         return [None if answer is None else answer.modes for answer in found]
 
     def _followed(self) -> tuple[FollowedMode, ...]:
-        if all(one.verb != FOLLOWED for one in self.plan.asked):
+        if all(number.verb != FOLLOWED for number in self.plan.asked):
             return ()
         return followed_modes(self._modes(), self.plan.shape, self.plan.begin())
 

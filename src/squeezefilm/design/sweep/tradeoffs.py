@@ -18,11 +18,11 @@ def non_dominated(values: si.FloatArray) -> NDArray[np.bool_]:
     # In the order of the sum none is dominated by one that comes later.
     order = left[np.argsort(values[left].sum(axis=1), kind="stable")]
     front: list[int] = []
-    for one in order:
+    for row in order:
         others = values[front]
-        worse = (others <= values[one]).all(axis=1) & (others < values[one]).any(axis=1)
+        worse = (others <= values[row]).all(axis=1) & (others < values[row]).any(axis=1)
         if not worse.any():
-            front.append(int(one))
+            front.append(int(row))
     out[front] = True
     return out
 

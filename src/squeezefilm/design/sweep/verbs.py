@@ -155,8 +155,8 @@ _FELT = _words("normal_force speed surface model position")
 _OF_OTHERS = _OF_TEXTURES | {"band", "wanted_friction"}
 
 VERBS: dict[str, Verb] = {
-    one.name: one
-    for one in (
+    verb.name: verb
+    for verb in (
         Verb("predict", predict, _OF_POINT | {"position", "theory"}, _OF_OTHERS),
         Verb(
             "render",

@@ -256,9 +256,9 @@ def watchdog_checks(talk: Conversation, frequency: si.Hertz) -> list[CheckResult
     talk.listen_for(2 * _KEEP_ALIVE, _KEEP_ALIVE)
     accepted = talk.ask(m.KeepAlive())
     readings = [
-        one.message
-        for one in talk.listen_for(2.5 * ZERO_WITHIN)
-        if isinstance(one.message, m.Reading)
+        heard.message
+        for heard in talk.listen_for(2.5 * ZERO_WITHIN)
+        if isinstance(heard.message, m.Reading)
     ]
     played, zero = False, math.inf
     if accepted is not None:

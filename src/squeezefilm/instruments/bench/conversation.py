@@ -80,8 +80,8 @@ class Conversation:
         """The status that answers a sequence number, or None if none comes in time."""
         end = self.clock() + timeout
         while True:
-            for one in self.listen():
-                found = one.message
+            for heard in self.listen():
+                found = heard.message
                 if isinstance(found, m.Status) and found.answered_sequence == sequence:
                     return found
             if self.clock() >= end:

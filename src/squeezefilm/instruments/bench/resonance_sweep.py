@@ -121,7 +121,7 @@ def peak(x: si.FloatArray, y: si.FloatArray) -> tuple[float, float]:
     top = int(np.argmax(y))
     if top in (0, y.size - 1):
         return math.nan, math.nan
-    left, middle, right = (float(one) for one in y[top - 1 : top + 2])
+    left, middle, right = (float(value) for value in y[top - 1 : top + 2])
     bend = left - 2 * middle + right
     shift = 0.5 * (left - right) / bend if bend else 0.0
     step = float(x[1] - x[0])
@@ -149,8 +149,8 @@ def _mean_square(
     # What was on its way while the plate settled is left out.
     host.poll()
     heard = _readings(host, READINGS, wait)
-    touched = any(one.touching for one in heard)
-    return float(np.mean([(one.pickup * _MICROVOLT) ** 2 for one in heard])), touched
+    touched = any(reading.touching for reading in heard)
+    return float(np.mean([(reading.pickup * _MICROVOLT) ** 2 for reading in heard])), touched
 
 
 def _readings(host: DeviceHost, count: int, wait: Callable[[si.Second], None]) -> list[Reading]:

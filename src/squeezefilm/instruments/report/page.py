@@ -41,8 +41,8 @@ def write_play(
     figures = drawn_figures(draw.FIGURES, result.session, "play-")
     files = picture_files(figures)
     files["summary.json"] = json_text(result.summary())
-    there = {*files, *(one.name for one in folder.glob("*"))}
-    beside = sorted(one for one in there if Path(one).suffix in (".sqft", ".csv", ".json"))
+    there = {*files, *(file.name for file in folder.glob("*"))}
+    beside = sorted(name for name in there if Path(name).suffix in (".sqft", ".csv", ".json"))
     files["play.html"] = _page(result, figures, beside)
     write_folder(folder, files)
     return folder / "play.html"

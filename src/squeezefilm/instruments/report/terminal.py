@@ -53,8 +53,8 @@ def show_check(check: DeviceCheck) -> None:
         styles=lambda row: "green" if row[0] == "pass" else "bold red",
     )
     bad = [result for result in check.results if not result.passed]
-    for one in bad:
-        console.print(f"! {one.name}: {one.advice}")
+    for result in bad:
+        console.print(f"! {result.name}: {result.advice}")
     count = len(check.results)
     console.print(f"{count - len(bad)} of {count} checks passed")
 

@@ -86,7 +86,7 @@ class DesignArea:
         return {"type": "displays", "presets": list(presets.display_names()), "saved": saved}
 
     async def _open_display(self, asked: OpenDisplay) -> Answer:
-        given = [one for one in (asked.preset, asked.file, asked.text) if one is not None]
+        given = [source for source in (asked.preset, asked.file, asked.text) if source is not None]
         if len(given) != 1:
             raise InputError("say which display: a preset, a file or a text, one of them")
         if asked.preset is not None:

@@ -268,9 +268,9 @@ class StudyArea:
     async def _delete(self, asked: DeleteParticipant) -> Answer:
         if asked.confirm != asked.participant:
             raise InputError(f"to delete {asked.participant}, type exactly that; nothing was done")
-        for one in await self.thread.do(lambda studies: studies.sittings.of_study(asked.study)):
-            if one.participant == asked.participant:
-                await self._devices.release(one.id)
+        for sitting in await self.thread.do(lambda studies: studies.sittings.of_study(asked.study)):
+            if sitting.participant == asked.participant:
+                await self._devices.release(sitting.id)
         found = await self.thread.do(Studies.delete, asked.study, asked.participant)
         self._changed(asked.study)
         return {"type": "study", **found}

@@ -66,8 +66,8 @@ def _stated_ends(annotation: Any) -> tuple[_End | None, _End | None]:
     hard = [limit for limit in limits if isinstance(limit, HardLimit)]
     low = [(bounds[name], name == "at_least") for name in ("above", "at_least") if name in bounds]
     high = [(bounds[name], name == "at_most") for name in ("below", "at_most") if name in bounds]
-    low += [(one.least, True) for one in hard]
-    high += [(one.most, True) for one in hard]
+    low += [(limit.least, True) for limit in hard]
+    high += [(limit.most, True) for limit in hard]
     # Of two alike the open one is the narrower.
     return (
         max(low, default=None, key=lambda end: (end[0], not end[1])),
@@ -99,9 +99,9 @@ def _size_of(display: Display, place: tuple[str | int, ...]) -> float:
     for part in place[:-1]:
         owner = owner[part] if isinstance(part, int) else getattr(owner, part)
     beside = [
-        abs(one)
-        for one in (getattr(owner, field.name) for field in dataclasses.fields(owner))
-        if isinstance(one, float) and one
+        abs(value)
+        for value in (getattr(owner, field.name) for field in dataclasses.fields(owner))
+        if isinstance(value, float) and value
     ]
     return 1e-3 * max(beside, default=1.0)
 

@@ -140,7 +140,7 @@ def edited(text: str, path: str, value: str) -> str:
     """
     if len(value) > LONGEST_VALUE:
         raise InputError(f"a value of {len(value)} characters; at most {LONGEST_VALUE} are taken")
-    rows = {one["path"]: one for one in form(text)}
+    rows = {field["path"]: field for field in form(text)}
     row = rows.get(path)
     if row is None:
         raise InputError(f"the display has no value at '{path[:200]}'; open it again")

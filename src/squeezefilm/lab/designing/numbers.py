@@ -143,9 +143,9 @@ def _since_screening(display: Display, p: Prediction, point: WorkingPoint) -> st
         return ""
     metre, hertz = si.Unit("m"), si.Unit("Hz")
     before, after = (
-        f"{si.format_quantity(one.vibration_amplitude, metre, 3)} at "
-        f"{si.format_quantity(one.mode.resonance_frequency, hertz, 3)}"
-        for one in (beam, p)
+        f"{si.format_quantity(prediction.vibration_amplitude, metre, 3)} at "
+        f"{si.format_quantity(prediction.mode.resonance_frequency, hertz, 3)}"
+        for prediction in (beam, p)
     )
     shares = (
         beam.vibration_amplitude / p.vibration_amplitude,
@@ -308,20 +308,20 @@ def calibration_of(display: Display) -> dict[str, Any] | None:
         "responses": _responses(record),
         "frictions": [
             {
-                "vibration_amplitude_m": one.vibration_amplitude,
-                "relative_friction": _between(one.relative_friction, one),
-                "standard_error": one.error * one.relative_friction,
+                "vibration_amplitude_m": point.vibration_amplitude,
+                "relative_friction": _between(point.relative_friction, point),
+                "standard_error": point.error * point.relative_friction,
             }
-            for one in record.compared
-            if one.relative_friction is not None and one.vibration_amplitude is not None
+            for point in record.compared
+            if point.relative_friction is not None and point.vibration_amplitude is not None
         ],
     }
 
 
 def _responses(record: CalibrationRecord) -> list[dict[str, Any]]:
     by_recording: dict[str, dict[str, ComparedAnswer]] = {}
-    for one in record.compared:
-        by_recording.setdefault(one.recording, {})[one.said] = one
+    for answer in record.compared:
+        by_recording.setdefault(answer.recording, {})[answer.said] = answer
     found = []
     for name, answers in by_recording.items():
         if not {_FREQUENCY, _AMPLITUDE} <= set(answers):

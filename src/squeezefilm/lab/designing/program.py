@@ -101,7 +101,7 @@ def pixels_of(data: bytes, name: str) -> tuple[int, int, str]:
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         rows, columns = picture_from(data, name).shape
-    return rows, columns, "; ".join(str(one.message) for one in said)
+    return rows, columns, "; ".join(str(warning.message) for warning in said)
 
 
 def feel(asked: TextureOnDisplay) -> dict[str, Any]:

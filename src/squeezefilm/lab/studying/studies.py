@@ -348,9 +348,9 @@ class Studies:
 
     def delete(self, name: str, participant: str) -> dict[str, Any]:
         """Take a participant out without a trace."""
-        for one in self.sittings.of_study(name):
-            if one.participant == participant:
-                self._runs.pop(one.id, None)
+        for sitting in self.sittings.of_study(name):
+            if sitting.participant == participant:
+                self._runs.pop(sitting.id, None)
         found = delete_participant(self.store(name), participant)
         return {"deleted": to_json(found), **self.status(name)}
 

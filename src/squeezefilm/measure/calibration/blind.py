@@ -258,10 +258,10 @@ def _of_plate(
     # One kind at a time is asked: which of the scales does not matter.
     off = scales_of(random.normal(size=(len(many), len(KINDS))))[:, 0]
     found = {}
-    for one in wanted:
-        column = many[:, asked.index(asked_by(one))]
-        error = off * BELIEVED[one.answer] * random.normal(size=len(many))
-        found[id(one)] = column * np.exp(error)
+    for prediction in wanted:
+        column = many[:, asked.index(asked_by(prediction))]
+        error = off * BELIEVED[prediction.answer] * random.normal(size=len(many))
+        found[id(prediction)] = column * np.exp(error)
     return found
 
 

@@ -147,18 +147,18 @@ def folder_observations(
     check = check_folder(folder)
     observations: list[Observation] = []
     recordings: list[UsedRecording] = []
-    left_out = [f"{one.file.name}: {one.why}" for one in check.refused]
-    for one in check.checks:
-        name = one.file.name
+    left_out = [f"{refusal.file.name}: {refusal.why}" for refusal in check.refused]
+    for recording in check.checks:
+        name = recording.file.name
         tell(f"fit of {name}")
         try:
-            fit = fit_recording(one.recording, display)
+            fit = fit_recording(recording.recording, display)
             fit = response_fit(fit) or fit
         except SqueezefilmError as error:
             left_out.append(f"{name}: {error}")
             continue
         # A friction curve is compared, not fitted: that it differs is what a calibration is for.
-        if not fit.adequacy.adequate and not isinstance(one.recording, FrictionCurve):
+        if not fit.adequacy.adequate and not isinstance(recording.recording, FrictionCurve):
             left_out.append(f"{name}: {fit.adequacy.sentence}")
             continue
         used = [dataclasses.replace(seen, recording=name) for seen in fit.observations]
@@ -170,7 +170,7 @@ def folder_observations(
         used = [seen for seen in used if not usable(seen)]
         observations += used
         if used:
-            recordings.append(_used(one.file, one.kind, one.recording.told))
+            recordings.append(_used(recording.file, recording.kind, recording.recording.told))
     return FolderObservations(tuple(observations), tuple(recordings), tuple(left_out))
 
 

@@ -212,7 +212,7 @@ class NormalScores:
         self._middle, self._half = ends.mean(axis=1), np.diff(ends, axis=1)[:, 0] / 2
         paths = [parameter.path for parameter in parameters]
         pair = [f"actuator.glue.{name}" for name in ("thickness", "young_modulus")]
-        self._glue = [paths.index(one) for one in pair] if set(pair) <= set(paths) else None
+        self._glue = [paths.index(path) for path in pair] if set(pair) <= set(paths) else None
 
     def values(self, scores: si.DimensionlessArray) -> si.FloatArray:
         """The values (in each parameter's unit) of scores, shape (points, parameters)."""

@@ -215,7 +215,7 @@ def _joint(calibration: Calibration, display: Display) -> JointSpread | None:
         friction_offset=float(np.mean(offset[known])),
         friction_offset_deviation=float(np.std(offset[known])),
         draws=tuple(
-            tuple(round(float(one), 4) for one in row)
+            tuple(round(float(value), 4) for value in row)
             for row in np.stack(list(columns.values()), axis=1)
         )
         if columns

@@ -130,7 +130,7 @@ FIGURES = (
         "compared",
         "The model beside every measurement",
         compared_figure,
-        has=lambda one: one.calibration.compared,
+        has=lambda result: result.calibration.compared,
     ),
 )
 """The figures of a calibration, in the order of its page."""

@@ -62,7 +62,7 @@ class StaircaseRule:
             )
         low, high = self.lowest, self.highest
         if self.axis == "log":
-            low, high = (math.log(one) if one > 0 else -math.inf for one in (low, high))
+            low, high = (math.log(end) if end > 0 else -math.inf for end in (low, high))
         if high - low < self.smallest_step:
             raise InputError(
                 f"from lowest to highest there is less than the smallest step, "

@@ -89,7 +89,7 @@ def practise_again(write: sqlite3.Connection, design: StudyDesign, who: str, dis
         "ORDER BY t.number",
         [who, display],
     )
-    names = [one[0] for one in cursor.description]
+    names = [column[0] for column in cursor.description]
     rows = [dict(zip(names, row, strict=True)) for row in cursor]
     if any(row["correct"] is None for row in rows):
         return ""
@@ -123,7 +123,7 @@ def restart_block(store: StudyStore, who: str, session: str, row: Row) -> None:
     ended = [one["ended_utc"] for one in block if one["ended_utc"] is not None]
     if not ended:
         return
-    last = max(datetime.fromisoformat(one) for one in ended)
+    last = max(datetime.fromisoformat(time) for time in ended)
     gone = (datetime.now(UTC) - last).total_seconds()
     if gone <= limit:
         return
@@ -140,4 +140,4 @@ def why_begun_again(store: StudyStore, session: str) -> str:
         "ON r.trial = a.trial WHERE a.session = ? GROUP BY a.reason",
         [session],
     )
-    return "; ".join(f"{one['reason']}: {one['answers']} answers are set aside" for one in found)
+    return "; ".join(f"{row['reason']}: {row['answers']} answers are set aside" for row in found)

@@ -71,7 +71,7 @@ def _of_display(design: StudyDesign, name: str) -> list[str]:
     lacking = [one for one in _presented(design) if not one.texture and one.low < least]
     if not lacking:
         return []
-    asked = ", ".join(f"'{one.name}' for {one.low:.3g}" for one in lacking)
+    asked = ", ".join(f"'{stimulus.name}' for {stimulus.low:.3g}" for stimulus in lacking)
     return [
         f"'{name}' reaches a relative friction of {least:.3g} at its largest amplitude, and the "
         f"design asks it: {asked}; take shallower surfaces, or another display"

@@ -183,7 +183,7 @@ class StudyDesign:
     def answers(self) -> tuple[str, ...]:
         """The answers a participant may give; empty where any number may be given."""
         if self.task == "match-to-sample":
-            return tuple(one.name for one in self.alternatives or self.stimuli)
+            return tuple(surface.name for surface in self.alternatives or self.stimuli)
         return self.described.answers
 
     @property
@@ -203,10 +203,10 @@ class StudyDesign:
     def stimulus(self, name: str) -> Stimulus:
         """The stimulus of that name, catch trials' too. Raises `InputError` if there is none."""
         every = [*self.stimuli, *(trial.stimulus for trial in self.catch)]
-        for one in every:
-            if one.name == name:
-                return one
-        known = [one.name for one in every]
+        for stimulus in every:
+            if stimulus.name == name:
+                return stimulus
+        known = [stimulus.name for stimulus in every]
         raise InputError(
             f"design '{self.name}' has no stimulus '{name}'.{si.did_you_mean(name, known)} "
             f"It has: {', '.join(known)}"
@@ -317,10 +317,10 @@ class StudyDesign:
 
     def series(self, name: str) -> AdaptiveCondition:
         """The adaptive series of that name. Raises `InputError` if there is none."""
-        for one in self.adaptive:
-            if one.name == name:
-                return one
-        known = ", ".join(one.name for one in self.adaptive)
+        for series in self.adaptive:
+            if series.name == name:
+                return series
+        known = ", ".join(series.name for series in self.adaptive)
         raise InputError(f"'{name}' is none of: {known}", quantity="adaptive_series")
 
     def comparison(self, series: AdaptiveCondition, intensity: float) -> Stimulus:

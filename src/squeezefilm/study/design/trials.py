@@ -101,7 +101,7 @@ def williams_square(size: int) -> tuple[tuple[int, ...], ...]:
     zigzag = [
         (place + 1) // 2 if place % 2 else (size - place // 2) % size for place in range(size)
     ]
-    rows = [tuple((one + shift) % size for one in zigzag) for shift in range(size)]
+    rows = [tuple((place + shift) % size for place in zigzag) for shift in range(size)]
     # One condition has no neighbours: its mirror image is itself.
     return tuple(rows if size % 2 == 0 or size == 1 else rows + [row[::-1] for row in rows])
 
@@ -129,7 +129,7 @@ def orders(
         random = _random(seed, _ORDERS, cycle)
         relabelled, rows = random.permutation(count), random.permutation(len(square))
         row = square[rows[(participant_number + place) % len(square)]]
-        found.append(tuple(int(relabelled[one]) for one in row))
+        found.append(tuple(int(relabelled[label]) for label in row))
     return tuple(found)
 
 
@@ -264,10 +264,10 @@ def _blocks(
         queue: list[tuple[Phase, Condition, str]] = [
             ("main", every[i], "") for row in mine for i in row
         ]
-        for one in (c for c, b in zip(catches, where, strict=True) if b == block):
+        for trial in (c for c, b in zip(catches, where, strict=True) if b == block):
             # Never the first trial of a block: people are still settling.
             at = int(spread.integers(1, len(queue) + 1))
-            queue.insert(at, ("catch", design.catch_condition(one), one.answer))
+            queue.insert(at, ("catch", design.catch_condition(trial), trial.answer))
         found.append(queue)
     return found
 

@@ -57,7 +57,7 @@ def response_time_summary(
     Raises:
         InputError: times not above 0, arrays of unequal length, or a level not between 0 and 1.
     """
-    person, kind = (np.asarray(one, dtype=np.int64) for one in (participant, condition))
+    person, kind = (np.asarray(numbers, dtype=np.int64) for numbers in (participant, condition))
     given = np.asarray(response_time, dtype=float)
     one_per_trial(participant=person, condition=kind, response_time=given)
     taken = ~np.isnan(given)

@@ -110,7 +110,7 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
     """
     main, rule = answers.main(display), rule_of(answers.design)
     caught = answers.take((answers.display == display) & (answers.phase == "catch"))
-    missed = {one.person: one for one in attention(caught)}
+    missed = {person.person: person for person in attention(caught)}
     people = [main.take(main.participant == person) for person in np.unique(main.participant)]
     models = [_models(mine) if main.design.answers else () for mine in people]
     follows = [_follows(mine, model) for mine, model in zip(people, models, strict=True)]
@@ -187,7 +187,7 @@ def _models(mine: Answers, lapse: float = _LAPSE) -> _Models:
     if mine.design.task == "same-different":
         places = np.linspace(-1.0, 1.5, _PLACES) * reach
     spreads = np.geomspace(least / 4, 8 * reach, _SPREADS)
-    place, spread = (one.ravel() for one in np.meshgrid(places, spreads))
+    place, spread = (axis.ravel() for axis in np.meshgrid(places, spreads))
     rise = ndtr((x[:, None] - place) / spread)
     p = 0.5 * lapse + (1 - lapse) * rise
     said = y[:, None]
@@ -220,7 +220,7 @@ def _among_names(mine: Answers) -> _Models:
     guess = own[mine.choice][:, None]
     known = np.linspace(0.0, 1 - _LAPSE, _SPREADS)
     right, mirrored = (
-        (mine.choice == one)[:, None] for one in (mine.right, names - 1 - mine.right)
+        (mine.choice == name)[:, None] for name in (mine.right, names - 1 - mine.right)
     )
     # Who has the middle of an odd scale right is not mixed up by it.
     mirrored = mirrored & ~right

@@ -179,7 +179,7 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
     answered = Answered(code, axis, prior, guess_rate, on_axis(places, axis), k, n)
     likelihood = _penalised(answered)
     starts = coarse_maxima(answered)
-    best, _ = max((likelihood.maximum(start) for start in starts), key=lambda found: found[1])
+    best, _ = max((likelihood.maximum(start) for start in starts), key=lambda pair: pair[1])
     posterior = grid_posterior(answered, best)
     fitted = PARAMETERS if guess_rate is None else PARAMETERS[: kernel.GUESS]
     likeliest = kernel.log_density(code, best, np.ones(4), answered.x, k, n)

@@ -70,7 +70,7 @@ def problems(rows: Rows, design: Callable[[], StudyDesign]) -> Iterator[str]:
         return
     yield from _row_problems("study", wanted["study"], studies, _CHECKS)
     checks = _CHECKS | {
-        "display": lambda one: one in design().displays,
+        "display": lambda display: display in design().displays,
         "adaptive": lambda one: not one or one in [series.name for series in design().adaptive],
     }
     for table in TABLES:
@@ -146,7 +146,7 @@ def _json(text: str) -> Any:
 
 def _texts(text: str) -> bool:
     found = _json(text)
-    return isinstance(found, list) and all(isinstance(one, str) for one in found)
+    return isinstance(found, list) and all(isinstance(item, str) for item in found)
 
 
 def _traces(text: str) -> bool:
@@ -156,7 +156,7 @@ def _traces(text: str) -> bool:
 def _fields(text: str) -> bool:
     """True where a text is an object of plain values."""
     found = _json(text)
-    return isinstance(found, dict) and all(isinstance(one, _PLAIN) for one in found.values())
+    return isinstance(found, dict) and all(isinstance(value, _PLAIN) for value in found.values())
 
 
 def _fields_or_none(text: str) -> bool:
@@ -169,7 +169,7 @@ def _verification(text: str) -> bool:
     return (
         isinstance(found, dict)
         and wanted <= found.keys()
-        and all(isinstance(found[one], _PLAIN) for one in wanted)
+        and all(isinstance(found[key], _PLAIN) for key in wanted)
     )
 
 
@@ -191,20 +191,20 @@ def _identifier(text: str) -> bool:
 _CHECKS: dict[str, Check] = {
     "uuid": _identifier,
     "participant": _identifier,
-    "seed": lambda one: 0 <= one <= 2**53,
-    "stations": lambda one: one >= 1,
+    "seed": lambda number: 0 <= number <= 2**53,
+    "stations": lambda number: number >= 1,
     "station": _not_negative,
     "number": _not_negative,
-    "phase": lambda one: one in _PHASES,
+    "phase": lambda phase: phase in _PHASES,
     "stimuli": _texts,
     "alternatives": _texts,
     "pause_s": _not_negative,
     "conditions": _fields,
     "exposure": _fields_or_none,
-    "moment": lambda one: one in ("before", "after"),
+    "moment": lambda moment: moment in ("before", "after"),
     "result": _verification,
     "traces": _traces,
-    "correct": lambda one: one in (0, 1),
+    "correct": lambda flag: flag in (0, 1),
     "response_time_s": _not_negative,
     **dict.fromkeys(
         ("created_utc", "enrolled_utc", "started_utc", "made_utc", "presented_utc", "ended_utc"),

@@ -214,13 +214,13 @@ def _found_in(paths: Iterable[Path], identifiers: set[str]) -> list[str]:
     return sorted(
         str(path)
         for path in paths
-        if any(one in os.fsencode(path.name) for one in wanted)
+        if any(identifier in os.fsencode(path.name) for identifier in wanted)
         or (path.is_file() and not path.is_symlink() and _holds(path, wanted))
     )
 
 
 def _holds(path: Path, wanted: list[bytes]) -> bool:
-    longest = max(len(one) for one in wanted)
+    longest = max(len(identifier) for identifier in wanted)
     tail = b""
     try:
         with (
@@ -229,7 +229,7 @@ def _holds(path: Path, wanted: list[bytes]) -> bool:
         ):
             while piece := file.read(_PIECE):
                 whole = tail + piece
-                if any(one in whole for one in wanted):
+                if any(identifier in whole for identifier in wanted):
                     return True
                 tail = whole[-longest:]
     except OSError as error:

@@ -234,10 +234,10 @@ class ExploredTrials:
         if not found:
             return dict(NO_MEASURES)
         values = (
-            max(one.peak_speed for one in found),
+            max(motion.peak_speed for motion in found),
             sum(one.touched for one in found),
             float(sum(one.passes for one in found)),
-            _mean([one.along_x_share for one in found]),
+            _mean([motion.along_x_share for motion in found]),
             _mean([one.coverage for one in found]),
         )
         return {

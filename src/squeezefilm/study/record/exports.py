@@ -173,7 +173,7 @@ def psych_ds(store: StudyStore) -> dict[str, str]:
     """The files of a Psych-DS dataset: path within it → text."""
     design = store.design
     name = keyword(design.name)
-    columns = {one.name: one for one in (*COLUMNS, *SESSION_COLUMNS)}
+    columns = {column.name: column for column in (*COLUMNS, *SESSION_COLUMNS)}
     about = {
         "@context": "https://schema.org",
         "@type": "Dataset",
@@ -198,7 +198,7 @@ def psych_ds(store: StudyStore) -> dict[str, str]:
 
 def keyword(text: str) -> str:
     """A text as the value of a keyword in a file's name: letters and digits only."""
-    return "".join(one for one in text if one.isascii() and one.isalnum())
+    return "".join(character for character in text if character.isascii() and character.isalnum())
 
 
 def description(store: StudyStore) -> str:

@@ -107,7 +107,7 @@ def columns_of(text: str, quantity: str = "columns") -> dict[str, str]:
     """ "choice=key_resp.keys, participant_id=who" as a mapping. Raises `InputError`."""
     found: dict[str, str] = {}
     for part in filter(None, (one.strip() for one in text.split(","))):
-        name, is_equal, theirs = (one.strip() for one in part.partition("="))
+        name, is_equal, theirs = (word.strip() for word in part.partition("="))
         if not (is_equal and name and theirs):
             raise InputError(
                 f"'{part}' says no column and no word; write NAME=COLUMN, like "
@@ -262,7 +262,7 @@ def _row(
         raise refused("estimate", f"'{words['estimate']}' is not above 0, and has no logarithm")
     pair = [str(found[key]) for key in SURFACES if found[key]]
     try:
-        surfaces = [presented(design, one, found) for one in pair]
+        surfaces = [presented(design, name, found) for name in pair]
     except InputError as error:
         raise refused(error.quantity or "", str(error)) from error
     if "answer" not in words:

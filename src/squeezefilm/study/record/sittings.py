@@ -58,9 +58,9 @@ class Sitting:
     def __post_init__(self) -> None:
         texts = (self.id, self.study, self.participant, self.device, self.consent_text)
         if (
-            not all(isinstance(one, str) for one in (*texts, self.session or ""))
+            not all(isinstance(text, str) for text in (*texts, self.session or ""))
             or not isinstance(self.conditions, dict)
-            or not all(isinstance(one, bool) for one in (self.acknowledged, self.ended))
+            or not all(isinstance(flag, bool) for flag in (self.acknowledged, self.ended))
         ):
             raise InputError(f"'{self.id!r:.40}' is no sitting: a value is of another type")
 
@@ -81,9 +81,9 @@ class Sittings:
         """A sitting with a fresh id; those that the participant still had open are ended."""
         made = Sitting(secrets.token_urlsafe(12), **fields)
         with self._changing() as kept:
-            for one in kept.values():
-                if (one.study, one.participant) == (made.study, made.participant):
-                    kept[one.id] = dataclasses.replace(one, ended=True)
+            for sitting in kept.values():
+                if (sitting.study, sitting.participant) == (made.study, made.participant):
+                    kept[sitting.id] = dataclasses.replace(sitting, ended=True)
             while len(kept) >= MOST_SITTINGS:
                 ended = (key for key, one in kept.items() if one.ended)
                 kept.pop(next(ended, None) or next(iter(kept)))
@@ -147,7 +147,7 @@ class Sittings:
         if not self.file.parent.is_dir():
             return []
         name = re.compile(rf"\.{re.escape(self.file.name)}\.[a-z0-9_]+")
-        return sorted(one for one in self.file.parent.iterdir() if name.fullmatch(one.name))
+        return sorted(file for file in self.file.parent.iterdir() if name.fullmatch(file.name))
 
     def _all(self) -> Mapping[str, Sitting]:
         """Contents of the file now; read again only where another program has replaced it."""
@@ -182,7 +182,7 @@ class Sittings:
         with _locked(self.file.parent):
             kept = self._read()
             yield kept
-            rows = [dataclasses.asdict(one) for one in kept.values()]
+            rows = [dataclasses.asdict(sitting) for sitting in kept.values()]
             write_whole(self.file, json.dumps(rows, ensure_ascii=False, indent=1))
             self._version = None
 

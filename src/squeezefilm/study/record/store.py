@@ -241,7 +241,7 @@ class StudyStore:
         self._database.require_in_place()
         try:
             cursor = self._database.connection.execute(query, tuple(values))
-            names = [one[0] for one in cursor.description]
+            names = [column[0] for column in cursor.description]
             return [dict(zip(names, row, strict=True)) for row in cursor]
         except FAILURES as error:
             raise RecordError(f"{self.path} cannot be read: {error}") from error

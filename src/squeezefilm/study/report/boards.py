@@ -45,14 +45,14 @@ def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERA
     """
     si.require("tolerance", tolerance, si.Unit("m"), above=0.0, at_most=1e-3)
     found = boards(design)
-    narrow = min(min(one.groove_width, one.ridge_width) for one in found)
+    narrow = min(min(board.groove_width, board.ridge_width) for board in found)
     si.require("tolerance", tolerance, si.Unit("m"), below=narrow / 2)
     folder = require_folder(folder)
     figures = {"boards": ("The boards, to scale", draw_boards(found))}
     numbers = {
         "study": design.name,
         "tolerance_m": tolerance,
-        "boards": [_numbers(one) for one in found],
+        "boards": [_numbers(board) for board in found],
         "provenance": stamp(design),
     }
     files: dict[str, str | bytes] = {
@@ -67,7 +67,7 @@ def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERA
         title,
         title,
         "for a workshop; lengths in millimetres in the DXF",
-        section("What the study calls its lengths", bullets(one.says for one in found))
+        section("What the study calls its lengths", bullets(board.says for board in found))
         + section("The boards", _table(found, tolerance))
         + picture_sections(figures)
         + section("Files", f"<p>{links(names)}</p>"),
@@ -107,16 +107,16 @@ def board_rows(found: tuple[Board, ...], tolerance: si.Metre) -> list[tuple[str,
     within = f"± {shown(tolerance, M, 2)}"
     return [
         (
-            one.grating.name,
-            shown(one.grating.period, M, 4),
-            f"{shown(one.ridge_width, M, 4)} {within}",
-            f"{shown(one.groove_width, M, 4)} {within}",
-            f"{one.ridges}",
-            shown(one.grating.ridge_height, M, 3),
-            f"{shown(one.grating.length, M, 4)} × {shown(one.grating.width, M, 4)}",
-            one.grating.material,
+            board.grating.name,
+            shown(board.grating.period, M, 4),
+            f"{shown(board.ridge_width, M, 4)} {within}",
+            f"{shown(board.groove_width, M, 4)} {within}",
+            f"{board.ridges}",
+            shown(board.grating.ridge_height, M, 3),
+            f"{shown(board.grating.length, M, 4)} × {shown(board.grating.width, M, 4)}",
+            board.grating.material,
         )
-        for one in found
+        for board in found
     ]
 
 

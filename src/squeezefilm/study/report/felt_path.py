@@ -51,7 +51,7 @@ def felt_path(path: FeltPath) -> Figure:
 def _over_surface(axes: Axes, found: FeltPath) -> None:
     from squeezefilm.physics.perception.path_runs import straight_runs
 
-    x, y = (np.concatenate([getattr(path, one) for path in found.paths]) for one in ("x", "y"))
+    x, y = (np.concatenate([getattr(path, axis) for path in found.paths]) for axis in ("x", "y"))
     room = 0.1 * max(np.ptp(x), np.ptp(y)) + 1e-3
     ends = x.min() - room, x.max() + room, y.min() - room, y.max() + room
     u, w = np.linspace(*ends[:2], _PIXELS), np.linspace(*ends[2:], _PIXELS)
@@ -110,7 +110,7 @@ def show_felt(path: FeltPath) -> None:
     head = ("", "Runs", "Clearest rhythm", "d′", "Next", "Swing asked", "Swing felt")
     table(console, head, [_row(name, path) for name in path.directions], fixed=(0,))
     heading(console, f"How far from each surface by {path.compared_by}")
-    away = [(one.name, _apart(one.apart)) for one in path.nearest]
+    away = [(likeness.name, _apart(likeness.apart)) for likeness in path.nearest]
     table(console, ("Surface", "Standard deviations"), away, fixed=(0,))
     for said in path.assumed:
         console.print(f"  {said}", style="dim", highlight=False)
@@ -142,8 +142,8 @@ def _row(name: str, path: FeltPath) -> tuple[str, ...]:
 
 def show_all(found: tuple[FeltPath, ...]) -> None:
     """Print each surface's after another."""
-    for one in found:
-        show_felt(one)
+    for path in found:
+        show_felt(path)
     plain_console().print(
         "Nobody's percept was measured: this is what the observer's senses make of the path.",
         highlight=False,

@@ -151,7 +151,7 @@ def study_figures(analysis: StudyAnalysis) -> dict[str, tuple[str, Figure]]:
 
 def drawing(analysis: StudyAnalysis, key: str) -> Figure:
     """The figure of a study's analysis of that key."""
-    return next(one for one in _figures_of(analysis) if one.key == key).draw(analysis)
+    return next(figure for figure in _figures_of(analysis) if figure.key == key).draw(analysis)
 
 
 def _figures_of(analysis: StudyAnalysis) -> tuple[FigureOf, ...]:

@@ -130,11 +130,11 @@ def _adaptive(axes: Axes, analysis: TaskAnalysis) -> None:
     x = np.geomspace(places.min() / 1.2, places.max() * 1.2, 161)
     for function in list(analysis.functions.values())[:_MOST_LINES]:
         axes.plot(100 * x, 100 * _share(function, np.log1p(x)), **_FAINT)
-    for found in analysis.conditions:
-        if found.share is not None:
-            ends = 100 * found.share.low, 100 * found.share.high
-            axes.plot([100 * found.value] * 2, ends, **style.INTERVAL)
-            axes.plot([100 * found.value], [100 * found.share.value], **style.ESTIMATE)
+    for condition in analysis.conditions:
+        if condition.share is not None:
+            ends = 100 * condition.share.low, 100 * condition.share.high
+            axes.plot([100 * condition.value] * 2, ends, **style.INTERVAL)
+            axes.plot([100 * condition.value], [100 * condition.share.value], **style.ESTIMATE)
     axes.set(xscale="log", xlabel="difference from the reference (%)", ylabel="correct (%)")
     axes.set_ylim(40, 103)
     style.plain_log(axes.xaxis)
@@ -193,7 +193,7 @@ def persons(analysis: TaskAnalysis) -> Figure:
     few = len(found) <= 16
     axes.set_xticks(
         range(len(found)) if few else [],
-        [style.plain(one.person, 12) for one in found] if few else [],
+        [style.plain(person.person, 12) for person in found] if few else [],
         rotation=30,
     )
     axes.set(xlabel="participant, by estimate", ylabel=f"{analysis.measure}{unit}")
@@ -222,7 +222,7 @@ def sensitivity(analysis: TaskAnalysis) -> Figure:
         axes.plot([scale * value], [d.value], **style.ESTIMATE)
     axes.axhline(0, **style.ZERO)
     if unlike:
-        _named(axes, [one.name for one in known])
+        _named(axes, [condition.name for condition in known])
     else:
         axes.axvline(scale * analysis.standard, **style.GUIDE)
     axes.set(xlabel="the other surface" if unlike else label, ylabel="d′")

@@ -109,7 +109,7 @@ def _screening_first(screening: Screening) -> list[str]:
     named = screening.named
     if not named:
         return said
-    names = ", ".join(one.person for one in named)
+    names = ", ".join(person.person for person in named)
     count = f"{len(named)} of {len(screening.people)} people"
     verbs = ("does", "is") if len(named) == 1 else ("do", "are")
     done = "left out" if screening.left_out else "kept, as the design's rule only marks"
@@ -124,11 +124,11 @@ def screening_rows(screening: Screening, named: bool = False) -> list[tuple[str,
     """Everybody, judged; or those only who do not do the task."""
     return [
         (
-            one.person,
-            f"{one.follows:.1f}",
-            "; ".join(one.reasons) or "; ".join(("does the task", *one.doubts)),
+            person.person,
+            f"{person.follows:.1f}",
+            "; ".join(person.reasons) or "; ".join(("does the task", *person.doubts)),
         )
-        for one in (screening.named if named else screening.people)
+        for person in (screening.named if named else screening.people)
     ]
 
 
@@ -152,15 +152,15 @@ def _value_and_interval(estimate: Estimate, scale: float, unit: str) -> tuple[st
 
 def _course_first(course: Course) -> list[str]:
     said = []
-    for one in course.drift:
-        if one.p_value < _SURE:
-            word = "rises" if one.change > 0 else "falls"
+    for drift in course.drift:
+        if drift.p_value < _SURE:
+            word = "rises" if drift.change > 0 else "falls"
             said.append(
-                f"The {one.quantity} {word} by {abs(one.change):.2g} over the session "
-                f"(p = {one.p_value:.1g}): people learned, or tired."
+                f"The {drift.quantity} {word} by {abs(drift.change):.2g} over the session "
+                f"(p = {drift.p_value:.1g}): people learned, or tired."
             )
     if course.attention:
-        missed = sum(not one.attended for one in course.attention)
+        missed = sum(not person.attended for person in course.attention)
         said.append(
             f"{missed} of {len(course.attention)} people missed more catch trials than one who "
             "attends."
@@ -196,16 +196,16 @@ def course_rows(course: Course | None) -> Rows:
     if course is None:
         return []
     rows = []
-    for one in course.drift:
-        value = f"{one.change:+.2g}"
+    for drift in course.drift:
+        value = f"{drift.change:+.2g}"
         said = "one person: no interval"
-        if not math.isnan(one.low):
-            said = f"{one.low:+.2g} to {one.high:+.2g}, p = {one.p_value:.2g} (t over people)"
-        rows.append((f"Drift of the {one.quantity}", value, said))
+        if not math.isnan(drift.low):
+            said = f"{drift.low:+.2g} to {drift.high:+.2g}, p = {drift.p_value:.2g} (t over people)"
+        rows.append((f"Drift of the {drift.quantity}", value, said))
     if course.attention:
-        right = sum(one.right for one in course.attention)
-        asked = sum(one.asked for one in course.attention)
-        missed = [one.person for one in course.attention if not one.attended]
+        right = sum(person.right for person in course.attention)
+        asked = sum(person.asked for person in course.attention)
+        missed = [person.person for person in course.attention if not person.attended]
         rows.append(
             (
                 "Catch trials right",

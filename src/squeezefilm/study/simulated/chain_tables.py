@@ -111,8 +111,8 @@ class ChainTables:
         fingers, stimuli, directions, candidates): one of strokes, two of free exploration."""
         every = [self.virtual] if self.across is None else [self.virtual, self.across]
         return Candidates(
-            np.stack([one.period for one in every], axis=-2),
-            np.stack([one.d_prime for one in every], axis=-2),
+            np.stack([surface.period for surface in every], axis=-2),
+            np.stack([surface.d_prime for surface in every], axis=-2),
         )
 
     def explain(self, display: int = 0) -> dict[str, Causes]:

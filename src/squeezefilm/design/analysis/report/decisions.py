@@ -27,12 +27,12 @@ def interval_rows(unsure: UncertainFriction | None) -> list[Row]:
     """The intervals of amplitude and power: quantity, value, remark."""
     if unsure is None or unsure.amplitude_interval is None:
         return []
-    low, high = (shown(one, M, 3) for one in unsure.amplitude_interval)
+    low, high = (shown(end, M, 3) for end in unsure.amplitude_interval)
     rows = [("", f"{low} to {high}", f"{100 * unsure.level:.0f} % interval of the amplitude")]
     if unsure.power is not None:
         rows.append(("Power taken", shown(unsure.power, _W, 3), "plate and finger, cold"))
     if unsure.power_interval is not None:
-        low, high = (shown(one, _W, 3) for one in unsure.power_interval)
+        low, high = (shown(end, _W, 3) for end in unsure.power_interval)
         rows.append(("", f"{low} to {high}", f"{100 * unsure.level:.0f} % interval of the power"))
     return rows
 
@@ -51,7 +51,7 @@ def wanted_rows(wanted: Wanted | None) -> list[Row]:
     if unsure is None:
         why = wanted.why_no_interval
         return [*rows, ("", "no interval", why)] if why else rows
-    low, high = (_volts(one) for one in unsure.interval)
+    low, high = (_volts(end) for end in unsure.interval)
     rows.append(
         (
             "",
@@ -75,12 +75,12 @@ def felt_rows(felt: FeltGratings | None, speed: si.MetrePerSecond | None = None)
         return []
     return [
         (
-            f"Finest grating felt at {1e3 * one.speed:g} mm/s",
-            _period(one.felt),
-            _felt_remark(felt, one),
+            f"Finest grating felt at {1e3 * at_speed.speed:g} mm/s",
+            _period(at_speed.felt),
+            _felt_remark(felt, at_speed),
         )
-        for one in felt.at
-        if speed in (None, one.speed)
+        for at_speed in felt.at
+        if speed in (None, at_speed.speed)
     ]
 
 
@@ -110,14 +110,14 @@ def sensitivity_rows(sensitivities: DisplaySensitivities) -> list[list[str]]:
     most = sorted(sensitivities.rows, key=_weight, reverse=True)[:SHOWN]
     return [
         [
-            one.path,
-            " to ".join(_value(end.value, one.unit) for end in (one.low, one.high)),
-            _shifts(one.low.frequency_shift, one.high.frequency_shift),
-            _shifts(one.low.amplitude_shift, one.high.amplitude_shift),
-            _frictions(one.low, one.high),
-            "as described" if one.origin == "given" else "assumed",
+            row.path,
+            " to ".join(_value(end.value, row.unit) for end in (row.low, row.high)),
+            _shifts(row.low.frequency_shift, row.high.frequency_shift),
+            _shifts(row.low.amplitude_shift, row.high.amplitude_shift),
+            _frictions(row.low, row.high),
+            "as described" if row.origin == "given" else "assumed",
         ]
-        for one in most
+        for row in most
     ]
 
 
@@ -144,7 +144,7 @@ def _shifts(low: float | None, high: float | None) -> str:
 
 def _frictions(low: Shift, high: Shift) -> str:
     each = [
-        "–" if one.relative_friction is None else f"{one.relative_friction:.2f}"
-        for one in (low, high)
+        "–" if end.relative_friction is None else f"{end.relative_friction:.2f}"
+        for end in (low, high)
     ]
     return ", ".join(each)

@@ -177,7 +177,7 @@ def active_area(analysis: Analysis) -> Figure:
 def _title(area: ActiveArea) -> str:
     """The message; the numbers of the friction stand beside the figure."""
     if area.best is None or area.worst is None:
-        low, high = (1e6 * one for one in area.amplitude_range)
+        low, high = (1e6 * end for end in area.amplitude_range)
         return f"Under the pad {low:.3g} to {high:.3g} µm (root mean square) over the active area"
     return "Friction under a finger, by the place of its centre on the active area"
 

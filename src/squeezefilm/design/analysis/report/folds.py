@@ -162,8 +162,8 @@ def _origin(analysis: Analysis) -> Fold:
         if analysis.whole or value.evidence == "assumed"
     ]
     rows = [
-        (one.path, one.text, one.source or "–", _evidence(one.evidence, analysis.whole))
-        for one in values
+        (value.path, value.text, value.source or "–", _evidence(value.evidence, analysis.whole))
+        for value in values
     ]
     head = ("Key", "Value", "Source", "Evidence")
     caption = "Every value of the description" if analysis.whole else "Values that are assumed"

@@ -87,16 +87,16 @@ def influence_rows(unsure: UncertainFriction, knowledge: Knowledge, most: int) -
     ]
     return [
         [
-            one.parameter.path,
-            spread_words(one.parameter.spread, law=hasattr(one.parameter, "options")),
-            f"{100 * one.total:.0f} ± {si.percent(one.total_error)}",
+            influence.parameter.path,
+            spread_words(influence.parameter.spread, law=hasattr(influence.parameter, "options")),
+            f"{100 * influence.total:.0f} ± {si.percent(influence.total_error)}",
             "as described"
-            if one.parameter.origin == "given"
+            if influence.parameter.origin == "given"
             else "assumed weights"
-            if hasattr(one.parameter, "options")
+            if hasattr(influence.parameter, "options")
             else "assumed range",
         ]
-        for one in group[:most]
+        for influence in group[:most]
     ]
 
 
@@ -123,7 +123,7 @@ def weight_rows(unsure: UncertainFriction) -> list[list[str]]:
     ]
     return [
         [choice.path, option.name, si.percent(option.weight), option.why]
-        for choice in sorted(choices, key=lambda one: one.path)
+        for choice in sorted(choices, key=lambda choice: choice.path)
         for option in choice.options
     ]
 

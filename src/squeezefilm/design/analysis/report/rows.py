@@ -84,13 +84,13 @@ def with_measured(
     """Rows whose remarks begin with what was measured of their quantity on the real display, and by
     how much the computed number differs; of an amplitude at another voltage (V) that is said."""
     said = dict[str, str]()
-    for one in beside:
-        more = "+" if one.difference > 0 else "−"
-        text = f"{more}{si.percent(abs(one.difference))} on measured "
-        text += shown(one.measured, si.Unit(one.unit), 3)
-        if one.voltage not in (None, voltage):
-            text += f" at {shown(one.voltage, V)}"
-        said[one.quantity] = f"{text} ({printable(one.source) or 'source not stated'})"
+    for measured in beside:
+        more = "+" if measured.difference > 0 else "−"
+        text = f"{more}{si.percent(abs(measured.difference))} on measured "
+        text += shown(measured.measured, si.Unit(measured.unit), 3)
+        if measured.voltage not in (None, voltage):
+            text += f" at {shown(measured.voltage, V)}"
+        said[measured.quantity] = f"{text} ({printable(measured.source) or 'source not stated'})"
     return [
         (label, value, "; ".join(part for part in (said.get(label), remark) if part))
         for label, value, remark in rows

@@ -221,10 +221,10 @@ def _allowed(made: Fabrication) -> str:
         why = made.no_intervals or "no interval was computed"
         return f"<p>Nothing: {as_html(why)}.</p>"
     rows = []
-    for one in made.drawn:
-        low, high = one.spread
-        whose = "as described" if one.origin == "given" else "assumed"
-        rows.append((one.path, low, high, whose, one.source))
+    for parameter in made.drawn:
+        low, high = parameter.spread
+        whose = "as described" if parameter.origin == "given" else "assumed"
+        rows.append((parameter.path, low, high, whose, parameter.source))
     caption = (
         "Plates with these values drawn at once were solved, each with what a solved plate is "
         "believed to be off by itself (assumed)"
@@ -302,8 +302,8 @@ def _common(made: Fabrication) -> Iterable[str]:
             said += " They are drawn straight, from where they cross the middle."
         yield said
     yield _tolerances(made)
-    evidence = [one.evidence for one in made.display.provenance.values()]
-    if assumed := sum(one == "assumed" for one in evidence):
+    evidence = [source.evidence for source in made.display.provenance.values()]
+    if assumed := sum(word == "assumed" for word in evidence):
         yield (
             f"{assumed} of {len(evidence)} values of the description are assumed: index.html "
             "lists them. Check them before anything is cut."

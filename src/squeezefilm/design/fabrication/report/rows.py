@@ -102,7 +102,7 @@ def bill_rows(bill: Sequence[BillRow]) -> list[tuple[str, ...]]:
         )
         for number, one in enumerate(bill, 1)
     ]
-    total = sum(one.mass or 0.0 for one in bill if one.in_mass)
+    total = sum(row.mass or 0.0 for row in bill if row.in_mass)
     return [*rows, ("", "Sum", "", "", "", "", said(total, "kg"), "of what the display is made of")]
 
 
@@ -134,7 +134,7 @@ def layout_rows(made: Fabrication) -> tuple[tuple[str, ...], list[tuple[str, ...
 
 def lead_rows(made: Fabrication) -> list[tuple[str, ...]]:
     """Rows of what is joined to what."""
-    return [(one.name, ", ".join(one.electrodes), one.to) for one in leads_of(made.electrodes)]
+    return [(lead.name, ", ".join(lead.electrodes), lead.to) for lead in leads_of(made.electrodes)]
 
 
 def plan_csv(made: Fabrication) -> str:

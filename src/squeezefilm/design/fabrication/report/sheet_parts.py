@@ -259,7 +259,7 @@ class Sheet:
         """Drawing that was composed."""
         paper = (1e-3 * PAPER[0], 1e-3 * PAPER[1])
         left, _, right, top = VIEWS
-        views = tuple(1e-3 * one for one in (left - 4.0, self.lowest, right + 4.0, top + 4.0))
+        views = tuple(1e-3 * edge for edge in (left - 4.0, self.lowest, right + 4.0, top + 4.0))
         return Drawing(
             LAYERS,
             tuple(self.items),

@@ -71,8 +71,8 @@ def predictions(found: Sequence[Prediction]) -> Figure:
         color, dashes = style.LINES[number % len(style.LINES)]
         table = law.table(highest)
         axes.plot(1e6 * table.amplitude, table.at_speed(law.speed), color=color, ls=dashes)
-    for one in found:
-        style.mark(axes, 1e6 * one.vibration_amplitude, one.relative_friction, 7)
+    for prediction in found:
+        style.mark(axes, 1e6 * prediction.vibration_amplitude, prediction.relative_friction, 7)
     style.friction_axes(axes)
     return figure
 

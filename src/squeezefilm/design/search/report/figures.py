@@ -331,7 +331,7 @@ FIGURES = (
         "Better is to the left and below. Grey points were screened only; rings were solved in "
         "three dimensions; the blue points are beaten by no other. Point at one for its numbers, "
         "follow it to its row in the table.",
-        has=lambda one: one.front or any(each.is_feasible for each in one.screened),
+        has=lambda search: search.front or any(each.is_feasible for each in search.screened),
     ),
     FigureOf(
         "screening",
@@ -345,6 +345,6 @@ FIGURES = (
         "What was chosen along the front",
         settings,
         "A panel for each thing that could be chosen; the ring is the plate to build.",
-        has=lambda one: one.front,
+        has=lambda search: search.front,
     ),
 )

@@ -68,7 +68,7 @@ def show_design(search: DesignSearch) -> None:
     heading(console, "How good the screening was")
     _say(console, rank_sentences(search))
     heading(console, "What all of this assumes")
-    _say(console, [f"{one[0].upper()}{one[1:]}." for one in requirements.assumed])
+    _say(console, [f"{sentence[0].upper()}{sentence[1:]}." for sentence in requirements.assumed])
     console.print(f"{search.computed} answers computed, {search.kept} taken from before")
 
 

@@ -68,8 +68,8 @@ def chosen_words(requirements: Requirements, design: Design) -> str:
 
 def _chosen(requirements: Requirements, design: Design) -> Iterator[str]:
     space = requirements.spaces[design.shape]
-    said = {one.name: setting_words(one, design, requirements) for one in space}
-    fixed = {one.name for one in space if one.is_fixed}
+    said = {variable.name: setting_words(variable, design, requirements) for variable in space}
+    fixed = {variable.name for variable in space if variable.is_fixed}
     yield f"{said.pop('thickness')} of {said.pop('substrate')}"
     yield f"{said.pop('ceramic_thickness')} of {said.pop('ceramic')}"
     for name, text in said.items():
@@ -88,7 +88,7 @@ def asked_sentences(requirements: Requirements) -> list[str]:
     finger = requirements.base.finger
     surface = requirements.base.surfaces[0].name
     least, most = (
-        " × ".join(shown(side, si.Unit("m")) for side in one) for one in (room.least, room.most)
+        " × ".join(shown(side, si.Unit("m")) for side in sides) for sides in (room.least, room.most)
     )
     size = least if least == most else f"at least {least} and at most {most}"
     volts = shown(drive.voltage, si.Unit("V"))
@@ -300,7 +300,7 @@ def reference_sentences(search: DesignSearch) -> list[str]:
         f"{goal.said} {goal.shown(value)}" for goal, value in zip(goals, own, strict=True)
     )
     said = [f"Judged in the same way, {name} has {has}."]
-    said += [f"It breaks a limit: {one.sentence}." for one in reference.broken]
+    said += [f"It breaks a limit: {limit.sentence}." for limit in reference.broken]
     if not reference.broken:
         said.append("It keeps every limit that could be asked of it.")
     if not search.front:
@@ -352,8 +352,8 @@ def limit_sentences(search: DesignSearch) -> list[str]:
     said = [limit_in_words(limit, count) for limit in search.limits if limit.broken]
     idle = [limit for limit in search.limits if not limit.broken]
     for head, those in (
-        ("No screened design breaks", [one for one in idle if one.key not in OF_SOLVED]),
-        ("Asked of solved plates only", [one for one in idle if one.key in OF_SOLVED]),
+        ("No screened design breaks", [reason for reason in idle if reason.key not in OF_SOLVED]),
+        ("Asked of solved plates only", [reason for reason in idle if reason.key in OF_SOLVED]),
     ):
         if those:
             said.append(f"{head}: {'; '.join(CRITERIA[o.key].limit_said(o.limit) for o in those)}.")

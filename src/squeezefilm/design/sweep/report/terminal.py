@@ -31,9 +31,9 @@ def sweep_columns(sweep: Sweep) -> list[tuple[str, list[str]]]:
     every = list(itertools.product(*(range(len(axis)) for axis in sweep.axes)))
     columns = []
     for number, axis in enumerate(sweep.axes):
-        for one in each_name(axis):
-            steps = [step_words(one, k) for k in range(len(one))]
-            columns.append((name_of(one), [steps[point[number]] for point in every]))
+        for part in each_name(axis):
+            steps = [step_words(part, k) for k in range(len(part))]
+            columns.append((name_of(part), [steps[point[number]] for point in every]))
     for column in sweep.columns:
         symbol, words = cells(column.values, column.unit)
         columns.append((labelled(name_of(column), symbol), words))

@@ -103,5 +103,5 @@ def show_lost(export: HjifExport) -> None:
 
 def show_textures(listing: list[dict[str, str]]) -> None:
     """Print the textures that come with the package."""
-    rows = [(one["name"], one["title"], one["quantity"]) for one in listing]
+    rows = [(texture["name"], texture["title"], texture["quantity"]) for texture in listing]
     table(plain_console(), ("texture", "title", "quantity"), rows, fixed=(0,))

@@ -278,7 +278,7 @@ def _names(
     if len(cells) != notation.cells:
         return None, nameless
     if any(map(notation.is_number, cells)):
-        other = next(one for one in cells if not notation.is_number(one))
+        other = next(cell for cell in cells if not notation.is_number(cell))
         raise ConfigError(
             f"'{other}' stands beside a number, above the first row of numbers: mend the row if it "
             f"is one, or write header = {above[0]} if it holds the columns' names (0 for a file "

@@ -58,12 +58,12 @@ def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
     blocks = _blocks(path)
     functions = [one for one in blocks if one.type == 58]
     nodes: dict[int, list[float]] = {}
-    for one in (one for one in blocks if one.type == 15):
-        c = one.content
+    for block in (candidate for candidate in blocks if candidate.type == 15):
+        c = block.content
         nodes |= {
             int(n): place for n, *place in zip(c["node_nums"], c["x"], c["y"], c["z"], strict=True)
         }
-    fields = [one for one in blocks if one.type == 55]
+    fields = [block for block in blocks if block.type == 55]
     if fields and nodes:
         names, columns = _data_at_nodes(fields[0], nodes, path)
     elif functions and nodes and at is not None:
@@ -71,7 +71,7 @@ def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
     elif functions:
         names, columns = _functions(functions, path)
     else:
-        kinds = ", ".join(sorted({str(one.type) for one in blocks})) or "none"
+        kinds = ", ".join(sorted({str(block.type) for block in blocks})) or "none"
         raise ConfigError(
             f"holds no functions (type 58) and no data at nodes (55 with 15); its data sets are of "
             f"the types {kinds}",
@@ -89,7 +89,7 @@ def _blocks(path: Path) -> list[_Block]:
 
     data = read_regular(path, RECORDING_BYTES, "a Universal File")
     # As the reader finds them; behind binary values a mark does not begin its line.
-    places = [found.start() for found in re.finditer(rb"    -1(?=[\r\n]| {60}|\Z)", data)]
+    places = [match.start() for match in re.finditer(rb"    -1(?=[\r\n]| {60}|\Z)", data)]
     marks = [data.count(b"\n", 0, place) + 1 for place in places]
     if len(marks) < 2:
         raise ConfigError(

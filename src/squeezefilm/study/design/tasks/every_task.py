@@ -9,7 +9,7 @@ from squeezefilm.study.design.tasks.task import StudyTask
 from squeezefilm.study.design.tasks.two_interval import TWO_INTERVAL
 
 TASKS: dict[str, StudyTask] = {
-    one.name: one
-    for one in (MATCH_TO_SAMPLE, SAME_DIFFERENT, TWO_INTERVAL, ODD_ONE_OUT, MAGNITUDE_ESTIMATION)
+    task.name: task
+    for task in (MATCH_TO_SAMPLE, SAME_DIFFERENT, TWO_INTERVAL, ODD_ONE_OUT, MAGNITUDE_ESTIMATION)
 }
 """Every task, as designs name it."""
