@@ -46,10 +46,10 @@ def calibrate(
     file = out / DISPLAY_FILE if folder_too else out
     described = to_be_solved(display, quiet=as_json)
     with working(as_json) as step:
-        found = calibrate_display(described, folder, file, seed=seed, progress=step)
-        page = write_calibration(found, out) if folder_too else None
-    answer(as_json, found, show_calibration, display=file, page=page)
-    if not found.calibration.fits:
+        calibration = calibrate_display(described, folder, file, seed=seed, progress=step)
+        page = write_calibration(calibration, out) if folder_too else None
+    answer(as_json, calibration, show_calibration, display=file, page=page)
+    if not calibration.calibration.fits:
         raise typer.Exit(1)
 
 
@@ -79,11 +79,11 @@ def predict_unseen(
         question(text)  # refused before the display is looked at
     described = to_be_solved(display, quiet=as_json)
     with working(as_json) as step:
-        found = predict_measurement(described, ask, out, seed=seed, progress=step)
+        prediction = predict_measurement(described, ask, out, seed=seed, progress=step)
     if as_json:
-        print_json(to_json(found))
+        print_json(to_json(prediction))
         return
-    for line in (*prediction_lines(found), f"prediction: {out}"):
+    for line in (*prediction_lines(prediction), f"prediction: {out}"):
         typer.echo(line)
 
 

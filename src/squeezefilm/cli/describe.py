@@ -286,8 +286,8 @@ def film(asked: FilmOptions) -> None:
 
             if asked.out is None:
                 raise InputError("--sweep draws a map into a folder; say which with --out DIR")
-            found = sweep_film(FilmRequest(**of_film), progress=step)
-            path = write_film_map(found, asked.out)
+            films = sweep_film(FilmRequest(**of_film), progress=step)
+            path = write_film_map(films, asked.out)
         else:
             if squeeze_number is None or excursion is None:
                 raise InputError(
@@ -296,7 +296,7 @@ def film(asked: FilmOptions) -> None:
             step("solving the film")
             solved = solve_film(squeeze_number, excursion, **of_film)
     if asked.sweep:
-        answer(asked.as_json, found, lambda _: None, map=path)
+        answer(asked.as_json, films, lambda _: None, map=path)
     else:
         answer(asked.as_json, solved, show_film)
 

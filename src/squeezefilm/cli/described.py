@@ -197,13 +197,13 @@ def _shown(value: dict[str, Any]) -> str:
     return f"{value['text']}{star}"
 
 
-def _show_material(one: dict[str, Any]) -> None:
+def _show_material(material: dict[str, Any]) -> None:
     console = plain_console()
-    console.print(f"{one['name']}: {one['title']} (a {one['kind']})")
-    console.print(f"also: {', '.join(one['also'])}")
-    console.print(f"spread: {one['spread']}")
+    console.print(f"{material['name']}: {material['title']} (a {material['kind']})")
+    console.print(f"also: {', '.join(material['also'])}")
+    console.print(f"spread: {material['spread']}")
     rows = []
-    for value in one["values"]:
+    for value in material["values"]:
         mark = _MARKS.get(value["evidence"], "  ")
         between = "" if value["range"] is None else " to ".join(value["range"])
         rows.append((mark + value["path"], value["text"], between, _origin(value)))

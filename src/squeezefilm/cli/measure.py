@@ -65,14 +65,14 @@ def check(
     if file.is_dir():
         if described is not None or write:
             raise InputError("--described and --write go with one file; not with a folder")
-        found = check_folder(file)
+        checked = check_folder(file)
     else:
         if write:
             typer.echo(f"written: {write_description(file)}", err=True)
-        found = FolderCheck((check_recording(file, described),), ())
-    written = None if out is None else write_checks(found, out)
-    answer(as_json, found, show_folder, page=written)
-    if found.refused:
+        checked = FolderCheck((check_recording(file, described),), ())
+    written = None if out is None else write_checks(checked, out)
+    answer(as_json, checked, show_folder, page=written)
+    if checked.refused:
         raise typer.Exit(1)
 
 
@@ -96,15 +96,15 @@ def fit(
     from squeezefilm.measure.report.page import fit_summary, show_fit, write_fit
 
     with working(as_json) as step:
-        found = check_recording(file, described)
-        step(f"fit of {found.file.name}")
-        fitted = _fitted(found, display)
+        checked = check_recording(file, described)
+        step(f"fit of {checked.file.name}")
+        fitted = _fitted(checked, display)
         response = response_fit(fitted)
-        written = None if out is None else write_fit(found, fitted, out, response)
+        written = None if out is None else write_fit(checked, fitted, out, response)
     if as_json:
-        print_json(fit_summary(found, fitted, response))
+        print_json(fit_summary(checked, fitted, response))
     else:
-        show_fit(found, fitted, response)
+        show_fit(checked, fitted, response)
         if written is not None:
             typer.echo(f"page: {written}")
     if not fitted.adequacy.adequate:

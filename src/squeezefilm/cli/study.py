@@ -97,9 +97,9 @@ def plan(
     from squeezefilm.study.record.orders import write_orders
     from squeezefilm.study.report.terminal import show_plan
 
-    found = plan_study(load_design(design), participants, seed, reach=reach)
-    written = [] if orders is None else write_orders(found, orders)
-    answer(as_json, found, show_plan)
+    planned = plan_study(load_design(design), participants, seed, reach=reach)
+    written = [] if orders is None else write_orders(planned, orders)
+    answer(as_json, planned, show_plan)
     if written and not as_json:
         typer.echo(f"orders: {len(written)} files in {orders}")
 

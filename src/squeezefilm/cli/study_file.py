@@ -79,7 +79,7 @@ def felt(asked: FeltOptions) -> None:
                 normal_force=read_option(asked.force, "force", "N"),
                 progress=step,
             )
-            found: tuple[FeltPath, ...] = (only,)
+            paths: tuple[FeltPath, ...] = (only,)
         else:
             if asked.participant is None or asked.trial is None:
                 raise InputError(
@@ -87,19 +87,19 @@ def felt(asked: FeltOptions) -> None:
                     "design with --path and --stimulus"
                 )
             with StudyStore.open(asked.target) as store:
-                found = felt_in_trial(store, asked.participant, asked.trial, people, progress=step)
+                paths = felt_in_trial(store, asked.participant, asked.trial, people, progress=step)
     written = []
     if asked.out is not None:
-        for number, one in enumerate(found, 1):
+        for number, one in enumerate(paths, 1):
             name = (
-                asked.out if len(found) == 1 else asked.out.with_stem(f"{asked.out.stem}-{number}")
+                asked.out if len(paths) == 1 else asked.out.with_stem(f"{asked.out.stem}-{number}")
             )
             write_whole(name, png(plot(one)))
             written.append(name)
     if asked.as_json:
-        print_json([one.summary() for one in found])
+        print_json([one.summary() for one in paths])
         return
-    show_all(found)
+    show_all(paths)
     for name in written:
         typer.echo(f"figure: {name}")
 

@@ -116,8 +116,8 @@ def textures(as_json: AsJson = False) -> None:
 
     listing = []
     for name in texture_names():
-        one = load_texture(name)
-        listing.append({"name": name, "title": one.title, "quantity": one.texture.quantity})
+        texture = load_texture(name)
+        listing.append({"name": name, "title": texture.title, "quantity": texture.texture.quantity})
     answer(as_json, listing, show_textures)
 
 

@@ -23,7 +23,7 @@ _SUFFIXES = ("64_", "")
 @functools.cache
 def _controls() -> tuple[tuple[Callable[[], int], Callable[[int], None]], ...]:
     """(get, set) of every OpenBLAS that comes with NumPy and SciPy; empty for another BLAS."""
-    found = []
+    controls = []
     for package in (np, scipy):
         root = Path(str(package.__file__)).parent
         folders = (root.parent / f"{root.name}.libs", root / ".dylibs")
@@ -37,8 +37,8 @@ def _controls() -> tuple[tuple[Callable[[], int], Callable[[int], None]], ...]:
                         get = getattr(handle, f"{prefix}_get_num_threads{suffix}", None)
                         put = getattr(handle, f"{prefix}_set_num_threads{suffix}", None)
                         if get is not None and put is not None:
-                            found.append((get, put))
-    return tuple(found)
+                            controls.append((get, put))
+    return tuple(controls)
 
 
 @contextlib.contextmanager

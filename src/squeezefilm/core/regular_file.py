@@ -38,12 +38,12 @@ def opened(path: str | Path, limit: HardLimit, what: str) -> Iterator[int]:
         # Windows opens no folder, and a NUL in a path is no OSError.
         raise _refused(path, what, error) from error
     try:
-        found = os.fstat(handle)
-        _refuse_irregular(found.st_mode, path, what)
-        if found.st_size > limit.most:
+        status = os.fstat(handle)
+        _refuse_irregular(status.st_mode, path, what)
+        if status.st_size > limit.most:
             raise ConfigError(
                 f"is larger than {limit.most:,.0f} bytes ({limit.name}: {limit.reason}): it has "
-                f"{found.st_size:,}; give {what} that is smaller".replace(",", " "),
+                f"{status.st_size:,}; give {what} that is smaller".replace(",", " "),
                 file=path,
             )
         yield handle
@@ -98,11 +98,11 @@ def read_regular_text(path: str | Path, limit: HardLimit, what: str) -> str:
 
     Raises as `read_regular` does, and `ConfigError` for what is not UTF-8.
     """
-    found = read_regular(path, limit, what)
+    content = read_regular(path, limit, what)
     try:
-        text = found.decode("utf-8-sig")
+        text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise _no_text(found, error, path, what) from error
+        raise _no_text(content, error, path, what) from error
     return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
@@ -131,15 +131,15 @@ def parsed_json(text: str | bytes) -> Any:
         raise ValueError("its brackets are nested too deep") from error
 
 
-def _no_text(found: bytes, error: UnicodeDecodeError, path: str | Path, what: str) -> ConfigError:
-    if found.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+def _no_text(content: bytes, error: UnicodeDecodeError, path: str | Path, what: str) -> ConfigError:
+    if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         why = "it is UTF-16, which some editors call Unicode"
-    elif b"\0" in found[:1000]:
+    elif b"\0" in content[:1000]:
         why = f"it holds bytes that no text has, as pictures and archives do; give {what}"
         return ConfigError(f"is not UTF-8 text: {why}", file=path)
     else:
-        why = f"the byte 0x{found[error.start]:02x} is of another encoding, perhaps Latin-1"
-    line = found.count(b"\n", 0, error.start) + 1
+        why = f"the byte 0x{content[error.start]:02x} is of another encoding, perhaps Latin-1"
+    line = content.count(b"\n", 0, error.start) + 1
     return ConfigError(
         f"is not UTF-8 text: {why}; save it with the encoding UTF-8, as {what}",
         file=path,

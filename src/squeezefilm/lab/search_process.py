@@ -59,11 +59,11 @@ def plate(requirements: Requirements, one: Evaluated, made: Made | None = None) 
     }
 
 
-def numbers(one: Evaluated) -> list[list[str]]:
+def numbers(candidate: Evaluated) -> list[list[str]]:
     """Numbers of a design by row: a criterion's key, its name for people, the value in words."""
     return [
         [key, CRITERIA[key].said, CRITERIA[key].shown(value)]
-        for key, value in one.numbers.items()
+        for key, value in candidate.numbers.items()
         if key in CRITERIA and key != "cost"
     ]
 
@@ -85,16 +85,16 @@ def _thinned(points: Sequence[Sequence[float]]) -> list[list[float]]:
     return [list(point) for point in sorted(map(tuple, points))[::every]]
 
 
-def reference(requirements: Requirements, one: Evaluated | None) -> dict[str, Any] | None:
+def reference(requirements: Requirements, candidate: Evaluated | None) -> dict[str, Any] | None:
     """The display that the front is set beside, which limits it breaks, and why it could not be
     judged ("" where it was)."""
-    if one is None:
+    if candidate is None:
         return None
     return {
         "name": Path(requirements.compare_with).stem,
-        "objectives": list(one.objectives(requirements.objectives)),
-        "breaks": [breach.sentence for breach in one.broken],
-        "reason": one.reason,
+        "objectives": list(candidate.objectives(requirements.objectives)),
+        "breaks": [breach.sentence for breach in candidate.broken],
+        "reason": candidate.reason,
     }
 
 

@@ -108,15 +108,15 @@ def _share(drawn: si.FloatArray, answers: si.FloatArray) -> float:
 def _parameters(
     described: object, provenance: Mapping[str, Provenance], usual: Mapping[str, Usual]
 ) -> list[Parameter]:
-    found = []
+    parameters = []
     for path, known in usual.items():
         nominal, unit = value_at(described, path)
         origin = provenance.get(path)
         given = None if origin is None else origin.distribution
         if given is not None and origin is not None:
-            found.append(Parameter(path, nominal, unit, given, "given", origin.source))
+            parameters.append(Parameter(path, nominal, unit, given, "given", origin.source))
         elif nominal:
             low, high = sorted((known.low * nominal, min(known.high * nominal, known.most)))
             spread = Uniform(low, high)
-            found.append(Parameter(path, nominal, unit, spread, "assumed", known.why))
-    return found
+            parameters.append(Parameter(path, nominal, unit, spread, "assumed", known.why))
+    return parameters

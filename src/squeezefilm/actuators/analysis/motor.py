@@ -238,7 +238,7 @@ def analyze_motor(
         lambda one: _drawn(described, motor, one, volts),
         progress=lambda done, of: None if done % 16 else tell(f"{done} of {of} draws"),
     )
-    found = MotorAnalysis(
+    analysis = MotorAnalysis(
         described,
         motor,
         volts,
@@ -255,7 +255,7 @@ def analyze_motor(
         _plane(motor, volts),
         (),
     )
-    return dataclasses.replace(found, warnings=tuple(_warnings(found, why_not)))
+    return dataclasses.replace(analysis, warnings=tuple(_warnings(analysis, why_not)))
 
 
 def _tuned(motor: AssembledMotor, voltage: si.Volt) -> tuple[AveragedMotor, ...]:
@@ -293,11 +293,11 @@ def _resolved(
     motor: AssembledMotor, working: Working, curve: tuple[AveragedMotor, ...]
 ) -> si.FloatArray:
     """Speed and force left for a load, in time, at every so many points of an averaged curve."""
-    found = []
+    points = []
     for point in curve[:: len(curve) // _RESOLVED]:
         there = simulate(motor, working, speed=point.speed, periods=_PERIODS, traced=0)
-        found.append((point.speed, there.thrust - (point.thrust - point.force)))
-    return np.array(found)
+        points.append((point.speed, there.thrust - (point.thrust - point.force)))
+    return np.array(points)
 
 
 def _step(

@@ -94,7 +94,7 @@ def over_foot_position(
     si.require("shifts", shifts, si.Unit("m"), axes=1)
     along_width = motor.plate.lines_across == "width"
     modes: tuple[FaceMode, ...] | None = None
-    found: list[AveragedMotor | None] = []
+    motors: list[AveragedMotor | None] = []
     for shift in shifts.tolist():
         feet = tuple(
             replace(foot, y=foot.y + shift) if along_width else replace(foot, x=foot.x + shift)
@@ -104,9 +104,9 @@ def over_foot_position(
         try:
             there = assembled(moved, theory, modes)
             modes = there.modes
-            found.append(averaged(there, working))
+            motors.append(averaged(there, working))
         except OutOfRangeError as error:
             if error.quantity != "feet":
                 raise
-            found.append(None)
-    return tuple(found)
+            motors.append(None)
+    return tuple(motors)

@@ -67,20 +67,20 @@ def held_forces(
     lower = np.linalg.cholesky(compliance[np.ix_(touching, touching)])
     limit = held[touching]
     # As least squares |Lᵀ F − L⁻¹ w|, in shares of each limit.
-    found = lsq_linear(
+    solution = lsq_linear(
         lower.T * limit,
         solve_triangular(lower, wanted[touching], lower=True),
         bounds=(-1.0, 1.0),
         method="bvls",
         tol=1e-12,
     )
-    if not found.success:
+    if not solution.success:
         raise ConvergenceError(
             f"the forces of {touching.sum()} contactors that stick and slip were not found: "
-            f"{found.message}",
-            iterations=int(found.nit),
+            f"{solution.message}",
+            iterations=int(solution.nit),
         )
-    forces[touching] = found.x * limit
+    forces[touching] = solution.x * limit
     return forces
 
 

@@ -80,23 +80,23 @@ class Budget:
     @property
     def over(self) -> tuple[str, ...]:
         """Sentences on what does not fit, one each."""
-        found = []
+        sentences = []
         if self.mass > self.most_mass:
-            found.append(
+            sentences.append(
                 f"The actuators weigh {1e3 * self.mass:.3g} g; {1e3 * self.most_mass:.3g} g are "
                 "allowed for all."
             )
         if self.volume > self.most_volume:
-            found.append(
+            sentences.append(
                 f"The actuators fill {1e6 * self.volume:.3g} cm³; {1e6 * self.most_volume:.3g} cm³ "
                 "are allowed for all."
             )
         if not 0.5 <= self.area / self.wanted_area <= 2:
-            found.append(
+            sentences.append(
                 f"The contactors span {1e4 * self.area:.3g} cm² where about "
                 f"{1e4 * self.wanted_area:.3g} cm² are wanted."
             )
-        return tuple(found)
+        return tuple(sentences)
 
 
 @si.checked_numbers

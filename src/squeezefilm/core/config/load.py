@@ -47,13 +47,13 @@ class _Source:
 
     def typed(self, path: Sequence[str | int]) -> Any:
         """The value at a path of the text, None where nothing does."""
-        found = self.plain
+        value = self.plain
         for part in path:
             try:
-                found = found[part]
+                value = value[part]
             except (KeyError, IndexError, TypeError):
                 return None
-        return found
+        return value
 
     def error(self, message: str, path: Sequence[str | int]) -> ConfigError:
         """An error at a key, with its line."""
@@ -200,18 +200,18 @@ def _options(hint: Any) -> list[Any]:
 
 
 def _all_errors(cls: type[Any], error: ValidationError, source: _Source) -> ConfigError:
-    found: list[ConfigError] = []
+    problems: list[ConfigError] = []
     count = error.error_count()
     for item in error.errors()[:MOST_ERRORS]:
         path, owner = _path_and_owner(cls, item["loc"])
-        found.append(source.error(_message(item, path, owner), path))
+        problems.append(source.error(_message(item, path, owner), path))
     if count == 1:
-        return found[0]
+        return problems[0]
     lines = "\n".join(
         f"  {one.key}: {one.message}" + ("" if one.line is None else f" (line {one.line})")
-        for one in found
+        for one in problems
     )
-    more = f"\n  and {count - len(found)} more" if count > len(found) else ""
+    more = f"\n  and {count - len(problems)} more" if count > len(problems) else ""
     return ConfigError(f"{count} things are not right:\n{lines}{more}", file=source.file)
 
 
@@ -285,9 +285,9 @@ def _message(item: Any, path: Sequence[str | int], owner: type[Any]) -> str:
     if kind == "string_type":
         return f"{item['input']!r} is no text; write it between quotation marks"
     if kind == "list_type":
-        one = str(path[-1])
+        key = str(path[-1])
         return (
-            f"{one} is a list; write each of its members below a header [[{one}]], or all between "
+            f"{key} is a list; write each of its members below a header [[{key}]], or all between "
             "brackets"
         )
     if kind == "bool_type":

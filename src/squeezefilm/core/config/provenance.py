@@ -68,26 +68,26 @@ class Split(NamedTuple):
 def split_provenance(tree: Mapping[str, Any], *, of_tables: bool = False) -> Split:
     """Separate values from their sources, and with `of_tables` tables from theirs. Raises
     `ConfigError` for a malformed source or spread."""
-    found = Split({}, {}, {}, {})
+    split = Split({}, {}, {}, {})
 
     def walk(node: Any, path: str) -> Any:
         if isinstance(node, Mapping):
             if "value" in node and set(node) <= _KEYS:
                 if set(node) > {"value"}:
-                    found.sources[path] = _provenance(node, path)
+                    split.sources[path] = _provenance(node, path)
                 if (spread := _spread(node, path)) is not None:
-                    found.spreads[path] = spread
+                    split.spreads[path] = spread
                 return node["value"]
             if of_tables and "source" in node:
-                found.tables[path] = _provenance(node, path)
+                split.tables[path] = _provenance(node, path)
                 node = {key: item for key, item in node.items() if key not in _OF_TABLES}
             return {key: walk(item, f"{path}.{key}" if path else key) for key, item in node.items()}
         if isinstance(node, list):
             return [walk(item, f"{path}.{index}") for index, item in enumerate(node)]
         return node
 
-    found.plain.update(walk(tree, ""))
-    return found
+    split.plain.update(walk(tree, ""))
+    return split
 
 
 def _spread(node: Mapping[str, Any], path: str) -> Spread | None:
@@ -155,22 +155,22 @@ def stated_sources(built: Any, split: Split, original: Any = None) -> dict[str, 
     the file is a changed copy of an `original`, a value that is another now while its source still
     stands in the original's words has none either: that source is of the other value.
     """
-    found = dict(split.sources)
+    sources = dict(split.sources)
     for parts, _ in tree_values(described(type(built), split.plain)):
         path = ".".join(map(str, parts))
-        if path not in found and _is_number(built, path):
+        if path not in sources and _is_number(built, path):
             table, _, _ = path.rpartition(".")
-            found[path] = split.tables.get(table, Provenance("", UNSTATED))
+            sources[path] = split.tables.get(table, Provenance("", UNSTATED))
     if original is None:
-        return found
-    return {path: _if_unchanged(built, original, path, one) for path, one in found.items()}
+        return sources
+    return {path: _if_unchanged(built, original, path, one) for path, one in sources.items()}
 
 
 def described(cls: type[Any], tree: Mapping[str, Any]) -> dict[str, Any]:
     """The part of a file's tree that somebody describes a thing by: all but what a program found
     and wrote, fields with ``metadata={"found": True}``, whose numbers need no source."""
-    found = {field.name for field in dataclasses.fields(cls) if field.metadata.get("found")}
-    return {key: item for key, item in tree.items() if key not in found}
+    names = {field.name for field in dataclasses.fields(cls) if field.metadata.get("found")}
+    return {key: item for key, item in tree.items() if key not in names}
 
 
 def tree_values(

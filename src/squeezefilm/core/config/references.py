@@ -39,8 +39,8 @@ class References:
         the material is assumed, every value that it brings is. Raises `ConfigError`, with the key,
         for a name that is not known.
         """
-        found = dict(tree)
-        copied_from = found.pop(COPIED_FROM, None)
+        whole = dict(tree)
+        copied_from = whole.pop(COPIED_FROM, None)
         if copied_from is not None and not isinstance(copied_from, str):
             raise ConfigError(
                 f"{copied_from!r} is no name; write the preset that this file was copied from, "
@@ -48,8 +48,8 @@ class References:
                 key=COPIED_FROM,
             )
         for path, table in self.parts.items():
-            found = _with_material(found, path.split("."), path, table)
-        return found, copied_from
+            whole = _with_material(whole, path.split("."), path, table)
+        return whole, copied_from
 
 
 def _with_material(
@@ -81,23 +81,23 @@ def _with_material(
 def _as_assumed(library: Mapping[str, Any], source: str) -> dict[str, Any]:
     """The values of a material that is only taken to be the one: each is assumed, however well the
     material itself is known."""
-    found: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     for key, value in library.items():
         if not isinstance(value, dict):
-            found[key] = value
+            values[key] = value
         elif "value" in value:
             because = "; ".join(text for text in (source, str(value.get("source", ""))) if text)
-            found[key] = {**value, "source": because, "evidence": "assumed"}
+            values[key] = {**value, "source": because, "evidence": "assumed"}
         else:
-            found[key] = _as_assumed(value, source)
-    return found
+            values[key] = _as_assumed(value, source)
+    return values
 
 
 def _over(library: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
     """The library's table with one's own values in place of its; tables within likewise."""
-    found = dict(library)
+    table = dict(library)
     for key, value in own.items():
-        there: Any = found.get(key)
+        there: Any = table.get(key)
         both = isinstance(value, dict) and isinstance(there, dict) and "value" not in value
-        found[key] = _over(there, value) if both and "value" not in there else value
-    return found
+        table[key] = _over(there, value) if both and "value" not in there else value
+    return table

@@ -64,15 +64,15 @@ def family(annotation: Any) -> tuple[type[Any], ...]:
     """
     if not isinstance(annotation, type) or dataclasses.is_dataclass(annotation):
         return ()
-    found: dict[tuple[str, str], type[Any]] = {}
+    members: dict[tuple[str, str], type[Any]] = {}
     todo: list[type[Any]] = list(annotation.__subclasses__())
     while todo:
         cls = todo.pop(0)
         todo += cls.__subclasses__()
         if dataclasses.is_dataclass(cls) and "type" in {f.name for f in dataclasses.fields(cls)}:
             # A class with slots replaces itself; the later one is the one in use.
-            found[cls.__module__, cls.__qualname__] = cls
-    return tuple(found.values())
+            members[cls.__module__, cls.__qualname__] = cls
+    return tuple(members.values())
 
 
 def reads_from_file(field: dataclasses.Field[Any]) -> bool:

@@ -32,21 +32,21 @@ def dxf_text(drawing: Drawing) -> str:
         from ezdxf._options import options
         from ezdxf.filemanagement import new
 
-    found = new("R2010", setup=True)
-    found.header["$INSUNITS"] = MILLIMETRES
+    document = new("R2010", setup=True)
+    document.header["$INSUNITS"] = MILLIMETRES
     # Dashes are as long on paper whatever the scale.
-    found.header["$LTSCALE"] = 0.2 / drawing.scale
-    found.appids.add(APPLICATION)
+    document.header["$LTSCALE"] = 0.2 / drawing.scale
+    document.appids.add(APPLICATION)
     for name, layer in drawing.layers.items():
         width = min(_WIDTHS, key=lambda known: abs(known - 1e5 * layer.width))
-        found.layers.add(name, color=layer.colour, linetype=layer.line, lineweight=width)
+        document.layers.add(name, color=layer.colour, linetype=layer.line, lineweight=width)
     for name, colour in _BESIDE.items():
         if name not in drawing.layers:
-            found.layers.add(name, color=colour)
-    space = found.modelspace()
+            document.layers.add(name, color=colour)
+    space = document.modelspace()
     for item in drawing.items:
         _draw(space, item)
-    audit = found.audit()
+    audit = document.audit()
     if audit.has_errors:
         raise InputError(f"the drawing is not sound: {audit.errors[0].message}")
     stream = io.StringIO()
@@ -54,7 +54,7 @@ def dxf_text(drawing: Drawing) -> str:
     fixed = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True
     try:
-        found.write(stream)
+        document.write(stream)
     finally:
         options.write_fixed_meta_data_for_testing = fixed
     return _MADE.sub(r"\1", stream.getvalue())
@@ -118,10 +118,10 @@ def _look(height: float) -> dict[str, Any]:
     }
 
 
-def _keep(style: Any, one: Dimension | Ordinate) -> None:
+def _keep(style: Any, dimension: Dimension | Ordinate) -> None:
     style.render()
-    if one.value_of:
-        style.dimension.set_xdata(APPLICATION, [(1000, one.value_of)])
+    if dimension.value_of:
+        style.dimension.set_xdata(APPLICATION, [(1000, dimension.value_of)])
 
 
 def _dimension(space: Any, dimension: Dimension) -> None:

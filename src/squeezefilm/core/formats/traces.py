@@ -131,10 +131,10 @@ def _numbers(row: list[str], names: list[str], path: str | Path, line: int) -> l
         return [float(cell) for cell in row]
     except ValueError:
         pass  # A cell is empty, or no number: which one is looked up.
-    found = []
+    numbers = []
     for name, cell in zip(names, row, strict=True):
         try:
-            found.append(float(cell) if cell.strip() else math.nan)
+            numbers.append(float(cell) if cell.strip() else math.nan)
         except ValueError as error:
             raise ConfigError(
                 f"'{cell}' is no number; write one with a point, like 0.0125",
@@ -142,7 +142,7 @@ def _numbers(row: list[str], names: list[str], path: str | Path, line: int) -> l
                 line=line,
                 key=name,
             ) from error
-    return found
+    return numbers
 
 
 def text_of_file(path: str | Path) -> str:

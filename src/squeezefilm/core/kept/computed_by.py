@@ -38,9 +38,9 @@ def hash_of_source(folder: Path, *, changed_before: float) -> str:
 
     Raises `OSError` where one cannot be read, or was changed after a time (s since 1970).
     """
-    found = blake2b(digest_size=16)
+    digest = blake2b(digest_size=16)
     for library in _LIBRARIES:
-        found.update(f"{library} {version(library)}\n".encode())
+        digest.update(f"{library} {version(library)}\n".encode())
     for name, path in _files(folder):
         # Without the objects of `open`: there are hundreds of files.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0))
@@ -51,9 +51,9 @@ def hash_of_source(folder: Path, *, changed_before: float) -> str:
             os.close(handle)
         if known.st_mtime > changed_before:
             raise OSError(f"{path} changed while it was in use")
-        found.update(f"{name} {len(content)}\n".encode())
-        found.update(content)
-    return found.hexdigest()
+        digest.update(f"{name} {len(content)}\n".encode())
+        digest.update(content)
+    return digest.hexdigest()
 
 
 def _files(folder: str | Path, inside: str = "") -> Iterator[tuple[str, str]]:

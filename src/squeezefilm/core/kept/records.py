@@ -125,10 +125,10 @@ class _Reader:
         if not np.issubdtype(dtype, scalar) or any(size < 0 for size in shape):
             raise TypeError(f"an array of {name} and shape {shape} is not asked for")
         count = math.prod(shape)
-        found = np.frombuffer(self._arrays, dtype, count, self._at)
+        array = np.frombuffer(self._arrays, dtype, count, self._at)
         self._at += count * dtype.itemsize
         # Of this machine's own byte order, and in memory that is aligned and can be written to.
-        return np.array(found.reshape(shape, order=order), dtype.newbyteorder("="), order="K")
+        return np.array(array.reshape(shape, order=order), dtype.newbyteorder("="), order="K")
 
     def _record(self, told: Any, kind: type) -> Any:
         if type(told) is int:

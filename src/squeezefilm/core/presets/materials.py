@@ -92,10 +92,10 @@ def table(name: str, kind: Kind) -> dict[str, Any]:
 
     Raises `InputError` as `named` does.
     """
-    found = named(name, kind)
-    values = copy.deepcopy(found.values)
+    material = named(name, kind)
+    values = copy.deepcopy(material.values)
     # The glue has no name of its own: there is one.
-    return values if kind == "glue" else {"name": found.name, **values}
+    return values if kind == "glue" else {"name": material.name, **values}
 
 
 def _plain(name: str) -> str:

@@ -50,9 +50,9 @@ class Limit(Protocol):
 
 def bounds_of(hint: Any) -> tuple[dict[str, Any], tuple[Limit, ...]]:
     """The bounds in an annotation, as `require` takes them, and its other limits."""
-    found = list(_beside(hint))
-    bounds = {_WORDS[type(one)]: float(one.value) for one in found if isinstance(one, _Bound)}
-    return bounds, tuple(bound for bound in found if hasattr(bound, "refuse_outside"))
+    parts = list(_beside(hint))
+    bounds = {_WORDS[type(one)]: float(one.value) for one in parts if isinstance(one, _Bound)}
+    return bounds, tuple(bound for bound in parts if hasattr(bound, "refuse_outside"))
 
 
 def _beside(hint: Any) -> Iterator[Any]:

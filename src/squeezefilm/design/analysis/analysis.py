@@ -270,6 +270,6 @@ def _intervals(unsure: UncertainFriction | None) -> dict[str, Any]:
     """Intervals of what the drive does, for ``--json``."""
     if unsure is None:
         return {}
-    found = unsure.summary()
+    values = unsure.summary()
     names = ("vibration_amplitude_interval_m", "power_W", "power_interval_W")
-    return {name: found[name] for name in names}
+    return {name: values[name] for name in names}

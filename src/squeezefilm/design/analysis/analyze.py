@@ -84,14 +84,14 @@ def analyze(
         strict=strict,
         pace=Pace(None if budget is None else budget / 2, said_with_time_left(tell)),
     )
-    found = _what_follows(display, prediction, samples, tell, deadline)
+    analysis = _what_follows(display, prediction, samples, tell, deadline)
     if wanted_friction is None:
-        return dataclasses.replace(found, effort=sensitivities, whole=whole)
+        return dataclasses.replace(analysis, effort=sensitivities, whole=whole)
     tell("the voltage for the friction wanted")
     wanted = friction_wanted(
         display, prediction, wanted_friction, samples=samples, strict=False, progress=tell
     )
-    return dataclasses.replace(found, wanted=wanted, effort=sensitivities, whole=whole)
+    return dataclasses.replace(analysis, wanted=wanted, effort=sensitivities, whole=whole)
 
 
 def _what_follows(

@@ -89,9 +89,9 @@ def frequency_response(prediction: Prediction) -> FrequencyResponse:
     """The amplitude per volt around the working resonance, at the largest interior lobe."""
     mode = prediction.mode
     if mode.solid is not None:
-        found = mode.solid.response
-        line = found.amplitude_at(*mode.solid.lobe)
-        return FrequencyResponse(found.frequencies, line, mode.model)
+        response = mode.solid.response
+        line = response.amplitude_at(*mode.solid.lobe)
+        return FrequencyResponse(response.frequencies, line, mode.model)
     frequency = response_frequencies(mode.resonance_frequency, mode.quality_factor, 601)
     return FrequencyResponse(frequency, mode.response(frequency), mode.model)
 
@@ -206,13 +206,13 @@ def model_curves(prediction: Prediction) -> tuple[ModelCurve, ...]:
     """The curves of all compared models, at the frequency, force and surface of a prediction."""
     p = prediction
     top = max(4e-6, 1.25 * p.vibration_amplitude)
-    found = []
+    curves = []
     for model, points in COMPARED:
         law = p.law.by(model)
         # Denser at small amplitudes, where a smooth film lifts the finger off.
         amplitude = np.union1d(top * np.linspace(0, 1, points) ** 1.5, p.vibration_amplitude)
-        found.append(ModelCurve(model, amplitude, as_far_as_it_goes(law, amplitude)))
-    return tuple(found)
+        curves.append(ModelCurve(model, amplitude, as_far_as_it_goes(law, amplitude)))
+    return tuple(curves)
 
 
 def as_far_as_it_goes(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArray:

@@ -137,10 +137,10 @@ def ear_exposure(
         low, high = (20 * math.log10(float(end) / p.vibration_amplitude) for end in ends)
     low, high = level + low - MODEL_ERROR_dB, level + high + MODEL_ERROR_dB
     duty = display.drive.duty
-    found = [exposure_guidance(p.frequency, people) for people in ("public", "occupational")]
+    guidances = [exposure_guidance(p.frequency, people) for people in ("public", "occupational")]
     limits = tuple(
         EarLimit(guidance, _standing(low + 10 * math.log10(duty), high, guidance.level_dB))
-        for guidance in found
+        for guidance in guidances
         if guidance is not None
     )
     return EarExposure(p.frequency, EAR_DISTANCE, duty, level, low, high, limits)

@@ -90,13 +90,13 @@ class FeltGratings:
         }
 
 
-def _row(one: FeltAt) -> dict[str, Any]:
+def _row(felt: FeltAt) -> dict[str, Any]:
     return {
-        "finger_speed_m_per_s": one.speed,
-        "finest_period_survives_m": one.survives,
-        "finest_period_felt_m": one.felt,
-        "finest_period_felt_interval_m": one.interval and list(one.interval),
-        "share_never_felt": one.never,
+        "finger_speed_m_per_s": felt.speed,
+        "finest_period_survives_m": felt.survives,
+        "finest_period_felt_m": felt.felt,
+        "finest_period_felt_interval_m": felt.interval and list(felt.interval),
+        "share_never_felt": felt.never,
     }
 
 
@@ -237,11 +237,11 @@ def _felt_of(
     tau = float(envelope_time_constant(mode.quality_factor, mode.resonance_frequency))
     base = rest_factor * law.friction_coefficient * draw.normal_force
     pad = draw.display.finger.fingerpad
-    found = []
+    periods = []
     for speed, row in zip(speeds, friction, strict=True):
         known = functools.partial(_tabulated, knots=knots, row=row)
-        found.append(_finest(senses, tau, high, known, Rubbed(base, pad, speed)))
-    return found
+        periods.append(_finest(senses, tau, high, known, Rubbed(base, pad, speed)))
+    return periods
 
 
 def _tabulated(

@@ -201,16 +201,16 @@ def _with(display: Display, value: float, *, path: str) -> Display:
 
 def _along(actuator: Actuator, path: str, share: float) -> dict[str, float]:
     """Lengths that grow with a plate's length, width or diameter, by paths in the display."""
-    found: dict[str, float] = {}
+    lengths: dict[str, float] = {}
     if isinstance(actuator, RectangularPlate) and path in _SIDES:
         for group in ("patches", "supports"):
             for number, part in enumerate(getattr(actuator, group)):
                 for name in _SIDES[path]:
-                    found[f"actuator.{group}.{number}.{name}"] = share * getattr(part, name)
+                    lengths[f"actuator.{group}.{number}.{name}"] = share * getattr(part, name)
     elif isinstance(actuator, DiscPlate) and path == "actuator.diameter":
         for name in ("inner_diameter", "ceramic_outer_diameter", "ceramic_inner_diameter"):
-            found[f"actuator.{name}"] = share * getattr(actuator, name)
-    return found
+            lengths[f"actuator.{name}"] = share * getattr(actuator, name)
+    return lengths
 
 
 class _Bench:
@@ -284,15 +284,15 @@ class _Bench:
             amplitude = (1 + a) * before.amplitude_per_volt
             mode = dataclasses.replace(before, amplitude_per_volt=amplitude, quality_factor=quality)
             return f, a, mode
-        found = mode = working_mode(actuator)
+        moved = mode = working_mode(actuator)
         if self.effort == "quick":
             mode = dataclasses.replace(
-                found,
+                moved,
                 resonance_frequency=before.resonance_frequency,
                 half_wavelength=before.half_wavelength,
             )
-        f = found.resonance_frequency / before.resonance_frequency - 1
-        return f, found.amplitude_per_volt / before.amplitude_per_volt - 1, mode
+        f = moved.resonance_frequency / before.resonance_frequency - 1
+        return f, moved.amplitude_per_volt / before.amplitude_per_volt - 1, mode
 
     def friction(self, changed: Display, mode: WorkingMode) -> si.Dimensionless:
         """µ′/µ of a display whose plate moves by another mode, at the prediction's voltage."""

@@ -152,15 +152,15 @@ def friction_verdict(
     where it does not, a doubt where there is no interval (`why_not` says why). The same sentences
     wherever this verdict is shown; `held_back` is for whoever shows it.
     """
-    found = _at_the_place(p, unsure, why_not)
+    finding = _at_the_place(p, unsure, why_not)
     if area is None:
-        return (found,)
+        return (finding,)
     worst = area.area.worst
     highest = worst if area.odds is None else max(worst or 0.0, area.odds.worst_interval[1])
     everywhere = highest is not None and worst is not None and highest < PAPER_CRITERION
-    kind = "limit" if found.kind == "good" and not everywhere else found.kind
+    kind = "limit" if finding.kind == "good" and not everywhere else finding.kind
     over = Finding(kind, f"{area.area.sentence}{_odds(area)}", "friction")
-    return replace(found, kind=kind), over
+    return replace(finding, kind=kind), over
 
 
 def _odds(area: JudgedArea) -> str:
@@ -252,13 +252,13 @@ def _of_ceramics_touched(display: Display) -> Iterator[Finding]:
 def rival_frictions(p: Prediction) -> dict[str, si.Dimensionless]:
     """µ′/µ where a prediction was made by each compared model but its own, without those that
     refuse its amplitude."""
-    found = {}
+    frictions = {}
     for model, _ in COMPARED:
         if model != p.model:
             (friction,) = as_far_as_it_goes(p.law.by(model), np.array([p.vibration_amplitude]))
             if np.isfinite(friction):
-                found[str(model)] = float(friction)
-    return found
+                frictions[str(model)] = float(friction)
+    return frictions
 
 
 def model_form(

@@ -159,19 +159,19 @@ def wanted_friction(
         if strict:
             raise
         volts, amplitude, why_not = None, None, str(error)
-    found = Wanted(relative_friction, amplitude, volts, why_not)
+    wanted = Wanted(relative_friction, amplitude, volts, why_not)
     if not samples:
-        return found
+        return wanted
     if p.law.position or relative_friction >= 1:
         why = "the finger is away from the antinode" if p.law.position else "nothing is wanted"
-        return dataclasses.replace(found, why_no_interval=why)
+        return dataclasses.replace(wanted, why_no_interval=why)
     try:
         unsure = uncertain_voltage(
             display, p, relative_friction, samples=samples, seed=seed, progress=progress
         )
     except OutOfRangeError as error:
-        return dataclasses.replace(found, why_no_interval=str(error))
-    return dataclasses.replace(found, uncertain=unsure)
+        return dataclasses.replace(wanted, why_no_interval=str(error))
+    return dataclasses.replace(wanted, uncertain=unsure)
 
 
 @as_drawn()

@@ -43,7 +43,7 @@ def triangles_of(part: Part) -> si.FloatArray:
     closed = isinstance(part.footprint, Rectangle) or whole
     lids = _lid(rim, hole, closed)
     low, high = (np.full(len(lids), z) for z in (part.bottom, part.top))
-    found = [_at(lids, high), _at(lids[:, ::-1], low)]
+    faces = [_at(lids, high), _at(lids[:, ::-1], low)]
     # Walls: around the rim with it, around the hole against it, and the two ends of a sector.
     loops = [(rim, closed)]
     if hole is not None and len(hole) > 1:
@@ -53,8 +53,8 @@ def triangles_of(part: Part) -> si.FloatArray:
     elif hole is not None:
         loops += [(np.array([rim[-1], hole[0]]), False), (np.array([hole[0], rim[0]]), False)]
     for points, goes_round in loops:
-        found.append(_wall(points, goes_round, part.bottom, part.top))
-    return np.concatenate(found)
+        faces.append(_wall(points, goes_round, part.bottom, part.top))
+    return np.concatenate(faces)
 
 
 def _steps(shape: Sector) -> int:

@@ -97,10 +97,10 @@ test_plan.__test__ = False  # type: ignore[attr-defined] # pytest collects by na
 
 def _of(known: Known, answer: str, what: str, value: float | None, remark: str = "") -> Check:
     """A check of an answer, with the interval that was drawn of it."""
-    found = [predicted for predicted in known.expected if predicted.answer == answer]
-    interval, level = (found[0].interval, found[0].level) if found else (None, None)
-    if value is None and found:
-        value = found[0].median
+    matching = [predicted for predicted in known.expected if predicted.answer == answer]
+    interval, level = (matching[0].interval, matching[0].level) if matching else (None, None)
+    if value is None and matching:
+        value = matching[0].median
     return Check(what, answer, _UNITS[answer], value, interval, level, (), remark)
 
 

@@ -112,9 +112,9 @@ def leads_of(electrodes: Sequence[Electrode]) -> tuple[Lead, ...]:
         for electrode in electrodes
         if electrode.shunt_resistance is not None
     }
-    found = [Lead(name, tuple(names), (ends | shunts)[name]) for name, names in sorted(by.items())]
+    leads = [Lead(name, tuple(names), (ends | shunts)[name]) for name, names in sorted(by.items())]
     return (
-        *found,
+        *leads,
         Lead("bonded sides", tuple(electrode.name for electrode in electrodes), "ground"),
     )
 
@@ -165,8 +165,8 @@ def nodal_lines_of(actuator: Actuator, mode: WorkingMode) -> NodalLines:
     if isinstance(actuator, RectangularPlate):
         axis = "x" if actuator.lines_across == "length" else "y"
         line = mode.line
-        found = () if line is None else tuple(map(float, line.nodal_positions))
-        return NodalLines(axis=axis, positions=found)
+        places = () if line is None else tuple(map(float, line.nodal_positions))
+        return NodalLines(axis=axis, positions=places)
     if isinstance(actuator, DiscPlate):
         radii = () if mode.disc is None else tuple(map(float, nodal_circles(mode.disc)))
         return NodalLines(radii=radii, angles=_radial(actuator.nodal_diameters))

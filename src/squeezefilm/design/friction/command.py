@@ -205,7 +205,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
     tell("models side by side")
     curves = model_curves(prediction)
     tell("map over amplitude and force")
-    found = friction_map(prediction, asked.points)
+    maps = friction_map(prediction, asked.points)
     unsure, why_not = interval_or_reason(
         display, prediction, samples=asked.samples, seed=asked.seed, progress=asked.progress
     )
@@ -217,7 +217,7 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         prediction,
         curves,
         unsure,
-        found,
+        maps,
         _ripple(prediction),
         wanted,
         tuple(
@@ -230,10 +230,10 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
 
 def _missed(model: str) -> list[dict[str, str]] | None:
     """The measured directions that the model misses; None where they were not asked of it."""
-    found = missed_by(model)
-    if found is None:
+    directions = missed_by(model)
+    if directions is None:
         return None
-    return [{"says": one.says, "where": one.where, "why": one.why} for one in found]
+    return [{"says": one.says, "where": one.where, "why": one.why} for one in directions]
 
 
 def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:

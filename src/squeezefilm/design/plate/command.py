@@ -148,8 +148,8 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         check_band(band)
     tell = asked.progress or (lambda _: None)
     label = asked.mode or plate.working_label
-    found = solved_plate(plate, label, band, _Teller(asked.budget, tell))
-    solid = found.solid
+    solved = solved_plate(plate, label, band, _Teller(asked.budget, tell))
+    solid = solved.solid
     response, at = _resampled(solid, asked.points)
     tell("airborne sound")
     return PlateAnalysis(
@@ -158,17 +158,17 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         mode=solid_working_mode(plate, solid, label),
         solid=solid,
         working_label=label,
-        modes=found.modes,
-        rows=tuple(mode_row(found.modes, index) for index in range(found.modes.count)),
+        modes=solved.modes,
+        rows=tuple(mode_row(solved.modes, index) for index in range(solved.modes.count)),
         working=dataclasses.replace(
             mode_row(solid.modes, solid.index), alone_per_volt=solid.alone_per_volt
         ),
         response=response,
         resonance=at,
-        beam_frequency=found.beam.mode.frequency,
-        beam_amplitude_per_volt=found.beam.amplitude_per_volt,
+        beam_frequency=solved.beam.mode.frequency,
+        beam_amplitude_per_volt=solved.beam.amplitude_per_volt,
         sound=plate_sound(response, at, solid.frequency, display.drive.voltage),
-        objections=(*require_plausible(display), *found.left_out),
+        objections=(*require_plausible(display), *solved.left_out),
     )
 
 

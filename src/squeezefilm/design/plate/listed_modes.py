@@ -149,15 +149,15 @@ def with_neighbours(modes: Sequence[ListedMode]) -> tuple[ListedMode, ...]:
 
 
 def _beside(mode: ListedMode, others: Sequence[ListedMode]) -> ListedMode:
-    found = strongest_neighbour(_moving(mode), map(_moving, others))
-    if found is None:
+    neighbour = strongest_neighbour(_moving(mode), map(_moving, others))
+    if neighbour is None:
         return mode
     same = [other for other in others if other.label == mode.label != "in plane"]
     return dataclasses.replace(
         mode,
-        neighbour=found.name,
-        neighbour_distance=found.distance,
-        neighbour_share=found.share,
+        neighbour=neighbour.name,
+        neighbour_distance=neighbour.distance,
+        neighbour_share=neighbour.share,
         unique=all(other.alone_per_volt < SAME_LABEL * mode.alone_per_volt for other in same),
     )
 
@@ -175,10 +175,10 @@ def chosen(
     modes: Sequence[ListedMode], label: str, near: si.Hertz | None = None
 ) -> ListedMode | None:
     """Mode nearest to a frequency (Hz) of those with a label; without a frequency the strongest."""
-    found = [mode for mode in modes if mode.label == label]
+    matching = [mode for mode in modes if mode.label == label]
     if near is not None:
-        return min(found, key=lambda mode: abs(mode.frequency - near), default=None)
-    return max(found, key=lambda mode: mode.alone_per_volt, default=None)
+        return min(matching, key=lambda mode: abs(mode.frequency - near), default=None)
+    return max(matching, key=lambda mode: mode.alone_per_volt, default=None)
 
 
 def wanted_frequency(actuator: Actuator) -> si.Hertz | None:

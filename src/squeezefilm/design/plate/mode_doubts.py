@@ -151,10 +151,10 @@ def _instead(plate: RectangularPlate) -> str:
 def _screened(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> tuple[ListedMode, ...]:
     """The driven modes of a band as they are listed; none where the plate cannot be screened."""
     try:
-        found = screened_modes(plate, band)
+        modes = screened_modes(plate, band)
     except SqueezefilmError:
         return ()
-    return _listed(found)
+    return _listed(modes)
 
 
 def _around(plate: RectangularPlate, mode: WorkingMode) -> tuple[ListedMode, ...]:
@@ -165,7 +165,7 @@ def _around(plate: RectangularPlate, mode: WorkingMode) -> tuple[ListedMode, ...
     return _listed(mode.solid.response.settled_modes(band))
 
 
-def _listed(found: Sequence[DrivenMode]) -> tuple[ListedMode, ...]:
-    strongest = max((mode.alone_per_volt for mode in found), default=0.0)
-    driven = [mode for mode in found if mode.alone_per_volt >= DRIVEN_SHARE * strongest > 0]
+def _listed(modes: Sequence[DrivenMode]) -> tuple[ListedMode, ...]:
+    strongest = max((mode.alone_per_volt for mode in modes), default=0.0)
+    driven = [mode for mode in modes if mode.alone_per_volt >= DRIVEN_SHARE * strongest > 0]
     return with_neighbours([listed_mode(mode) for mode in driven])

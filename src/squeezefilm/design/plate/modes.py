@@ -219,9 +219,9 @@ def _of_ring(
     body = ring_body(display.actuator)
     working = body.mode()
     # To choose a mode by, elements of one degree less will do.
-    found = modes_in_band(body, band, tell, degree=DEFAULT_DEGREE - 1)
+    modes = modes_in_band(body, band, tell, degree=DEFAULT_DEGREE - 1)
     capacitance = clamped_capacitance(body.section, body.drive)
-    rows = [mode_row(body, mode, capacitance) for mode in found]
+    rows = [mode_row(body, mode, capacitance) for mode in modes]
     strongest = max(row.alone_per_volt for row in rows)
     listed = with_neighbours(
         [
@@ -237,7 +237,7 @@ def _of_ring(
                 else f"nodal_circles = {row.label[2:].split(',')[0]}, nodal_diameters = "
                 f"{mode.harmonic}",
             )
-            for mode, row in zip(found, rows, strict=True)
+            for mode, row in zip(modes, rows, strict=True)
             if row.alone_per_volt >= DRIVEN_SHARE * strongest
         ]
     )

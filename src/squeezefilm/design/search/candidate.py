@@ -82,11 +82,11 @@ class Design:
 def plates_of(designs: Iterable[Design]) -> dict[Design, tuple[Design, ...]]:
     """The plates of designs, each with its designs in their order: whoever solves a plate has it
     for all its voltages."""
-    found: dict[Design, tuple[Design, ...]] = {}
+    plates: dict[Design, tuple[Design, ...]] = {}
     for design in designs:
         plate = design.plate
-        found[plate] = (*found.get(plate, ()), design)
-    return found
+        plates[plate] = (*plates.get(plate, ()), design)
+    return plates
 
 
 def design_of(shape: int, values: Mapping[str, Setting]) -> Design:
@@ -120,8 +120,8 @@ class Evaluated:
 
     def objectives(self, names: tuple[str, ...]) -> tuple[float, ...]:
         """Values to be made small, in the order of names; infinite where it is not known."""
-        found = (self.numbers.get(criterion_of(name).key, float("inf")) for name in names)
-        return tuple(float("inf") if value != value else value for value in found)
+        values = (self.numbers.get(criterion_of(name).key, float("inf")) for name in names)
+        return tuple(float("inf") if value != value else value for value in values)
 
 
 def display_of(requirements: Requirements, design: Design) -> Display:
@@ -157,27 +157,27 @@ def evaluate(requirements: Requirements, design: Design, level: Level) -> Evalua
             warnings.simplefilter("ignore")
             if level == "screened":
                 display = display_of(requirements, design)
-                found, numbers = None, screened(requirements, display, design)
+                prediction, numbers = None, screened(requirements, display, design)
             else:
                 display = sourced_display_of(requirements, design)
-                found = predict(display)
-                numbers = _judged(requirements, display, found, design)
-                numbers |= numbers_of_solved(requirements, display, found)
+                prediction = predict(display)
+                numbers = _judged(requirements, display, prediction, design)
+                numbers |= numbers_of_solved(requirements, display, prediction)
     except SqueezefilmError as error:
         return Evaluated(design, level, {}, reason=str(error), seconds=_since(began))
     except Exception as error:
         # One design of thousands: a fault of ours is told, and the others are not lost.
         reason = f"not foreseen: {type(error).__name__}: {error}"
         return Evaluated(design, level, {}, reason=reason, seconds=_since(began), lasting=False)
-    if found is not None and not found.mode.has_shape:
-        return Evaluated(design, level, {}, reason=found.objections[-1], seconds=_since(began))
+    if prediction is not None and not prediction.mode.has_shape:
+        return Evaluated(design, level, {}, reason=prediction.objections[-1], seconds=_since(began))
     return Evaluated(
         design,
         level,
         numbers,
         breaches(numbers, requirements.limits),
         seconds=_since(began),
-        warnings=() if found is None else found.warnings,
+        warnings=() if prediction is None else prediction.warnings,
     )
 
 
@@ -255,11 +255,11 @@ def reference_of(requirements: Requirements) -> Evaluated:
         provenance=shared_sources(requirements) | of_body,
     )
     try:
-        found = predict(display, voltage=requirements.drive.voltage)
-        if not found.mode.has_shape:
-            return _not_judged(found.objections[-1])
-        numbers = numbers_of_prediction(requirements, display, found)
-        numbers |= numbers_of_solved(requirements, display, found)
+        prediction = predict(display, voltage=requirements.drive.voltage)
+        if not prediction.mode.has_shape:
+            return _not_judged(prediction.objections[-1])
+        numbers = numbers_of_prediction(requirements, display, prediction)
+        numbers |= numbers_of_solved(requirements, display, prediction)
     except SqueezefilmError as error:
         return _not_judged(str(error))
     del numbers["cost"]

@@ -66,9 +66,9 @@ class Correction:
         return found
 
 
-def _features(space: Space, one: Evaluated) -> list[float]:
-    slender = one.numbers["half_wavelength"] / one.numbers["total_thickness"]
-    return [*space.shares(one.design.settings), np.log(slender)]
+def _features(space: Space, candidate: Evaluated) -> list[float]:
+    slender = candidate.numbers["half_wavelength"] / candidate.numbers["total_thickness"]
+    return [*space.shares(candidate.design.settings), np.log(slender)]
 
 
 def learned(

@@ -136,20 +136,20 @@ class Proposals:
                 population_size=POPULATION, seed=seed, constraints_func=_constraints
             )
 
-    def _values(self, one: Evaluated) -> list[float]:
-        if one.reason:
+    def _values(self, candidate: Evaluated) -> list[float]:
+        if candidate.reason:
             return [_NONE] * len(self._requirements.objectives)
-        values = one.objectives(self._requirements.objectives)
+        values = candidate.objectives(self._requirements.objectives)
         return [value if np.isfinite(value) else _NONE for value in values]
 
-    def _excess(self, one: Evaluated) -> list[float]:
+    def _excess(self, candidate: Evaluated) -> list[float]:
         """Excess over each limit; a design that cannot be built exceeds all."""
         bounds = list(bounded(self._requirements.limits))
-        if one.reason:
+        if candidate.reason:
             return [10.0] * max(len(bounds), 1)
         found = []
         for criterion, bound in bounds:
-            value = one.numbers.get(criterion.key)
+            value = candidate.numbers.get(criterion.key)
             excess = -1.0 if value is None else excess_of(criterion, value, bound)
             found.append(float(np.clip(np.nan_to_num(excess, nan=0.0), -1.0, 10.0)))
         return found or [0.0]

@@ -273,19 +273,19 @@ def _numbers(one: Evaluated) -> dict[str, Any]:
     return {key + CRITERIA[key].unit.suffix: to_json(value) for key, value in one.numbers.items()}
 
 
-def _row(requirements: Requirements, one: FrontMember) -> dict[str, Any]:
-    design, space = one.evaluated.design, requirements.spaces[one.evaluated.design.shape]
+def _row(requirements: Requirements, member: FrontMember) -> dict[str, Any]:
+    design, space = member.evaluated.design, requirements.spaces[member.evaluated.design.shape]
     chosen = {
         variable.name + (getattr(variable, "unit", None) or si.Unit("1")).suffix: design.settings[
             variable.name
         ]
         for variable in space
     }
-    made = None if one.made is None else {"yield": one.made.kept, "draws": one.made.draws}
+    made = None if member.made is None else {"yield": member.made.kept, "draws": member.made.draws}
     return {
-        "name": one.name,
+        "name": member.name,
         "shape": space.shape,
         **chosen,
-        **_numbers(one.evaluated),
+        **_numbers(member.evaluated),
         "made": made,
     }

@@ -150,13 +150,13 @@ def conflict_of(screened: Sequence[Evaluated]) -> tuple[str, str, si.Dimensionle
     return None if pair is None or pairs[pair] <= 0 else (*pair, pairs[pair])
 
 
-def margins(requirements: Requirements, one: Evaluated) -> dict[str, si.Dimensionless]:
+def margins(requirements: Requirements, candidate: Evaluated) -> dict[str, si.Dimensionless]:
     """Distance of a design from each limit that it could be judged by, as a share of it, the
     nearest first."""
     found = {
         criterion.key: -excess_of(criterion, value, bound)
         for criterion, bound in bounded(requirements.limits)
-        if not math.isnan(value := criterion.value(one.numbers))
+        if not math.isnan(value := criterion.value(candidate.numbers))
     }
     return dict(sorted(found.items(), key=lambda item: item[1]))
 

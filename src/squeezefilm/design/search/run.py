@@ -355,12 +355,12 @@ class SearchRun:
         """The feasible solved designs that none other beats, the first objective rising."""
         return unbeaten(self.requirements, (seen or self._seen)["solved"].values(), self._made)
 
-    def _show_meanwhile(self, level: Level, found: Mapping[Design, Evaluated]) -> None:
+    def _show_meanwhile(self, level: Level, evaluated: Mapping[Design, Evaluated]) -> None:
         """Show what came in the middle of a batch, so seldom that it takes little of the time."""
         now = time.monotonic()
         if self._asked.watch is None or now < self._shown_next:
             return
-        self._show({**self._seen, level: {**self._seen[level], **found}})
+        self._show({**self._seen, level: {**self._seen[level], **evaluated}})
         self._shown_next = time.monotonic() + max(1.0, 20 * (time.monotonic() - now))
 
     def _show(self, seen: Seen | None = None) -> None:

@@ -109,11 +109,11 @@ class DesignStore:
         """Result of a design at a level; None where nothing is."""
         return self._known.get((design, level))
 
-    def add(self, found: Iterable[Evaluated]) -> None:
+    def add(self, candidates: Iterable[Evaluated]) -> None:
         """Keep evaluated designs, together on the disk. What might be another one another time is
         kept in memory only."""
         lines = []
-        for candidate in found:
+        for candidate in candidates:
             self._known[candidate.design, candidate.level] = candidate
             self.computed += 1
             if candidate.lasting:
@@ -145,17 +145,17 @@ class DesignStore:
         if self._lines is not None:
             self._lines.append(lines)
 
-    def _line(self, one: Evaluated) -> dict[str, Any]:
+    def _line(self, candidate: Evaluated) -> dict[str, Any]:
         return {
-            "asked": self._hashes[one.level],
-            "shape": one.design.shape,
-            "values": one.design.settings,
-            "level": one.level,
+            "asked": self._hashes[candidate.level],
+            "shape": candidate.design.shape,
+            "values": candidate.design.settings,
+            "level": candidate.level,
             "member": self._member,
-            "numbers": {key: _plain(value) for key, value in one.numbers.items()},
-            "reason": one.reason,
-            "seconds": round(one.seconds, 4),
-            "warnings": list(one.warnings),
+            "numbers": {key: _plain(value) for key, value in candidate.numbers.items()},
+            "reason": candidate.reason,
+            "seconds": round(candidate.seconds, 4),
+            "warnings": list(candidate.warnings),
         }
 
     def _evaluated(self, read: Mapping[str, Any]) -> Evaluated | None:

@@ -159,17 +159,17 @@ def _of_points(
     return Effects(column, shares, pairs, max(1.0 - left, 0.0), len(y))
 
 
-def _functions(one: Varied, there: NDArray[np.bool_]) -> list[si.FloatArray]:
+def _functions(value: Varied, there: NDArray[np.bool_]) -> list[si.FloatArray]:
     """Functions of one varied value that are orthonormal over its range: Legendre's polynomials of
     numbers, contrasts of words; none of a value that is the same at all points."""
-    x = np.log(one.values[there]) if one.logarithmic else one.values[there]
+    x = np.log(value.values[there]) if value.logarithmic else value.values[there]
     if np.ptp(x) == 0:
         return []
-    if one.words:
+    if value.words:
         basis, _ = np.linalg.qr(
-            np.column_stack([np.ones(len(one.words)), np.eye(len(one.words))[:, 1:]])
+            np.column_stack([np.ones(len(value.words)), np.eye(len(value.words))[:, 1:]])
         )
-        scaled = basis[:, 1:] * math.sqrt(len(one.words))
+        scaled = basis[:, 1:] * math.sqrt(len(value.words))
         return [scaled[x.astype(int), k] for k in range(scaled.shape[1])]
     u = 2 * (x - x.min()) / np.ptp(x) - 1
     most = min(max(_DEGREES), len(np.unique(x)) - 1)

@@ -132,18 +132,18 @@ def _axis(ranges: Sequence[_Range], count: int, seed: int) -> Axis:
     )
 
 
-def _range(name: str, found: re.Match[str], display: Display) -> _Range:
+def _range(name: str, match: re.Match[str], display: Display) -> _Range:
     option, unit, whole = what_is_varied(name, display)
     if unit is None:
         raise InputError(f"{name} takes words, which have no range; name them with commas between")
-    ends = (found[end].strip() for end in ("first", "last"))
+    ends = (match[end].strip() for end in ("first", "last"))
     low, high = sorted(quantity_of_text(name, end, unit) for end in ends)
-    if low == high or (found["log"] and low <= 0):
+    if low == high or (match["log"] and low <= 0):
         raise InputError(
-            f"{name} from {found['first'].strip()} to {found['last'].strip()} is no range to draw "
-            f"in; give two ends{', above 0 for a logarithm' if found['log'] else ''}"
+            f"{name} from {match['first'].strip()} to {match['last'].strip()} is no range to draw "
+            f"in; give two ends{', above 0 for a logarithm' if match['log'] else ''}"
         )
-    return _Range(name, unit, option, low, high, found["log"] is not None, whole)
+    return _Range(name, unit, option, low, high, match["log"] is not None, whole)
 
 
 def plan_of(

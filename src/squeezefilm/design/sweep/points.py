@@ -90,8 +90,8 @@ def answered(
         yield number, _lost(found) if isinstance(found, Lost) else found
 
 
-def _lost(found: Lost) -> Answer:
-    return Answer({}, reason=found.reason, lasting=False)
+def _lost(lost: Lost) -> Answer:
+    return Answer({}, reason=lost.reason, lasting=False)
 
 
 FILE = "answers.jsonl"

@@ -26,9 +26,9 @@ _TICKS = (-0.1, -0.01, -0.001, 0.0, 0.001, 0.01, 0.1)
 
 
 @style.drawn
-def compared_figure(found: FolderCalibration) -> Figure:
+def compared_figure(calibration: FolderCalibration) -> Figure:
     """Figure of what the model alone says of every measured number, before and after."""
-    rows = found.calibration.compared
+    rows = calibration.calibration.compared
     far = [one for one in rows if one.after and abs(deviation(one)) > 2]
     title = (
         f"The calibrated model meets all {len(rows)} measured numbers within two standard errors"

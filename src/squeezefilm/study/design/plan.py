@@ -150,12 +150,12 @@ def plan_study(
     )
 
 
-def _grooves(one: Stimulus | Grating) -> dict[str, Any]:
+def _grooves(surface: Stimulus | Grating) -> dict[str, Any]:
     return {
-        "name": one.name,
-        "spatial_period_m": _known(one.period),
-        "groove_width_m": _known(one.groove_width),
-        "length_means": one.period_means,
+        "name": surface.name,
+        "spatial_period_m": _known(surface.period),
+        "groove_width_m": _known(surface.groove_width),
+        "length_means": surface.period_means,
     }
 
 

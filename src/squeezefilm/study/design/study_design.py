@@ -235,9 +235,9 @@ class StudyDesign:
             return ""
         return self.described.right(surfaces, self.judged_value)
 
-    def judged_value(self, one: Stimulus) -> float:
+    def judged_value(self, surface: Stimulus) -> float:
         """Amount (SI) of what is judged that a stimulus has; of a period the whole one."""
-        return one.period if self.judged == "spatial_period" else one.amount(self.judged)
+        return surface.period if self.judged == "spatial_period" else surface.amount(self.judged)
 
     def catch_condition(self, catch: CatchTrial) -> Condition:
         """Surfaces of a catch trial: its stimulus, in tasks of several surfaces with the

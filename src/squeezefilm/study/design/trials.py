@@ -185,7 +185,7 @@ def _random(seed: int, purpose: int, *more: int) -> np.random.Generator:
 
 
 def _display_trials(
-    design: StudyDesign, display: str, place: int, participant: int, seed: int, found: list[Trial]
+    design: StudyDesign, display: str, place: int, participant: int, seed: int, planned: list[Trial]
 ) -> None:
     matching = _random(seed, _MATCHING, participant, place)
     names = design.answers
@@ -204,9 +204,9 @@ def _display_trials(
                     *(design.stimulus(name) for name in condition)
                 )
             answer = answers[condition]
-        found.append(
+        planned.append(
             Trial(
-                number=len(found) + 1,
+                number=len(planned) + 1,
                 display=display,
                 block=block,
                 phase=phase,
@@ -216,7 +216,7 @@ def _display_trials(
                 adaptive="",
                 reference_first=False,
                 pause=pause,
-                seed=_trial_seed(seed, participant, len(found) + 1),
+                seed=_trial_seed(seed, participant, len(planned) + 1),
             )
         )
 
@@ -238,7 +238,7 @@ def _display_trials(
         add(0, "practice", every[i], pause)
         pause = 0.0
     if design.adaptive:
-        _adaptive_trials(design, display, place, participant, seed, found)
+        _adaptive_trials(design, display, place, participant, seed, planned)
         return
     for block, queue in enumerate(_blocks(design, place, participant, seed)):
         for position, (phase, one_condition, answer) in enumerate(queue):
@@ -273,7 +273,7 @@ def _blocks(
 
 
 def _adaptive_trials(
-    design: StudyDesign, display: str, place: int, participant: int, seed: int, found: list[Trial]
+    design: StudyDesign, display: str, place: int, participant: int, seed: int, planned: list[Trial]
 ) -> None:
     """The series interleaved at random, catch trials between them, in blocks of equal size; the
     reference comes first in half of the trials of each series, and is presented twice in half of
@@ -292,9 +292,9 @@ def _adaptive_trials(
     size = -(-len(queue) // design.blocks)
     for position, (name, reference_first, answer, caught) in enumerate(queue):
         rest = position % size == 0 and (place or position)
-        found.append(
+        planned.append(
             Trial(
-                number=len(found) + 1,
+                number=len(planned) + 1,
                 display=display,
                 block=position // size + 1,
                 phase="main" if caught is None else "catch",
@@ -304,7 +304,7 @@ def _adaptive_trials(
                 adaptive=name,
                 reference_first=reference_first,
                 pause=design.break_between_blocks if rest else 0.0,
-                seed=_trial_seed(seed, participant, len(found) + 1),
+                seed=_trial_seed(seed, participant, len(planned) + 1),
             )
         )
 

@@ -304,14 +304,14 @@ def _intervals(
 
 
 def _by_stimulus(matrix: ConfusionMatrix, level: float) -> tuple[StimulusCorrect, ...]:
-    found = []
+    rows = []
     for j, name in enumerate(matrix.stimuli):
         right, trials = int(matrix.counts[j, j]), int(matrix.trials_per_stimulus[j])
         if trials == 0:
             continue
         bounds = proportion_interval(right, trials, level)
-        found.append(StimulusCorrect(name, trials, right, right / trials, bounds.low, bounds.high))
-    return tuple(found)
+        rows.append(StimulusCorrect(name, trials, right, right / trials, bounds.low, bounds.high))
+    return tuple(rows)
 
 
 def _models(

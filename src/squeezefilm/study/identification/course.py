@@ -104,14 +104,14 @@ def drift(
 
 def attention(caught: Answers) -> tuple[Attention, ...]:
     """Each person's catch trials, judged."""
-    found = []
+    people = []
     for person in np.unique(caught.participant):
         right = caught.correct[caught.participant == person]
         right = right[np.isfinite(right)]
         if not right.size:
             continue
-        found.append(judged(caught.people[person], int(right.sum()), right.size))
-    return tuple(found)
+        people.append(judged(caught.people[person], int(right.sum()), right.size))
+    return tuple(people)
 
 
 def judged(person: str, right: int, asked: int) -> Attention:

@@ -118,13 +118,13 @@ def power_curve(
     require_within(STUDIES, studies, "studies")
     si.require("alpha", alpha, above=0.0, below=1.0)
     si.require("target", target, above=0.0, below=1.0)
-    found = []
+    shares = []
     for done, people in enumerate(sizes):
-        found.append(_significant(simulate, test, people, studies, alpha, seed))
+        shares.append(_significant(simulate, test, people, studies, alpha, seed))
         if progress is not None:
             progress(done + 1, len(sizes))
-    bounds = [proportion_interval(number, studies, method="Clopper–Pearson") for number in found]
-    power = np.array(found) / studies
+    bounds = [proportion_interval(number, studies, method="Clopper–Pearson") for number in shares]
+    power = np.array(shares) / studies
     low, high = np.array([b.low for b in bounds]), np.array([b.high for b in bounds])
     return PowerCurve(
         np.array(sizes),

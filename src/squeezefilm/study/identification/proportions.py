@@ -132,10 +132,10 @@ def proportion_interval(
         )
     if method != "Jeffreys":
         exact = method == "Clopper–Pearson"
-        found = stats.binomtest(successes, trials).proportion_ci(
+        interval = stats.binomtest(successes, trials).proportion_ci(
             level, "exact" if exact else "wilson"
         )
-        return StatedInterval(float(found.low), float(found.high), level, method)
+        return StatedInterval(float(interval.low), float(interval.high), level, method)
     posterior = stats.beta(successes + 0.5, trials - successes + 0.5)
     tail = (1 - level) / 2
     low = 0.0 if successes == 0 else float(posterior.ppf(tail))
@@ -203,14 +203,14 @@ def permutation_test(
         # A sum over many people is normal, and its mean and variance are known exactly.
         return _normal_permutation(answers, presented, observed)
     random = np.random.default_rng(seed)
-    found = np.zeros(permutations, dtype=np.int64)
+    totals = np.zeros(permutations, dtype=np.int64)
     for rows, columns in zip(answers, presented, strict=True):
         left = np.broadcast_to(rows, (permutations, rows.size)).copy()
         for column, drawn in enumerate(columns):
             taken = _draw(random, left, int(drawn))
-            found += taken[:, column]
+            totals += taken[:, column]
             left -= taken
-    return float((1 + np.count_nonzero(found >= observed)) / (1 + permutations))
+    return float((1 + np.count_nonzero(totals >= observed)) / (1 + permutations))
 
 
 def _draw(random: np.random.Generator, left: si.IntArray, drawn: int) -> si.IntArray:

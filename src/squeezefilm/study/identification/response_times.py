@@ -63,14 +63,14 @@ def response_time_summary(
     taken = ~np.isnan(given)
     si.require("response_time", given[taken], si.Unit("s"), above=0.0)
     si.require("level", level, above=0.0, below=1.0)
-    found = []
+    summaries = []
     for column in np.unique(kind[taken]).tolist():
         here = taken & (kind == column)
         who, logs = person[here], np.log(given[here])
         (one,) = condition_means(who, np.zeros_like(who), logs, (names[column],), level)
         own = np.bincount(who, logs) / np.maximum(np.bincount(who), 1)
         freedom = one.trials - one.participants
-        found.append(
+        summaries.append(
             ResponseTimeSummary(
                 one.name,
                 one.trials,
@@ -83,4 +83,4 @@ def response_time_summary(
                 float(np.median(given[here])),
             )
         )
-    return tuple(found)
+    return tuple(summaries)

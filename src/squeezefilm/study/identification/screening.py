@@ -130,7 +130,7 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
     if not excused:
         asked = min(asked, 0.5 * abs(middle))
     whole = min(max(mine.trials for mine in people), answers.design.most_main_trials)
-    found = []
+    judgements = []
     for mine, model, z in zip(people, models, follows, strict=True):
         name = mine.people[int(mine.participant[0])]
         reasons, doubts = _habits(mine), []
@@ -148,8 +148,8 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
             reasons.append(f"{catch.right} of {catch.asked} catch trials right")
         if mine.trials < rule.complete * whole:
             reasons.append(f"{mine.trials} of {whole} trials answered")
-        found.append(PersonJudgement(name, mine.trials, z, tuple(reasons), tuple(doubts)))
-    return tuple(found), said
+        judgements.append(PersonJudgement(name, mine.trials, z, tuple(reasons), tuple(doubts)))
+    return tuple(judgements), said
 
 
 def _habits(mine: Answers) -> list[str]:

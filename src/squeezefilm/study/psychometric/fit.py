@@ -91,20 +91,20 @@ class PsychometricFit(Result):
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences to be read before a number of this fit is used."""
-        found = []
+        sentences = []
         if self.falls:
-            found.append(
+            sentences.append(
                 f"the answers fall with intensity (trend test, p = {self.falling_p:.1g}), and a "
                 "psychometric function rises: no number of this fit describes them; if answers "
                 "were exchanged, fit trials - positive"
             )
         if self.bounded_by_prior:
             names = " and ".join(self.bounded_by_prior)
-            found.append(
+            sentences.append(
                 f"the answers do not bound the {names}: an end of the interval is the prior's, and "
                 "more trials near the threshold, or a prior of your own, are wanted"
             )
-        return tuple(found)
+        return tuple(sentences)
 
     def summary(self) -> dict[str, Any]:
         """The numbers for JSON."""

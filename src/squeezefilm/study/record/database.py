@@ -34,10 +34,10 @@ def identity_of(path: Path) -> Identity | None:
     Never opens it: closing a file drops all locks that this process has on it, SQLite's too.
     """
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return found.st_dev, found.st_ino
+    return status.st_dev, status.st_ino
 
 
 def claim(path: Path) -> Identity:
@@ -55,7 +55,7 @@ def claim(path: Path) -> Identity:
         if isinstance(error, FileExistsError) and os.path.lexists(path):
             raise InputError(f"{path} exists; open it to go on, or give another name") from error
         raise RecordError(f"{path} cannot be made: {error.strerror}; choose another") from error
-    found = os.fstat(handle)
+    status = os.fstat(handle)
     os.close(handle)
     for part in _LEFT_BEHIND:
         if os.path.lexists(f"{path}{part}"):
@@ -64,7 +64,7 @@ def claim(path: Path) -> Identity:
                 f"{path.name}{part} lies there from a file that was removed, and would be taken "
                 f"for this one's; move it away, or give another name than {path}"
             )
-    return found.st_dev, found.st_ino
+    return status.st_dev, status.st_ino
 
 
 def discard(path: Path, claimed: Identity) -> None:
@@ -113,9 +113,9 @@ def _marks(path: Path) -> tuple[int, int]:
     logged = path.with_name(f"{path.name}-wal").exists()
     try:
         # Without a lock either, and without the log.
-        found = _read_marks(path, "mode=ro&immutable=1")
-        if found[0] or not logged:
-            return found
+        marks = _read_marks(path, "mode=ro&immutable=1")
+        if marks[0] or not logged:
+            return marks
     except FAILURES as error:
         if not logged:
             raise InputError(f"{path} is no study's file: {error}") from error

@@ -141,11 +141,11 @@ def _surveyed(
 
 def _identifiers(store: StudyStore, pseudonym: str) -> set[str]:
     """Everything random that only this participant's rows hold."""
-    found = set(_traces(store, pseudonym))
+    identifiers = set(_traces(store, pseudonym))
     for table in ("presentation", "verification", "session", "trial"):
         rows = store.rows(f"SELECT uuid FROM {table} WHERE {_OF[table]}", [pseudonym])
-        found |= {row["uuid"] for row in rows}
-    return found
+        identifiers |= {row["uuid"] for row in rows}
+    return identifiers
 
 
 def _traces(store: StudyStore, pseudonym: str) -> list[str]:

@@ -109,11 +109,11 @@ def _opened(path: Path, folder: int | None, flags: int) -> Iterator[int]:
     except OSError as error:
         raise _refused(path, error) from error
     try:
-        found = os.fstat(handle)
-        if not stat.S_ISREG(found.st_mode):
+        status = os.fstat(handle)
+        if not stat.S_ISREG(status.st_mode):
             raise _not_plain(path, "no file")
-        if found.st_nlink != 1:
-            raise _not_plain(path, f"one of {found.st_nlink} names of the same file")
+        if status.st_nlink != 1:
+            raise _not_plain(path, f"one of {status.st_nlink} names of the same file")
         yield handle
     finally:
         os.close(handle)

@@ -158,11 +158,11 @@ def touches(
     """The paths (s, m) of a trace between lifts: a step longer than `longest_step` (s) is a lift.
     A touch without any motion is left out."""
     cuts = np.flatnonzero(np.diff(time) > longest_step) + 1
-    found = []
+    touches_of_trace = []
     for rows in np.split(np.arange(time.size), cuts):
         if rows.size > 1 and (np.any(np.diff(x[rows])) or np.any(np.diff(y[rows]))):
-            found.append(FingerPath(time[rows], x[rows], y[rows]))
-    return tuple(found)
+            touches_of_trace.append(FingerPath(time[rows], x[rows], y[rows]))
+    return tuple(touches_of_trace)
 
 
 @si.checked_numbers
@@ -205,7 +205,7 @@ class ExploredTrials:
 
         One that is not there or cannot be read is left out: traces may be kept elsewhere.
         """
-        found = []
+        tables = []
         for name in traces:
             if name.endswith(".csv"):
                 try:
@@ -215,8 +215,8 @@ class ExploredTrials:
                 except (ConfigError, InputError):
                     continue
                 if time.size > 1:
-                    found.append(table)
-        return found
+                    tables.append(table)
+        return tables
 
     def measures(self, display: str, traces: list[str]) -> dict[str, float | None]:
         """Measures of an answer: peak speed (m/s), time in touch (s), passes, their share along x

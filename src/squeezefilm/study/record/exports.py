@@ -79,15 +79,15 @@ def exported_folders(store: StudyStore) -> list[tuple[Format, Path]]:
         return []
     try:
         rows = read_json(listed, OWN_BYTES, "a list of exports")
-        found = [(row["format"], Path(row["folder"])) for row in rows]
-        if not {format for format, _ in found} <= set(FORMATS):
+        folders = [(row["format"], Path(row["folder"])) for row in rows]
+        if not {format for format, _ in folders} <= set(FORMATS):
             raise ValueError("a format that is not known")
     except (ValueError, KeyError, TypeError) as error:
         raise InputError(
             f"{listed} cannot be read ({error!r}); remove it and export again, and delete old "
             "exports by hand"
         ) from error
-    return [(format, folder) for format, folder in found if (folder / _MARK).is_file()]
+    return [(format, folder) for format, folder in folders if (folder / _MARK).is_file()]
 
 
 def export_again(store: StudyStore) -> int:
@@ -225,14 +225,14 @@ def readme(store: StudyStore, standard: str) -> str:
 
 
 def _variables(columns: Sequence[Column]) -> list[dict[str, str]]:
-    found = []
+    variables = []
     for column in columns:
         said = f"{column.description} ({_KINDS[column.kind]})"
-        one = {"@type": "PropertyValue", "name": column.name, "description": said}
+        variable = {"@type": "PropertyValue", "name": column.name, "description": said}
         if column.unit:
-            one["unitText"] = column.unit
-        found.append(one)
-    return found
+            variable["unitText"] = column.unit
+        variables.append(variable)
+    return variables
 
 
 _MISSING = "n/a"
@@ -303,12 +303,12 @@ _SITTINGS = [
 
 
 def _described(columns: Sequence[Column]) -> dict[str, Any]:
-    found: dict[str, Any] = {}
+    described: dict[str, Any] = {}
     for column in columns:
-        found[column.name] = {"Description": column.description}
+        described[column.name] = {"Description": column.description}
         if column.unit:
-            found[column.name]["Units"] = column.unit
-    return found
+            described[column.name]["Units"] = column.unit
+    return described
 
 
 def _tsv(rows: Sequence[dict[str, Cell]], columns: Sequence[Column]) -> str:

@@ -105,7 +105,7 @@ def _files(path: str | Path) -> list[Path]:
 
 def columns_of(text: str, quantity: str = "columns") -> dict[str, str]:
     """ "choice=key_resp.keys, participant_id=who" as a mapping. Raises `InputError`."""
-    found: dict[str, str] = {}
+    columns: dict[str, str] = {}
     for part in filter(None, (one.strip() for one in text.split(","))):
         name, is_equal, theirs = (word.strip() for word in part.partition("="))
         if not (is_equal and name and theirs):
@@ -114,8 +114,8 @@ def columns_of(text: str, quantity: str = "columns") -> dict[str, str]:
                 "choice=key_resp.keys, or WORD=ANSWER, like left=first",
                 quantity=quantity,
             )
-        found[name] = theirs
-    return found
+        columns[name] = theirs
+    return columns
 
 
 def _rows(
@@ -288,11 +288,11 @@ def _number(path: str | Path, line: int, column: str, text: str) -> float:
 def _count(path: str | Path, line: int, words: Mapping[str, str]) -> int:
     if COUNT not in words:
         return 1
-    found = _number(path, line, COUNT, words[COUNT])
-    if not (found >= 0 and found == int(found)):
+    count = _number(path, line, COUNT, words[COUNT])
+    if not (count >= 0 and count == int(count)):
         raise ConfigError(
             f"'{words[COUNT]}' is no count; write 0, 1, 2 …", file=path, line=line, key=COUNT
         )
     # Here already, for no list of so many is made.
-    require_within(FOREIGN_TRIALS, max(found, 1.0), enough="give a part of the file")
-    return int(found)
+    require_within(FOREIGN_TRIALS, max(count, 1.0), enough="give a part of the file")
+    return int(count)

@@ -73,7 +73,7 @@ def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
     *names, row["third_stimulus"] = (*trial.stimuli, "", "", "")[:3]
     for prefix, name in zip(("stimulus", "second_stimulus"), names, strict=True):
         felt = trial.phase == "familiarisation" and name in gratings
-        one = gratings[name] if felt else (design.stimulus(name) if name else None)
+        surface = gratings[name] if felt else (design.stimulus(name) if name else None)
         row[prefix] = name
-        row |= {f"{prefix}_{key}": value for key, value in surface_cells(one).items()}
+        row |= {f"{prefix}_{key}": value for key, value in surface_cells(surface).items()}
     return {column.name: row[column.name] for column in ORDER_COLUMNS}

@@ -102,8 +102,8 @@ class Sittings:
 
     def is_open(self, id: str) -> bool:
         """True where there is such a sitting and it has not ended."""
-        found = self._all().get(id)
-        return found is not None and not found.ended
+        sitting = self._all().get(id)
+        return sitting is not None and not sitting.ended
 
     def of_study(self, study: str) -> list[Sitting]:
         """The sittings of a study that have not ended."""
@@ -188,10 +188,10 @@ class Sittings:
 
 
 def _of(kept: Mapping[str, Sitting], id: str) -> Sitting:
-    found = kept.get(id)
-    if found is None:
+    sitting = kept.get(id)
+    if sitting is None:
         raise InputError("this sitting is not known; ask the experimenter to prepare it again")
-    return found
+    return sitting
 
 
 @contextlib.contextmanager

@@ -347,8 +347,8 @@ class StudyStore:
         """
         if not self.traces.is_dir():
             return []
-        found = self.rows("SELECT traces FROM response")
-        named = {name for row in found for name in json.loads(row["traces"])}
+        rows = self.rows("SELECT traces FROM response")
+        named = {name for row in rows for name in json.loads(row["traces"])}
         stray = sorted(
             path for path in self.traces.iterdir() if is_trace(path.name) and path.name not in named
         )

@@ -114,7 +114,7 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
     """
     design = store.design
     gratings = {alternative.name: alternative for alternative in design.alternatives}
-    found: list[dict[str, Cell]] = []
+    rows: list[dict[str, Cell]] = []
     explored, surfaces = ExploredTrials(store), _Surfaces()
     for row in store.rows(_QUERY):
         names = json.loads(row.pop("stimuli"))
@@ -131,8 +131,8 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
             if name is not None:
                 one = gratings.get(name) if felt else presented(design, name, row)
             row |= {f"{prefix}_{key}": value for key, value in surfaces.cells(one).items()}
-        found.append({column.name: row[column.name] for column in COLUMNS})
-    return found
+        rows.append({column.name: row[column.name] for column in COLUMNS})
+    return rows
 
 
 def is_chosen(design: StudyDesign, name: str, row: Mapping[str, Any]) -> bool:
@@ -165,29 +165,29 @@ class _Surfaces:
         return self._known[id(one)][1]
 
 
-def surface_cells(one: Stimulus | Grating | None) -> dict[str, Cell]:
+def surface_cells(surface: Stimulus | Grating | None) -> dict[str, Cell]:
     """Periods (m), change of friction (1), kind and hash of a surface, by the ends of columns.
 
     Of a texture whose file cannot be read the hash is empty.
     """
-    if not isinstance(one, Stimulus):
-        real = one is not None
+    if not isinstance(surface, Stimulus):
+        real = surface is not None
         return {
-            "period_m": one.period if one is not None else None,
+            "period_m": surface.period if surface is not None else None,
             "friction_depth": None,
             "second_period_m": None,
             "surface": "real grating" if real else "",
             "surface_sha256": "",
         }
     try:
-        identity = one.surface_sha256
+        identity = surface.surface_sha256
     except ConfigError:
         identity = ""
     return {
-        "period_m": _known(one.period),
-        "friction_depth": _known(one.amount("friction_depth")),
-        "second_period_m": _known(one.second_period),
-        "surface": one.kind,
+        "period_m": _known(surface.period),
+        "friction_depth": _known(surface.amount("friction_depth")),
+        "second_period_m": _known(surface.second_period),
+        "surface": surface.kind,
         "surface_sha256": identity,
     }
 
@@ -246,7 +246,7 @@ def session_table(store: StudyStore) -> list[dict[str, Cell]]:
         "SELECT s.*, s.participant AS participant_id, s.uuid AS session_id FROM session s "
         "JOIN participant p ON p.uuid = s.participant ORDER BY p.number, p.uuid, s.started_utc"
     )
-    found: list[dict[str, Cell]] = []
+    rows: list[dict[str, Cell]] = []
     for row in sessions:
         cells: dict[str, Cell] = {**json.loads(row["conditions"]), **row}
         exposure = json.loads(row["exposure"]) or {}
@@ -262,8 +262,8 @@ def session_table(store: StudyStore) -> list[dict[str, Cell]]:
             cells[f"amplitude_{moment}_m"] = result["amplitude_m"]
             key = f"resonance_frequency_{moment}_Hz"
             cells[key] = result["resonance_frequency_Hz"]
-        found.append({column.name: cells.get(column.name) for column in SESSION_COLUMNS})
-    return found
+        rows.append({column.name: cells.get(column.name) for column in SESSION_COLUMNS})
+    return rows
 
 
 SIMULATED = "simulated participants"

@@ -78,23 +78,23 @@ def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERA
 
 
 def _numbers(board: Board) -> dict[str, object]:
-    one = board.grating
+    grating = board.grating
     return {
-        "name": one.name,
-        "length_means": one.period_means,
+        "name": grating.name,
+        "length_means": grating.period_means,
         **to_json(
             {
-                "spatial_period_m": one.period,
+                "spatial_period_m": grating.period,
                 "ridge_width_m": board.ridge_width,
                 "groove_width_m": board.groove_width,
-                "ridge_height_m": one.ridge_height,
-                "length_m": one.length,
-                "width_m": one.width,
+                "ridge_height_m": grating.ridge_height,
+                "length_m": grating.length,
+                "width_m": grating.width,
                 "ridges": board.ridges,
                 "last_ridge_width_m": float(board.end[-1] - board.begin[-1]),
             }
         ),
-        "material": one.material,
+        "material": grating.material,
     }
 
 
@@ -102,7 +102,7 @@ HEAD = ("Board", "Period", "Ridge", "Groove", "Ridges", "Ridge height", "Board s
 """Head of `board_rows`."""
 
 
-def board_rows(found: tuple[Board, ...], tolerance: si.Metre) -> list[tuple[str, ...]]:
+def board_rows(boards_of_design: tuple[Board, ...], tolerance: si.Metre) -> list[tuple[str, ...]]:
     """Rows of what is to be made, as texts."""
     within = f"± {shown(tolerance, M, 2)}"
     return [
@@ -116,17 +116,17 @@ def board_rows(found: tuple[Board, ...], tolerance: si.Metre) -> list[tuple[str,
             f"{shown(board.grating.length, M, 4)} × {shown(board.grating.width, M, 4)}",
             board.grating.material,
         )
-        for board in found
+        for board in boards_of_design
     ]
 
 
-def _table(found: tuple[Board, ...], tolerance: si.Metre) -> str:
+def _table(every: tuple[Board, ...], tolerance: si.Metre) -> str:
     caption = (
         "Widths along the stroke. Errors of single ridges must not add up: the place of each is "
         "from the board's end, within the same tolerance. The tolerance is assumed unless asked "
         "for."
     )
-    return text_table(caption, HEAD, board_rows(found, tolerance))
+    return text_table(caption, HEAD, board_rows(every, tolerance))
 
 
 def drawing_of(found: tuple[Board, ...]) -> Drawing:
@@ -134,20 +134,20 @@ def drawing_of(found: tuple[Board, ...]) -> Drawing:
     items: list[Item] = []
     y = 0.0
     for board in found:
-        one = board.grating
-        items.append(rectangle("BOARD", 0.0, y, one.length, one.width))
+        grating = board.grating
+        items.append(rectangle("BOARD", 0.0, y, grating.length, grating.width))
         items += [
-            rectangle("RIDGES", float(begin), y, float(end - begin), one.width)
+            rectangle("RIDGES", float(begin), y, float(end - begin), grating.width)
             for begin, end in zip(board.begin, board.end, strict=True)
         ]
-        top = y + one.width
+        top = y + grating.width
         items += [
             _along(0.0, board.ridge_width, top),
-            _along(board.ridge_width, one.period, top + 3e-3),
-            _along(0.0, one.length, top + 6e-3),
-            Text(f"{one.name}: ridges {1e6 * one.ridge_height:g} um high", 0.0, y - 4e-3),
+            _along(board.ridge_width, grating.period, top + 3e-3),
+            _along(0.0, grating.length, top + 6e-3),
+            Text(f"{grating.name}: ridges {1e6 * grating.ridge_height:g} um high", 0.0, y - 4e-3),
         ]
-        y += one.width + 1.5 * _GAP + 6e-3
+        y += grating.width + 1.5 * _GAP + 6e-3
     return Drawing(_LAYERS, items)
 
 
@@ -173,13 +173,13 @@ def draw_boards(found: tuple[Board, ...]) -> Figure:
     )
     axes = figure.subplots()
     for row, board in enumerate(found):
-        one = board.grating
+        grating = board.grating
         ridges = [
             Rectangle((1e3 * b, row - 0.3), 1e3 * (e - b), 0.6)
             for b, e in zip(board.begin, board.end, strict=True)
         ]
         axes.add_collection(PatchCollection(ridges, color=style.METAL, lw=0))
-        outline = Rectangle((0, row - 0.3), 1e3 * one.length, 0.6, fill=False, **style.OUTLINED)
+        outline = Rectangle((0, row - 0.3), 1e3 * grating.length, 0.6, fill=False, **style.OUTLINED)
         axes.add_patch(outline)
     longest = max(one.grating.length for one in found)
     axes.set(xlim=(-1, 1e3 * longest + 1), ylim=(len(found) - 0.4, -0.6), xlabel="stroke (mm)")

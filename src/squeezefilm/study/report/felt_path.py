@@ -121,28 +121,28 @@ def _apart(value: float) -> str:
 
 
 def _row(name: str, path: FeltPath) -> tuple[str, ...]:
-    one = path.directions[name]
-    rhythms = one.percept.candidates
+    percept = path.directions[name]
+    rhythms = percept.percept.candidates
     more = [
         f"{shown(float(period), M, 3)} ({d:.2f})"
         for period, d in zip(rhythms.period[1:], rhythms.d_prime[1:], strict=True)
         if math.isfinite(d)
     ]
-    clear = "none" if math.isnan(one.clearest_period) else shown(one.clearest_period, M, 3)
+    clear = "none" if math.isnan(percept.clearest_period) else shown(percept.clearest_period, M, 3)
     return (
         name,
-        f"{one.runs}",
+        f"{percept.runs}",
         clear,
-        f"{one.clearest_d_prime:.2f}",
+        f"{percept.clearest_d_prime:.2f}",
         ", ".join(more[:2]) or "–",
-        f"{one.asked_swing:.3f}",
-        f"{one.felt_swing:.3f}",
+        f"{percept.asked_swing:.3f}",
+        f"{percept.felt_swing:.3f}",
     )
 
 
-def show_all(found: tuple[FeltPath, ...]) -> None:
+def show_all(paths: tuple[FeltPath, ...]) -> None:
     """Print each surface's after another."""
-    for path in found:
+    for path in paths:
         show_felt(path)
     plain_console().print(
         "Nobody's percept was measured: this is what the observer's senses make of the path.",

@@ -111,23 +111,23 @@ def percepts(tables: ChainTables) -> Figure:
 def _columns(tables: ChainTables) -> list[tuple[str, FloatArray, str, float]]:
     """Head, evidence by finger and stimulus, colour and direction (rad) of each display; of free
     exploration twice, for runs along x and along y."""
-    found = []
+    columns = []
     for number, name in enumerate(tables.design.displays):
         head, colour = style.plain(name, 24), _DISPLAYS[number % 2]
         if tables.across_rhythm is None:
-            found.append((head, tables.virtual_rhythm[number], colour, math.nan))
+            columns.append((head, tables.virtual_rhythm[number], colour, math.nan))
         else:
-            found.append((f"{head}, along x", tables.virtual_rhythm[number], colour, 0.0))
-            found.append((f"{head}, along y", tables.across_rhythm[number], colour, math.pi / 2))
-    return found
+            columns.append((f"{head}, along x", tables.virtual_rhythm[number], colour, 0.0))
+            columns.append((f"{head}, along y", tables.across_rhythm[number], colour, math.pi / 2))
+    return columns
 
 
-def _period_along(one: Stimulus, angle: float) -> float:
+def _period_along(surface: Stimulus, angle: float) -> float:
     """The true period (m) that runs in a direction (rad) meet; NaN where there is none, or where
     it is not known in which of two it lies."""
     if math.isnan(angle):
-        return one.period
-    off = abs(math.cos(one.orientation - angle))
+        return surface.period
+    off = abs(math.cos(surface.orientation - angle))
     if off > 0.999:
-        return one.period
-    return one.second_period if off < 0.001 else math.nan
+        return surface.period
+    return surface.second_period if off < 0.001 else math.nan

@@ -44,9 +44,9 @@ def pictures(
     }
 
 
-def png_files(found: Mapping[str, tuple[str, Picture]]) -> dict[str, str | bytes]:
+def png_files(drawn: Mapping[str, tuple[str, Picture]]) -> dict[str, str | bytes]:
     """The files NAME.png that pages show."""
-    return {f"{name}.png": picture.png for name, (_, picture) in found.items()}
+    return {f"{name}.png": picture.png for name, (_, picture) in drawn.items()}
 
 
 def _drawn(drawing: Drawing, result: Any, keys: Sequence[str]) -> dict[str, Picture]:

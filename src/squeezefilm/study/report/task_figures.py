@@ -115,13 +115,13 @@ def _named(axes: Axes, names: list[str]) -> None:
     axes.set_xlim(-0.5, len(names) - 0.5)
 
 
-def _share(one: PersonFunction, difference: FloatArray) -> FloatArray:
+def _share(person: PersonFunction, difference: FloatArray) -> FloatArray:
     """Share of right answers (1) at differences of logarithms, without a bias."""
     from scipy.special import ndtr
 
-    spread = math.log1p(one.weber_fraction) / QUARTILE
+    spread = math.log1p(person.weber_fraction) / QUARTILE
     rise = ndtr(difference / spread)
-    return np.asarray(0.5 * one.lapse_rate + (1 - one.lapse_rate) * rise)
+    return np.asarray(0.5 * person.lapse_rate + (1 - person.lapse_rate) * rise)
 
 
 def _adaptive(axes: Axes, analysis: TaskAnalysis) -> None:
@@ -145,11 +145,11 @@ def _magnitudes(axes: Axes, analysis: TaskAnalysis) -> None:
     scale, label = _scale(analysis)
     x = np.array([scale * condition.value for condition in analysis.conditions])
     for at, condition in zip(x, analysis.conditions, strict=True):
-        found = condition.magnitude
-        if found is not None:
-            if not math.isnan(found.low):
-                axes.plot([at, at], [found.low, found.high], **style.INTERVAL)
-            axes.plot([at], [found.value], **style.ESTIMATE)
+        magnitude = condition.magnitude
+        if magnitude is not None:
+            if not math.isnan(magnitude.low):
+                axes.plot([at, at], [magnitude.low, magnitude.high], **style.INTERVAL)
+            axes.plot([at], [magnitude.value], **style.ESTIMATE)
     if analysis.pooled is not None and x.size:
         middle = float(np.mean(np.log(x)))
         level = float(
@@ -167,15 +167,15 @@ def _magnitudes(axes: Axes, analysis: TaskAnalysis) -> None:
 def persons(analysis: TaskAnalysis) -> Figure:
     """Each person's estimate with its interval, and the population's."""
     scale, unit = (100.0, " (%)") if analysis.measure == "Weber fraction" else (1.0, "")
-    found = sorted(analysis.persons, key=lambda person: person.estimate.value)
+    people = sorted(analysis.persons, key=lambda person: person.estimate.value)
     figure = style.new_figure(
-        f"{len(found)} people, one by one: {analysis.measure}",
-        f"{data_of(analysis)}; {100 * found[0].estimate.level if found else 95:g} % intervals; "
+        f"{len(people)} people, one by one: {analysis.measure}",
+        f"{data_of(analysis)}; {100 * people[0].estimate.level if people else 95:g} % intervals; "
         "band: the population's mean; hollow: not bounded by the answers alone",
         4.0,
     )
     axes = figure.subplots()
-    for at, one in enumerate(found):
+    for at, one in enumerate(people):
         ends = scale * one.estimate.low, scale * one.estimate.high
         axes.plot([at, at], ends, **style.INTERVAL)
         look = {
@@ -190,10 +190,10 @@ def persons(analysis: TaskAnalysis) -> Figure:
     if unit:
         axes.set_yscale("log")
         style.plain_log(axes.yaxis)
-    few = len(found) <= 16
+    few = len(people) <= 16
     axes.set_xticks(
-        range(len(found)) if few else [],
-        [style.plain(person.person, 12) for person in found] if few else [],
+        range(len(people)) if few else [],
+        [style.plain(person.person, 12) for person in people] if few else [],
         rotation=30,
     )
     axes.set(xlabel="participant, by estimate", ylabel=f"{analysis.measure}{unit}")
@@ -207,16 +207,16 @@ def sensitivity(analysis: TaskAnalysis) -> Figure:
     known = [condition for condition in analysis.conditions if condition.d_prime is not None]
     unlike = math.isnan(known[0].value)
     scale = 1.0 if unlike else scale
-    found = [(at if unlike else c.value, c.d_prime) for at, c in enumerate(known) if c.d_prime]
-    best = max(range(len(found)), key=lambda at: found[at][1].value)
+    points = [(at if unlike else c.value, c.d_prime) for at, c in enumerate(known) if c.d_prime]
+    best = max(range(len(points)), key=lambda at: points[at][1].value)
     which = style.plain(known[best].name, 30)
     figure = style.new_figure(
-        f"Most distinct from the reference: {which}, d′ = {estimate_words(found[best][1])}",
+        f"Most distinct from the reference: {which}, d′ = {estimate_words(points[best][1])}",
         f"{data_of(analysis)}; means over people, proportions corrected (Hautus 1995)",
         3.8,
     )
     axes = figure.subplots()
-    for value, d in found:
+    for value, d in points:
         if not math.isnan(d.low):
             axes.plot([scale * value] * 2, [d.low, d.high], **style.INTERVAL)
         axes.plot([scale * value], [d.value], **style.ESTIMATE)

@@ -91,14 +91,14 @@ _EXPLORING = {"strokes": "to and fro along x", "free": "over the whole face, in 
 _GRATING = ("Name", "Period", "Groove", "Length means")
 
 
-def _grating(one: Stimulus | Grating) -> tuple[str, str, str, str]:
+def _grating(surface: Stimulus | Grating) -> tuple[str, str, str, str]:
     """Cells of a virtual or a real grating, as `_GRATING` heads it; a shape has none."""
-    if one.period != one.period:
-        return one.name, "–", "–", "–"
-    period, crossed = shown(one.period, M, 3), getattr(one, "second_period", math.nan)
+    if surface.period != surface.period:
+        return surface.name, "–", "–", "–"
+    period, crossed = shown(surface.period, M, 3), getattr(surface, "second_period", math.nan)
     if crossed == crossed:
         period += f" by {shown(crossed, M, 3)}"
-    return one.name, period, shown(one.groove_width, M, 3), one.period_means or "–"
+    return surface.name, period, shown(surface.groove_width, M, 3), surface.period_means or "–"
 
 
 def show_boards(head: tuple[str, ...], rows: list[tuple[str, ...]], says: Iterable[str]) -> None:

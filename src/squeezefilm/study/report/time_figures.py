@@ -26,13 +26,13 @@ _ACROSS = 4
 @style.drawn
 def response_times(analysis: StudyAnalysis) -> Figure:
     """Response times by stimulus."""
-    found = analysis.response_times
-    if not found:
+    times = analysis.response_times
+    if not times:
         return style.message_figure("No response times", "No response time was given.")
-    slow = max(found, key=lambda item: item.geometric_mean)
-    quick = min(found, key=lambda item: item.geometric_mean)
+    slow = max(times, key=lambda item: item.geometric_mean)
+    quick = min(times, key=lambda item: item.geometric_mean)
     title = f"{style.plain(slow.name, 16)} takes {slow.geometric_mean:.2g} s"
-    if len(found) > 1:
+    if len(times) > 1:
         title = (
             f"{style.plain(slow.name, 16)} takes longest, {slow.geometric_mean:.2g} s; "
             f"{style.plain(quick.name, 16)} shortest, {quick.geometric_mean:.2g} s"
@@ -43,8 +43,8 @@ def response_times(analysis: StudyAnalysis) -> Figure:
         4.0,
     )
     axes = figure.subplots()
-    style.estimates(axes, ((item.geometric_mean, item.low, item.high) for item in found))
-    named_ticks(axes, [item.name for item in found])
+    style.estimates(axes, ((item.geometric_mean, item.low, item.high) for item in times))
+    named_ticks(axes, [item.name for item in times])
     axes.set(ylabel="response time (s)", xlabel="stimulus")
     axes.set_ylim(0, None)
     return figure

@@ -241,13 +241,13 @@ def _scale_of(name: str) -> tuple[float, str]:
     return (100.0, " %") if name.startswith(parts) else (1.0, "")
 
 
-def between(found: StatedInterval | Estimate | None, scale: float = 1.0, unit: str = "") -> str:
+def between(interval: StatedInterval | Estimate | None, scale: float = 1.0, unit: str = "") -> str:
     """Both ends, the method and the level; a dash for none."""
-    if found is None:
+    if interval is None:
         return "–"
-    ends = f"{scale * found.low:.3g} to {scale * found.high:.3g}{unit}"
-    ends = "no interval" if math.isnan(found.low) else ends
-    return f"{ends} ({found.method}, {100 * found.level:g} %)"
+    ends = f"{scale * interval.low:.3g} to {scale * interval.high:.3g}{unit}"
+    ends = "no interval" if math.isnan(interval.low) else ends
+    return f"{ends} ({interval.method}, {100 * interval.level:g} %)"
 
 
 def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
@@ -381,9 +381,9 @@ def exploration_rows(analysis: StudyAnalysis) -> list[tuple[str, ...]]:
             if not mine:
                 cells.append("–")
                 continue
-            one = mine[0]
-            bounds = "" if math.isnan(one.low) else f" ({one.low:.3g} to {one.high:.3g})"
-            cells.append(f"{one.mean:.3g}{bounds}")
+            first = mine[0]
+            bounds = "" if math.isnan(first.low) else f" ({first.low:.3g} to {first.high:.3g})"
+            cells.append(f"{first.mean:.3g}{bounds}")
         found.append((name, *cells))
     return found
 

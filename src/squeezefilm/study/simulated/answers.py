@@ -187,16 +187,16 @@ def simulate_participants(
             judges what the observer has no sense of.
     """
     require_people(design, participants, seed)
-    found = chain_tables(design, observer, progress=progress) if tables is None else tables
-    if found.design != design or found.observer != observer:
+    chain = chain_tables(design, observer, progress=progress) if tables is None else tables
+    if chain.design != design or chain.observer != observer:
         raise InputError("the tables are of another design or observer; leave them out")
     if design.task == "match-to-sample":
-        return study_of(simulate_matches(design, observer, participants, seed, found))
+        return study_of(simulate_matches(design, observer, participants, seed, chain))
     # Its psychometric functions are compiled, which a match-to-sample study need not wait for.
     from squeezefilm.study.simulated.judgements import simulate_judgements
 
-    answers = simulate_judgements(design, observer, participants, seed, found, progress)
-    return SimulatedStudy(found, answers, seed)
+    answers = simulate_judgements(design, observer, participants, seed, chain, progress)
+    return SimulatedStudy(chain, answers, seed)
 
 
 def study_of(matches: Matches) -> SimulatedStudy:

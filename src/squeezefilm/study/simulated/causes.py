@@ -52,11 +52,11 @@ class Causes:
     clearest_d_prime: si.Dimensionless
 
 
-def median_causes(found: tuple[Causes, ...]) -> Causes:
+def median_causes(of_fingers: tuple[Causes, ...]) -> Causes:
     """The medians over several fingers."""
     return Causes(
         **{
-            field.name: float(np.median([getattr(one, field.name) for one in found]))
+            field.name: float(np.median([getattr(one, field.name) for one in of_fingers]))
             for field in dataclasses.fields(Causes)
         }
     )
@@ -79,11 +79,11 @@ def causes(
 
 
 def free_causes(
-    stimulus: Stimulus, found: RunPercept, played: RenderAnalysis, finger: FingerClass
+    stimulus: Stimulus, runs: RunPercept, played: RenderAnalysis, finger: FingerClass
 ) -> Causes:
     """The same of the runs of a free exploration in one direction; `contrast_kept` is of the whole
     swing of friction, for a shape has no line of its own."""
-    return _causes(stimulus, found.percept, played, finger, found.felt_swing, found.asked_swing)
+    return _causes(stimulus, runs.percept, played, finger, runs.felt_swing, runs.asked_swing)
 
 
 def _causes(

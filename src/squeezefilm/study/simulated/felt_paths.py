@@ -285,9 +285,9 @@ def _perceived(felt: PathPercept, observer: Observer) -> Perceived:
     return Perceived(np.log(period), strength, strength > observer.detection_criterion)
 
 
-def _apart(one: PathPercept, other: PathPercept, observer: Observer) -> si.Dimensionless:
+def _apart(path: PathPercept, other: PathPercept, observer: Observer) -> si.Dimensionless:
     spread = np.full(2, percept_deviation(observer.period_weber_fraction))
-    here, there = _perceived(one, observer), _perceived(other, observer)
+    here, there = _perceived(path, observer), _perceived(other, observer)
     return float(difference(here, there, np.ones(2), spread))
 
 
@@ -299,12 +299,12 @@ def _to_gratings(
     both = [one for one in (felt.along, felt.across) if one is not None]
     best = max(both, key=lambda one: one.clearest_d_prime)
     spread = percept_deviation(observer.period_weber_fraction)
-    found = []
+    likenesses = []
     for alternative in design.alternatives:
         touched = grating_percept(alternative, observer, finger).candidates
         apart = math.inf
         if best.clearest_d_prime > 0.0 and math.isfinite(touched.d_prime[0]):
             ratio = math.log(best.clearest_period / float(touched.period[0]))
             apart = abs(ratio) / (math.sqrt(2.0) * spread)
-        found.append(Likeness(alternative.name, apart))
-    return found
+        likenesses.append(Likeness(alternative.name, apart))
+    return likenesses

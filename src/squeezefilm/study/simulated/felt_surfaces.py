@@ -59,12 +59,12 @@ class Asked:
 
     def known(self) -> list[FeltSurface] | None:
         """Percepts computed before; None unless all was."""
-        found = [_known(_name(self.feel, surface, self.rest)) for surface in self.surfaces]
-        return None if None in found else [one for one in found if one is not None]
+        percepts = [_known(_name(self.feel, surface, self.rest)) for surface in self.surfaces]
+        return None if None in percepts else [one for one in percepts if one is not None]
 
-    def remember(self, found: list[FeltSurface]) -> None:
+    def remember(self, percepts: list[FeltSurface]) -> None:
         """Keep percepts of another process, which need not be computed nor read again."""
-        for surface, felt in zip(self.surfaces, found, strict=True):
+        for surface, felt in zip(self.surfaces, percepts, strict=True):
             _remember(_name(self.feel, surface, self.rest), felt)
 
 

@@ -48,10 +48,10 @@ def felt_in_trial(
     force: si.Newton | None = None if known is None else float(known)
     if force is not None and not math.isfinite(force):
         force = None
-    found = []
+    paths = []
     for name, table in zip(names, tables, strict=True):
         time, x, y = (table.column(key) for key in ("time_s", "x_m", "y_m"))
-        found.append(
+        paths.append(
             felt_on_path(
                 store.design,
                 name,
@@ -65,7 +65,7 @@ def felt_in_trial(
                 progress=progress,
             )
         )
-    return tuple(found)
+    return tuple(paths)
 
 
 def _answer(store: StudyStore, participant: str, trial: int) -> dict[str, Cell]:

@@ -115,8 +115,8 @@ def simulate_matches(
             f"task = '{design.task}' has no gratings to match; take simulate_participants",
             quantity="task",
         )
-    found = chain_tables(design, observer) if tables is None else tables
-    if found.design != design or found.observer != observer:
+    chain = chain_tables(design, observer) if tables is None else tables
+    if chain.design != design or chain.observer != observer:
         raise InputError("the tables are of another design or observer; leave them out")
     display, stimulus, number = _orders(design, min(participants, CHUNK), seed)
     rows = np.arange(participants) % CHUNK
@@ -124,10 +124,10 @@ def simulate_matches(
     for first in range(0, participants, CHUNK):
         count = min(CHUNK, participants - first)
         random = np.random.default_rng([seed, _STREAM, first // CHUNK])
-        chunks.append(_answers(found, display, stimulus, number, random, count))
+        chunks.append(_answers(chain, display, stimulus, number, random, count))
     choice, felt, times, finger = (np.concatenate([chunk[i] for chunk in chunks]) for i in range(4))
     return Matches(
-        found, seed, display[rows], stimulus[rows], choice, number[rows], felt, times, finger
+        chain, seed, display[rows], stimulus[rows], choice, number[rows], felt, times, finger
     )
 
 

@@ -44,9 +44,9 @@ _SPREADS = 121
 
 def model_of(main: Answers) -> DifferenceModel:
     """The model of the answers' task, which must have one."""
-    found = main.design.described.model
-    assert found is not None
-    return found
+    model = main.design.described.model
+    assert model is not None
+    return model
 
 
 def told(main: Answers) -> NDArray[np.bool_]:
@@ -113,7 +113,7 @@ def difference_conditions(
     here = design.judged_value(design.stimulus(design.reference))
     if design.adaptive:
         return _eighths(main, distance, here, level)
-    found = []
+    findings = []
     for one in np.unique(distance):
         mine = distance == one
         others = {
@@ -124,8 +124,8 @@ def difference_conditions(
         name = "the same" if one == 0.0 else " / ".join(sorted(others))
         d = None if one == 0.0 else _mean_d_prime(main, distance, float(one), level, seed)
         value = here * math.exp(float(one))
-        found.append(condition_finding(main, name, value, mine, hit, level, d))
-    return tuple(found)
+        findings.append(condition_finding(main, name, value, mine, hit, level, d))
+    return tuple(findings)
 
 
 def _eighths(
@@ -212,7 +212,7 @@ def unlike_conditions(
 ) -> tuple[ConditionFinding, ...]:
     """Each pair: how often it was called different, and its d′; the first is the same twice."""
     alike, other = _pairs(main)
-    found = []
+    findings = []
     for one in (-1, *np.unique(other[~alike]).tolist()):
         mine = alike if one < 0 else ~alike & (other == one)
         if not mine.any():
@@ -220,8 +220,8 @@ def unlike_conditions(
         name = "the same" if one < 0 else main.surfaces[one].name
         counts = [] if one < 0 else _counts(main, mine, alike)
         d = mean_sensitivity(counts, _MODEL, differencing_sensitivity, level, seed)
-        found.append(condition_finding(main, name, math.nan, mine, main.choice == 1, level, d))
-    return tuple(found)
+        findings.append(condition_finding(main, name, math.nan, mine, main.choice == 1, level, d))
+    return tuple(findings)
 
 
 def unlike_persons(
@@ -254,10 +254,10 @@ def _counts(
     main: Answers, signal: NDArray[np.bool_], noise: NDArray[np.bool_]
 ) -> list[tuple[int, int, int, int]]:
     """Hits, signals, false alarms and noises of each person who had both kinds of trial."""
-    found = []
+    counts = []
     for person in np.unique(main.participant[signal]):
         mine = main.participant == person
         hits, alarms = main.choice[signal & mine] == 1, main.choice[noise & mine] == 1
         if hits.size and alarms.size:
-            found.append((int(hits.sum()), hits.size, int(alarms.sum()), alarms.size))
-    return found
+            counts.append((int(hits.sum()), hits.size, int(alarms.sum()), alarms.size))
+    return counts

@@ -182,10 +182,10 @@ class TaskAnalysis(Result):
         ]
 
 
-def through(found: Estimate, rising: Callable[[float], float]) -> Estimate:
+def through(estimate: Estimate, rising: Callable[[float], float]) -> Estimate:
     """An estimate on another scale, by a rising function of it."""
-    value, low, high = (rising(one) for one in (found.value, found.low, found.high))
-    return Estimate(value, low, high, found.level, found.method)
+    value, low, high = (rising(one) for one in (estimate.value, estimate.low, estimate.high))
+    return Estimate(value, low, high, estimate.level, estimate.method)
 
 
 def of_population(found: PopulationEstimate, method: str) -> tuple[Estimate, Estimate]:

@@ -70,7 +70,7 @@ def magnitude_conditions(
             "taken out exactly; the exponents do not suffer from it"
         )
     logs = logs - own + float(np.mean([own[main.participant == one][0] for one in people]))
-    found = []
+    findings = []
     for one in sorted(np.unique(main.first), key=lambda s: main.values[s]):
         here = main.first == one
         means = np.array(
@@ -79,7 +79,7 @@ def magnitude_conditions(
                 for person in np.unique(main.participant[here])
             ]
         )
-        found.append(
+        findings.append(
             ConditionFinding(
                 main.surfaces[one].name,
                 float(main.values[one]),
@@ -88,7 +88,7 @@ def magnitude_conditions(
                 magnitude=through(t_interval(means, level), math.exp),
             )
         )
-    return tuple(found), notes
+    return tuple(findings), notes
 
 
 def require_magnitudes(main: Answers) -> None:

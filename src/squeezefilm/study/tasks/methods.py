@@ -83,8 +83,8 @@ def _stimuli(design: StudyDesign) -> str:
     return f"Stimuli were {shapes} gratings of friction with the periods {', '.join(listed)}.{free}"
 
 
-def _depth(one: Stimulus) -> str:
-    return f"{100 * one.friction_depth:.3g} % change of relative friction"
+def _depth(stimulus: Stimulus) -> str:
+    return f"{100 * stimulus.friction_depth:.3g} % change of relative friction"
 
 
 def _surface(one: Stimulus) -> str:

@@ -56,8 +56,8 @@ LAPSES: si.DimensionlessArray = 0.5 * (_EDGES[1:] + _EDGES[:-1])
 def lapse_weights() -> si.DimensionlessArray:
     """Probability of each of `LAPSES` under each mean, shape (means, lapses); rows sum to 1."""
     below = np.array([1.0 - (1.0 - _EDGES) ** (1.0 / h - 1.0) for h in MEAN_LAPSES])
-    found = np.diff(below, axis=1)
-    return np.asarray(found / found.sum(axis=1, keepdims=True))
+    weights = np.diff(below, axis=1)
+    return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -125,15 +125,15 @@ class Population:
         x, width = alike[0].x, alike[0].width
         weights = np.array([one.likelihood * width for one in alike])
         weights /= weights.max(axis=(1, 2), keepdims=True)
-        found = np.empty((len(alike), self._means.size, self._spreads.size, len(MEAN_LAPSES)))
+        logs = np.empty((len(alike), self._means.size, self._spreads.size, len(MEAN_LAPSES)))
         away = (x[None, :] - self._means[:, None]) ** 2
         for at, spread in enumerate(self._spreads):
             # A spread below the cells' width would fall between them: it is their width at least.
             wide = np.hypot(spread, 0.5 * width)
             density = np.exp(-0.5 * away / wide**2) / wide
-            for one, weight in zip(found, weights, strict=True):
+            for one, weight in zip(logs, weights, strict=True):
                 one[:, at] = density @ weight.T
-        return np.log(np.maximum(found, 1e-300))
+        return np.log(np.maximum(logs, 1e-300))
 
     @property
     def size(self) -> int:
@@ -224,12 +224,12 @@ def scatter_interval(
     return float(least), float(most)
 
 
-def _moments(one: PersonLikelihood, lapses: si.FloatArray) -> tuple[float, float]:
+def _moments(person: PersonLikelihood, lapses: si.FloatArray) -> tuple[float, float]:
     """Mean and variance of x as a likelihood has them, under weights of the mean lapse rates."""
-    density = lapses @ one.likelihood * one.width
+    density = lapses @ person.likelihood * person.width
     density = density / density.sum()
-    mean = float(density @ one.x)
-    return mean, float(density @ (one.x - mean) ** 2)
+    mean = float(density @ person.x)
+    return mean, float(density @ (person.x - mean) ** 2)
 
 
 def _quantiles(

@@ -124,7 +124,7 @@ class PeopleOnGrid:
         """Each person's Weber fraction: the posterior's median and central interval, with the
         lapse rates that all people's answers speak for."""
         lapses = self.population.lapses()
-        found = []
+        people = []
         tails = 0.5, 0.5 * (1 - level), 0.5 * (1 + level)
         for name, likelihood, trials in zip(self.names, self.likelihood, self.trials, strict=True):
             density = lapses @ (likelihood / likelihood.max())
@@ -132,8 +132,8 @@ class PeopleOnGrid:
             value, low, high = np.exp(np.interp(tails, heights / heights[-1], self.edges)).tolist()
             unbounded = max(density[0], density[-1]) > 0.05 * density.max()
             estimate = Estimate(value, low, high, level, "posterior")
-            found.append(PersonEstimate(name, estimate, trials, bool(unbounded)))
-        return found
+            people.append(PersonEstimate(name, estimate, trials, bool(unbounded)))
+        return people
 
     def functions(self, level: si.Dimensionless) -> dict[str, PersonFunction]:
         """Each person's Weber fraction, bias and lapse rate, to be drawn."""
@@ -192,13 +192,13 @@ def two_interval_conditions(
 ) -> tuple[ConditionFinding, ...]:
     """Each comparison: how often it was said to have more, and its d′ from the reference."""
     surface, more = comparisons(main)
-    found = []
+    findings = []
     for one in sorted(np.unique(surface), key=lambda s: main.values[s]):
         here = surface == one
         d = _mean_d_prime(main, here, level, seed)
         name, value = main.surfaces[one].name, float(main.values[one])
-        found.append(condition_finding(main, name, value, here, more, level, d))
-    return tuple(found)
+        findings.append(condition_finding(main, name, value, here, more, level, d))
+    return tuple(findings)
 
 
 def adaptive_conditions(main: Answers, level: si.Dimensionless) -> tuple[ConditionFinding, ...]:
@@ -288,7 +288,7 @@ def two_interval_numbers(main: Answers, level: si.Dimensionless) -> dict[str, Es
     people = np.unique(main.participant)
     first = np.array([np.mean(main.choice[main.participant == one] == 0) for one in people])
     due = np.array([np.mean(main.right[main.participant == one] == 0) for one in people])
-    found = {"bias for the first interval": t_interval(first - due, level)}
+    numbers = {"bias for the first interval": t_interval(first - due, level)}
     for number, series in enumerate(main.design.adaptive):
         if series.method != "staircase":
             continue
@@ -297,8 +297,8 @@ def two_interval_numbers(main: Answers, level: si.Dimensionless) -> dict[str, Es
         if logs.size:
             target = 0.5 ** (1.0 / series.down)
             name = f"reversals of '{series.name}' ({100 * target:.1f} % right)"
-            found[name] = through(t_interval(logs, level), math.exp)
-    return found
+            numbers[name] = through(t_interval(logs, level), math.exp)
+    return numbers
 
 
 def _reversals(main: Answers, person: int, series: int) -> float:

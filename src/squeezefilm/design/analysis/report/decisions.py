@@ -84,15 +84,15 @@ def felt_rows(felt: FeltGratings | None, speed: si.MetrePerSecond | None = None)
     ]
 
 
-def _felt_remark(felt: FeltGratings, one: FeltAt) -> str:
-    survives = f"; {shown(one.survives, M, 2)} survives the resonator"
-    if one.interval is None:
+def _felt_remark(felt: FeltGratings, at_speed: FeltAt) -> str:
+    survives = f"; {shown(at_speed.survives, M, 2)} survives the resonator"
+    if at_speed.interval is None:
         return f"by the senses of '{felt.observer}'{survives}"
-    low, high = (_period(end) for end in one.interval)
+    low, high = (_period(end) for end in at_speed.interval)
     said = "in all draws"
     if low != high:
         said = f"{low} at best and {high} at worst ({si.percent(felt.level)} interval)"
-    never = f"; none is felt in {si.percent(one.never)} of the draws" if one.never else ""
+    never = f"; none is felt in {si.percent(at_speed.never)} of the draws" if at_speed.never else ""
     return said + never + survives
 
 

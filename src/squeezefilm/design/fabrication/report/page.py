@@ -120,12 +120,12 @@ def _bodies(made: Fabrication) -> dict[str, bytes]:
         by.setdefault(one.kind, []).append(triangles_of(one))
     names = {"substrate": "substrate.stl", "ceramic": "ceramics.stl", "glue": "glue.stl"}
     title = made.display.name
-    found = {
+    files = {
         names[kind]: stl_bytes(np.concatenate(surfaces), f"{title}, {kind}")
         for kind, surfaces in by.items()
     }
     whole = np.concatenate([surface for surfaces in by.values() for surface in surfaces])
-    return {"assembly.stl": stl_bytes(whole, title), **found}
+    return {"assembly.stl": stl_bytes(whole, title), **files}
 
 
 def _page(made: Fabrication, drawing: Drawing, views: str, names: list[str]) -> str:
@@ -177,10 +177,10 @@ def _expected(made: Fabrication) -> str:
     at = (
         f"{shown(p.voltage, si.Unit('V'))} (zero-to-peak), " if p.voltage else ""
     ) + f"{shown(p.frequency, HZ)}, {p.mode.label}"
-    found = text_table(f"At {at}", EXPECTED, expected_rows(made))
+    text = text_table(f"At {at}", EXPECTED, expected_rows(made))
     if made.no_intervals:
-        found += f"\n<p>Without intervals of the plate: {as_html(made.no_intervals)}.</p>"
-    return found
+        text += f"\n<p>Without intervals of the plate: {as_html(made.no_intervals)}.</p>"
+    return text
 
 
 def _drawing(drawing: Drawing, views: str) -> str:
@@ -197,9 +197,9 @@ def _drawing(drawing: Drawing, views: str) -> str:
 
 def _layout(made: Fabrication) -> str:
     head, rows = layout_rows(made)
-    found = text_table("Lengths in millimetres, from the corner at x = y = 0", head, rows)
+    text = text_table("Lengths in millimetres, from the corner at x = y = 0", head, rows)
     joined = text_table("Leads", ("Lead", "Electrodes", "To"), lead_rows(made))
-    return f"{found}\n<br>\n{joined}\n{bullets(wiring_said(made.electrodes))}"
+    return f"{text}\n<br>\n{joined}\n{bullets(wiring_said(made.electrodes))}"
 
 
 def _electronics(made: Fabrication) -> str:

@@ -157,13 +157,13 @@ def _diameters(actuator: DiscPlate | AnnularStator) -> list[tuple[float, str, st
             (mean, "actuator.mean_diameter", "mean ⌀"),
             (mean + width, "", "⌀"),
         ]
-    found = [
+    diameters = [
         (actuator.ceramic_inner_diameter, "actuator.ceramic_inner_diameter", "ceramic ⌀"),
         (actuator.inner_diameter, "actuator.inner_diameter", "⌀"),
         (actuator.ceramic_outer_diameter, "actuator.ceramic_outer_diameter", "ceramic ⌀"),
         (actuator.diameter, "actuator.diameter", "⌀"),
     ]
-    return sorted((one for one in found if one[0] > 0), key=lambda one: one[0])
+    return sorted((one for one in diameters if one[0] > 0), key=lambda one: one[0])
 
 
 def _keys_of_thickness(actuator: DiscPlate | AnnularStator) -> dict[int, str]:

@@ -64,7 +64,7 @@ def expected_said(check: Check) -> str:
 
 def expected_rows(made: Fabrication) -> list[tuple[str, ...]]:
     """The numbers that one looks for first, once each, in the order of the plan."""
-    found: dict[tuple[str, str], tuple[str, ...]] = {}
+    rows: dict[tuple[str, str], tuple[str, ...]] = {}
     for step in made.steps:
         for check in step.checks:
             key = check.answer in _KEY or check.what.startswith(("Amplitude at", "Free amplitude"))
@@ -75,8 +75,8 @@ def expected_rows(made: Fabrication) -> list[tuple[str, ...]]:
                     expected_said(check),
                     check.remark,
                 )
-                found.setdefault((check.what, check.unit), row)
-    return list(found.values())
+                rows.setdefault((check.what, check.unit), row)
+    return list(rows.values())
 
 
 def step_rows(checks: Iterable[Check]) -> list[tuple[str, ...]]:

@@ -150,7 +150,7 @@ def _what(part: Part) -> str:
 def _columns(said: Sequence[_Said]) -> list[tuple[Part, str, str, float, float]]:
     """Each with how far from the section's right end its dimension stands, and where it ends (mm);
     those above the substrate have their own columns over those below it."""
-    found: list[tuple[Part, str, str, float, float]] = []
+    columns: list[tuple[Part, str, str, float, float]] = []
     first, away, was_above = 7.0, 7.0, False
     for number, (one, key, tolerance) in enumerate(said):
         above = number > 0 and one.kind != "substrate" and one.bottom > 0
@@ -159,17 +159,17 @@ def _columns(said: Sequence[_Said]) -> list[tuple[Part, str, str, float, float]]
         was_above = above
         letters = len(f"{millimetres(one.thickness)}{_what(one)}{tolerance}")
         end = away + (letters * LETTER + 0.6) * NUMBER
-        found.append((one, key, tolerance, away, end))
+        columns.append((one, key, tolerance, away, end))
         away = end + 3.0 * NUMBER
         if one.kind == "substrate":
             first = away
-    return found
+    return columns
 
 
 def _stacks(met: Sequence[tuple[Part, list[tuple[float, float]]]]) -> list[Part]:
     """A tooth where there are any; of each face the rightmost ceramic that was met, and its glue,
     which is last: its number stands beside its short arrows, where no other line runs."""
-    found = [one for one, _ in met if one.kind == "substrate"][1:2]
+    parts = [one for one, _ in met if one.kind == "substrate"][1:2]
     for upper in (False, True):
         ceramics = [
             (max(span), one)
@@ -180,5 +180,5 @@ def _stacks(met: Sequence[tuple[Part, list[tuple[float, float]]]]) -> list[Part]
         if ceramics:
             last = max(ceramics, key=lambda pair: pair[0])[1]
             glue = [one for one, _ in met if one.kind == "glue" and one.number == last.number]
-            found += [last, *glue]
-    return found
+            parts += [last, *glue]
+    return parts

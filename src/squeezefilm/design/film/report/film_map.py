@@ -19,25 +19,25 @@ if TYPE_CHECKING:
 
 
 @style.drawn
-def film_map(found: FilmMap) -> Figure:
+def film_map(films: FilmMap) -> Figure:
     """Figure of over-pressure (left) and its share of the asymptote (right) over σ and ε."""
-    request = found.request
+    request = films.request
     figure = style.new_figure(
         f"The {request.shape}'s over-pressure grows with both; below σ of about 100 it falls short "
         "of its asymptote",
-        f"{found.model}, tolerance {request.tolerance:.1g} of the over-pressure, "
+        f"{films.model}, tolerance {request.tolerance:.1g} of the over-pressure, "
         f"n = {request.polytropic_exponent:.3g}, Kn = {request.knudsen_number:.3g}",
         4.8,
     )
     left, right = figure.subplots(1, 2, sharey=True)
-    sigma, excursion = found.squeeze_number, found.excursion_ratio
+    sigma, excursion = films.squeeze_number, films.excursion_ratio
     levels = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3, 1, 3]
     lines = left.contour(
-        sigma, excursion, found.over_pressure.T, levels=levels, colors=style.INK, linewidths=1.1
+        sigma, excursion, films.over_pressure.T, levels=levels, colors=style.INK, linewidths=1.1
     )
     left.clabel(lines, fmt=lambda v: f"{v:g}", fontsize=8.5)
     # The largest σ of the map stands for the asymptote: a polytropic one has no plain form.
-    share = 100 * found.over_pressure / found.over_pressure[-1]
+    share = 100 * films.over_pressure / films.over_pressure[-1]
     parts = right.contourf(sigma, excursion, share.T, levels=np.arange(0, 101, 10), cmap="cividis")
     right.contour(
         sigma, excursion, share.T, levels=[90], colors=style.INK, linewidths=1.6, linestyles="--"
@@ -80,9 +80,9 @@ def film_pressure(answer: FilmAnswer) -> Figure:
     return figure
 
 
-def write_film_map(found: FilmMap, folder: Path) -> Path:
+def write_film_map(films: FilmMap, folder: Path) -> Path:
     """Write film-map.json and film-map.png into `folder`; the picture's path."""
-    data, picture = json_text(found.summary()), style.png(film_map(found))
+    data, picture = json_text(films.summary()), style.png(film_map(films))
     write_folder(folder, {"film-map.json": data, "film-map.png": picture})
     return folder / "film-map.png"
 

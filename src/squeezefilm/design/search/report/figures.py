@@ -65,50 +65,50 @@ _CLOUD: dict[str, Any] = {"color": style.MUTED, "ls": "", "marker": ".", "ms": 5
 
 
 @style.drawn
-def front(found: DesignSearch) -> Figure:
+def front(search: DesignSearch) -> Figure:
     """The objectives of all feasible designs against each other, pair by pair, with the front, the
     plate to build and the display to compare with."""
-    names = found.requirements.objectives
+    names = search.requirements.objectives
     pairs = list(itertools.combinations(range(len(names)), 2))
     rows = _rows(
-        found, _thinned([candidate for candidate in found.screened if candidate.is_feasible])
+        search, _thinned([candidate for candidate in search.screened if candidate.is_feasible])
     )
-    if not rows.size and not found.front:
+    if not rows.size and not search.front:
         return style.message_figure(
             "No design meets the requirements", "What each limit costs is told on the page."
         )
-    figure = style.new_figure(_front_title(found), _SOLVED, 5.2)
+    figure = style.new_figure(_front_title(search), _SOLVED, 5.2)
     # Two objectives have room for the whole cloud, and beside it for what matters of it.
-    close = [(0, 1, False), (0, 1, True)] if found.front else [(0, 1, False)]
+    close = [(0, 1, False), (0, 1, True)] if search.front else [(0, 1, False)]
     panels = close if len(pairs) == 1 else [(*pair, False) for pair in pairs]
     grid = figure.add_gridspec(2, len(panels), height_ratios=[1, 0.14])
     places = [figure.add_subplot(grid[0, k]) for k in range(len(panels))]
     for axes, (first, second, zoomed) in zip(places, panels, strict=True):
-        _front_axes(axes, found, rows, first, second, zoomed=zoomed)
+        _front_axes(axes, search, rows, first, second, zoomed=zoomed)
     strip = figure.add_subplot(grid[1, :])
     strip.set_axis_off()
     style.legend_in(strip, places[0], columns=3)
     return figure
 
 
-def _front_title(found: DesignSearch) -> str:
-    goals = [criterion_of(name) for name in found.requirements.objectives]
-    if not found.front:
+def _front_title(search: DesignSearch) -> str:
+    goals = [criterion_of(name) for name in search.requirements.objectives]
+    if not search.front:
         return "No solved plate keeps all limits; what is shown was screened only"
     spans = []
     for k, goal in enumerate(goals):
         low, high = (
             goal.shown(end)
-            for end in (float(found.objectives[:, k].min()), float(found.objectives[:, k].max()))
+            for end in (float(search.objectives[:, k].min()), float(search.objectives[:, k].max()))
         )
         spans.append(f"{goal.said} {low}" if low == high else f"{goal.said} from {low} to {high}")
-    verb = "is" if found.plates_on_front == 1 else "are"
-    return f"{front_words(found)} {verb} the front: {', '.join(spans)}"
+    verb = "is" if search.plates_on_front == 1 else "are"
+    return f"{front_words(search)} {verb} the front: {', '.join(spans)}"
 
 
 def _front_axes(
     axes: Axes,
-    found: DesignSearch,
+    search: DesignSearch,
     screened: si.FloatArray,
     first: int,
     second: int,
@@ -116,12 +116,12 @@ def _front_axes(
     zoomed: bool,
 ) -> None:
     """Two objectives against each other; `zoomed` on the front and what it is compared with."""
-    names = found.requirements.objectives
+    names = search.requirements.objectives
     goals = [criterion_of(names[k]) for k in (first, second)]
-    solved = _rows(found, [solution for solution in found.solved if solution.is_feasible])
-    broken = _rows(found, [solution for solution in found.solved if solution.broken])
-    reference = _rows(found, [] if found.reference is None else [found.reference])
-    most = [found.objectives, reference] + ([] if zoomed else [screened, solved])
+    solved = _rows(search, [solution for solution in search.solved if solution.is_feasible])
+    broken = _rows(search, [solution for solution in search.solved if solution.broken])
+    reference = _rows(search, [] if search.reference is None else [search.reference])
+    most = [search.objectives, reference] + ([] if zoomed else [screened, solved])
     within = np.concatenate(most)[:, [first, second]]
     scales = []
     for k, goal in enumerate(goals):
@@ -137,21 +137,21 @@ def _front_axes(
         axes.plot(*at(broken), **_BROKEN, label="solved, breaks a limit")
     if solved.size:
         axes.plot(*at(solved), **_SOLVED_LOOK, label="solved, keeps all limits")
-    if found.front and len(names) == 2:
-        axes.plot(*at(found.objectives), color=style.BLUE, lw=1.2, zorder=3)
+    if search.front and len(names) == 2:
+        axes.plot(*at(search.objectives), color=style.BLUE, lw=1.2, zorder=3)
     for number, (member, x, y) in enumerate(
-        zip(found.front, *(one.tolist() for one in at(found.objectives)), strict=True)
+        zip(search.front, *(one.tolist() for one in at(search.objectives)), strict=True)
     ):
         mark = axes.scatter([x], [y], s=62, color=style.BLUE, edgecolor=style.PAPER, zorder=4)
         mark.set_urls([f"{ROW}{member.name}"])
         mark.set_gid(f"{MARKED}{member.name}-{first}{second}{int(zoomed)}")
         if number == 0:
             mark.set_label("the front")
-    if found.chosen is not None:
-        here = found.objectives[[member is found.chosen for member in found.front]]
+    if search.chosen is not None:
+        here = search.objectives[[member is search.chosen for member in search.front]]
         axes.plot(*at(here), **_RING, zorder=5, label="the plate to build")
     if reference.size:
-        name = style.plain(found.requirements.compare_with)
+        name = style.plain(search.requirements.compare_with)
         axes.plot(*at(reference), **_COMPARED, zorder=5, label=f"{name}, to compare")
     if zoomed:
         axes.set_title("the front, from near")
@@ -184,9 +184,9 @@ def _axis(axes: Axes, which: str, values: si.FloatArray, label: str) -> None:
         style.plain_log(axes.xaxis if which == "x" else axes.yaxis)
 
 
-def _rows(found: DesignSearch, designs: Sequence[Evaluated]) -> si.FloatArray:
+def _rows(search: DesignSearch, designs: Sequence[Evaluated]) -> si.FloatArray:
     """The finite objectives of designs (SI), shape (designs, objectives)."""
-    rows = objectives_of(found.requirements, designs)
+    rows = objectives_of(search.requirements, designs)
     finite: si.FloatArray = rows[np.isfinite(rows).all(axis=1)]
     return finite
 
@@ -197,13 +197,13 @@ def _thinned(designs: Sequence[Evaluated]) -> Sequence[Evaluated]:
 
 
 @style.drawn
-def screening(found: DesignSearch) -> Figure:
+def screening(search: DesignSearch) -> Figure:
     """Figure of what the screening said of the solved plates, against what solving them said."""
-    pairs = found.screened_and_solved
-    names = dict.fromkeys((*found.requirements.objectives, "resonance_frequency"))
+    pairs = search.screened_and_solved
+    names = dict.fromkeys((*search.requirements.objectives, "resonance_frequency"))
     if not pairs:
         return style.message_figure("How good the screening was", "No screened plate was solved.")
-    ranks = ", ".join(f"{criterion_of(name).said} {rho:.2f}" for name, rho in found.ranks.items())
+    ranks = ", ".join(f"{criterion_of(name).said} {rho:.2f}" for name, rho in search.ranks.items())
     figure = style.new_figure(
         f"The screening's ranks against solved ones, Spearman's ρ: {ranks}"
         if ranks
@@ -213,14 +213,14 @@ def screening(found: DesignSearch) -> Figure:
     )
     places = figure.subplots(1, len(names))
     for axes, name in zip(places, names, strict=True):
-        _screening_axes(axes, found, name, pairs)
-    if len(found.requirements.spaces) > 1:
+        _screening_axes(axes, search, name, pairs)
+    if len(search.requirements.spaces) > 1:
         style.legend_below(places[len(names) // 2], columns=4, gap=0.22)
     return figure
 
 
 def _screening_axes(
-    axes: Axes, found: DesignSearch, name: str, pairs: Sequence[tuple[Evaluated, Evaluated]]
+    axes: Axes, search: DesignSearch, name: str, pairs: Sequence[tuple[Evaluated, Evaluated]]
 ) -> None:
     one = criterion_of(name)
     values = np.array([[e.numbers.get(one.key, math.nan) for e in pair] for pair in pairs])
@@ -228,7 +228,7 @@ def _screening_axes(
     good = np.isfinite(values).all(axis=1)
     values, shape = values[good], shape[good]
     factor, symbol = scaled(values.ravel(), one.unit)
-    for number, space in enumerate(found.requirements.spaces):
+    for number, space in enumerate(search.requirements.spaces):
         here = factor * values[shape == number]
         look: dict[str, Any] = {
             "ls": "",
@@ -243,22 +243,22 @@ def _screening_axes(
         axes.plot(ends, ends, **style.REFERENCE)
     axes.set(xlabel=labelled("screened", symbol), ylabel=labelled("solved", symbol))
     axes.locator_params(axis="x", nbins=4)
-    known = [c for c in found.corrections if c is not None and one.key in c.raw]
+    known = [c for c in search.corrections if c is not None and one.key in c.raw]
     off = f"\noff by {si.percent(max(c.raw[one.key] for c in known), 1)}" if known else ""
     axes.set_title(f"{one.said}{off}")
 
 
 @style.drawn
-def settings(found: DesignSearch) -> Figure:
+def settings(search: DesignSearch) -> Figure:
     """Figure of what was chosen along the front: each variable over the first objective."""
-    spaces = found.requirements.spaces
-    of_front = sorted({member.evaluated.design.shape for member in found.front})
+    spaces = search.requirements.spaces
+    of_front = sorted({member.evaluated.design.shape for member in search.front})
     free = {variable.name: variable for shape in of_front for variable in spaces[shape].free}
-    if not found.front or not free:
+    if not search.front or not free:
         return style.message_figure(
-            "What was chosen", "The front is empty." if not found.front else "Nothing was free."
+            "What was chosen", "The front is empty." if not search.front else "Nothing was free."
         )
-    goal = criterion_of(found.requirements.objectives[0])
+    goal = criterion_of(search.requirements.objectives[0])
     columns = min(3, len(free))
     lines = -(-len(free) // columns)
     figure = style.new_figure(
@@ -268,12 +268,12 @@ def settings(found: DesignSearch) -> Figure:
     )
     places = figure.subplots(lines, columns, squeeze=False).ravel()
     for axes, variable in zip(places, free.values(), strict=False):
-        _settings_axes(axes, found, variable)
+        _settings_axes(axes, search, variable)
     for spare in places[len(free) :]:
         spare.set_axis_off()
-    factor, symbol = scaled(found.objectives[:, 0], goal.unit)
+    factor, symbol = scaled(search.objectives[:, 0], goal.unit)
     for axes in places[: len(free)]:
-        axes.set_xlim(_ends(factor * found.objectives[:, 0], logarithmic=False))
+        axes.set_xlim(_ends(factor * search.objectives[:, 0], logarithmic=False))
         axes.locator_params(axis="x", nbins=4)
     for axes in places[max(len(free) - columns, 0) : len(free)]:
         axes.set_xlabel(labelled(goal.said, symbol))

@@ -184,9 +184,9 @@ def front_row(requirements: Requirements, member: FrontMember) -> list[str]:
     return [*values, "not known" if member.made is None else si.percent(member.made.kept)]
 
 
-def row_of(requirements: Requirements, one: Evaluated) -> list[str]:
+def row_of(requirements: Requirements, candidate: Evaluated) -> list[str]:
     """The criteria of a front's table, of any evaluated design."""
-    return [CRITERIA[key].shown(one.numbers.get(key)) for key in _told(requirements)]
+    return [CRITERIA[key].shown(candidate.numbers.get(key)) for key in _told(requirements)]
 
 
 def chosen_sentences(search: DesignSearch) -> list[str]:

@@ -35,14 +35,14 @@ MOST_LINES = 8
 
 
 @style.drawn
-def sweep_figure(found: Sweep) -> Figure:
+def sweep_figure(sweep: Sweep) -> Figure:
     """A panel for each number that was asked for, six at the most: lines over the first axis that
     has several steps, or, where a second has more than eight, a map of the two."""
-    axes = [axis for axis in found.axes if len(axis) > 1]
-    drawn = [c for c in found.columns if np.isfinite(c.values).any()]
+    axes = [axis for axis in sweep.axes if len(axis) > 1]
+    drawn = [c for c in sweep.columns if np.isfinite(c.values).any()]
     if not axes or not drawn or len(axes) > 2:
         return style.message_figure(
-            f"Sweep of {style.plain(found.title)}", _nothing_to_draw(found, len(axes), len(drawn))
+            f"Sweep of {style.plain(sweep.title)}", _nothing_to_draw(sweep, len(axes), len(drawn))
         )
     along, beside = _order(axes)
     panels = _panels(drawn) if beside is None else [[column] for column in drawn]
@@ -50,33 +50,33 @@ def sweep_figure(found: Sweep) -> Figure:
     over = " and ".join(name_of(axis) for axis in axes)
     figure = style.new_figure(
         f"{', '.join(map(_panel_name, panels))} over {over}",
-        f"that of {' and '.join(_SAID.get(verb, verb) for verb in found.verbs)}; display "
-        f"{style.plain(found.title)}{_left_out(found)}",
+        f"that of {' and '.join(_SAID.get(verb, verb) for verb in sweep.verbs)}; display "
+        f"{style.plain(sweep.title)}{_left_out(sweep)}",
         1.2 + 3.2 * -(-len(panels) // 2) if len(panels) > 1 else 4.6,
     )
     columns = 1 if len(panels) == 1 else 2
     grid = figure.subplots(-(-len(panels) // columns), columns, squeeze=False)
     for place, panel in zip(grid.ravel(), panels, strict=False):
         if beside is not None and len(beside) > MOST_LINES and beside.numbers is not None:
-            _map(figure, place, found, along, beside, panel[0])
+            _map(figure, place, sweep, along, beside, panel[0])
         else:
-            _lines(place, found, along, beside, panel)
+            _lines(place, sweep, along, beside, panel)
     for spare in grid.ravel()[len(panels) :]:
         spare.set_axis_off()
     return figure
 
 
-def _left_out(found: Sweep) -> str:
-    lost = len(found.reasons) - found.answered
-    return f"; crosses: {lost} of {len(found.reasons)} points without an answer" if lost else ""
+def _left_out(sweep: Sweep) -> str:
+    lost = len(sweep.reasons) - sweep.answered
+    return f"; crosses: {lost} of {len(sweep.reasons)} points without an answer" if lost else ""
 
 
-def _nothing_to_draw(found: Sweep, axes: int, drawn: int) -> str:
+def _nothing_to_draw(sweep: Sweep, axes: int, drawn: int) -> str:
     if not drawn:
         return "No point has an answer; the table says why."
     if not axes:
         return "There is one point alone; the table has its numbers."
-    names = ", ".join(name_of(axis) for axis in found.axes)
+    names = ", ".join(name_of(axis) for axis in sweep.axes)
     return f"{axes} axes ({names}) are too many for one picture; the table has all numbers."
 
 
@@ -98,25 +98,25 @@ def _panels(drawn: list[Column]) -> list[list[Column]]:
     return list(panels.values())
 
 
-def _values(found: Sweep, along: Axis, beside: Axis | None, column: Column) -> si.FloatArray:
+def _values(sweep: Sweep, along: Axis, beside: Axis | None, column: Column) -> si.FloatArray:
     """A column over the two axes, shape (along, beside)."""
-    grid = column.values.reshape([len(axis) for axis in found.axes if len(axis) > 1])
-    order = [axis for axis in found.axes if len(axis) > 1]
+    grid = column.values.reshape([len(axis) for axis in sweep.axes if len(axis) > 1])
+    order = [axis for axis in sweep.axes if len(axis) > 1]
     if beside is None:
         return grid[:, None]
     return grid if order.index(along) == 0 else grid.T
 
 
-def _lines(axes: Axes, found: Sweep, along: Axis, beside: Axis | None, panel: list[Column]) -> None:
+def _lines(axes: Axes, sweep: Sweep, along: Axis, beside: Axis | None, panel: list[Column]) -> None:
     numbers = along.numbers
     x = np.arange(len(along)) if numbers is None else numbers
     factor, symbol = (1.0, "") if numbers is None else scaled(numbers, along.units[0])
     scale, unit = scaled(np.concatenate([c.values for c in panel]), panel[0].unit)
     # Modes that nothing drives are there, and do not matter.
-    quiet = {follow.label for follow in found.follows if not follow.driven}
+    quiet = {follow.label for follow in sweep.follows if not follow.driven}
     told, named = 0, False
     for column in panel:
-        values = scale * _values(found, along, beside, column)
+        values = scale * _values(sweep, along, beside, column)
         for number, line in enumerate(values.T):
             color, dashes = style.LINES[told % len(style.LINES)]
             label = mode_of(column)
@@ -157,14 +157,14 @@ def _along(axes: Axes, along: Axis, symbol: str) -> None:
 
 
 def _map(
-    figure: Figure, axes: Axes, found: Sweep, along: Axis, beside: Axis, column: Column
+    figure: Figure, axes: Axes, sweep: Sweep, along: Axis, beside: Axis, column: Column
 ) -> None:
     assert beside.numbers is not None
     x = np.arange(len(along), dtype=float) if along.numbers is None else along.numbers
     across, xs = (1.0, "") if along.numbers is None else scaled(x, along.units[0])
     up, ys = scaled(beside.numbers, beside.units[0])
     scale, unit = scaled(column.values, column.unit)
-    values = np.ma.masked_invalid(scale * _values(found, along, beside, column).T)
+    values = np.ma.masked_invalid(scale * _values(sweep, along, beside, column).T)
     image = axes.pcolormesh(
         across * x, up * beside.numbers, values, shading="nearest", cmap="cividis"
     )
@@ -188,22 +188,22 @@ MOST_ANSWERS, MOST_VARIED, MOST_PAIRS = 4, 5, 6
 _BINS = 8
 
 
-def varied_name(one: Varied) -> str:
+def varied_name(value: Varied) -> str:
     """A varied value's name without its unit, words apart."""
-    return without_units(one.name).replace("_", " ")
+    return without_units(value.name).replace("_", " ")
 
 
-def drawn_columns(found: Sweep) -> list[Column]:
+def drawn_columns(sweep: Sweep) -> list[Column]:
     """The answers that are drawn: those that vary, four at the most."""
-    several = [c for c in found.columns if len(np.unique(c.values[np.isfinite(c.values)])) > 1]
+    several = [c for c in sweep.columns if len(np.unique(c.values[np.isfinite(c.values)])) > 1]
     return several[:MOST_ANSWERS]
 
 
-def means(one: Varied, values: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
+def means(value: Varied, values: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
     """The mean answer at each step of a varied value, or in each eighth of the points where it
     takes more than sixteen values: places and means."""
     there = np.isfinite(values)
-    x, y = one.values[there], values[there]
+    x, y = value.values[there], values[there]
     steps = np.unique(x)
     if len(steps) <= 2 * _BINS:
         return steps, np.array([y[x == step].mean() for step in steps])
@@ -236,12 +236,12 @@ def effects_figure(found: Sweep) -> Figure:
     return figure
 
 
-def _effect(axes: Axes, one: Varied, values: si.FloatArray) -> None:
-    factor = 1.0 if one.words else scaled(one.values, one.unit)[0]
-    axes.plot(factor * one.values, values, ".", ms=3, color=style.MUTED, alpha=0.5)
-    x, y = means(one, values)
+def _effect(axes: Axes, value: Varied, values: si.FloatArray) -> None:
+    factor = 1.0 if value.words else scaled(value.values, value.unit)[0]
+    axes.plot(factor * value.values, values, ".", ms=3, color=style.MUTED, alpha=0.5)
+    x, y = means(value, values)
     axes.plot(factor * x, y, "-o", ms=4, color=style.BLUE)
-    if one.logarithmic:
+    if value.logarithmic:
         axes.set_xscale("log")
         style.plain_log(axes.xaxis)
 

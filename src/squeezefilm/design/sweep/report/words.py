@@ -11,12 +11,12 @@ from squeezefilm.design.sweep.axes import Axis
 from squeezefilm.design.sweep.swept import Column
 
 
-def name_of(one: Axis | Column) -> str:
+def name_of(column: Axis | Column) -> str:
     """A name without its unit, words apart: ``resonance frequency``."""
-    if isinstance(one, Axis):
-        return ", ".join(name.replace("_", " ") for name in one.names)
-    mode = mode_of(one)
-    return quantity_of(one) if mode is None else f"{mode} {quantity_of(one)}"
+    if isinstance(column, Axis):
+        return ", ".join(name.replace("_", " ") for name in column.names)
+    mode = mode_of(column)
+    return quantity_of(column) if mode is None else f"{mode} {quantity_of(column)}"
 
 
 def mode_of(column: Column) -> str | None:

@@ -185,68 +185,68 @@ def _trace(data: bytes | mmap.mmap, tell: ShareProgress | None) -> Trace:
     return Trace(columns, rows, tuple(found.events), metadata, _damage(found, data))
 
 
-def _take(found: _Found, block: file.Block, data: bytes | mmap.mmap) -> None:
+def _take(content: _Found, block: file.Block, data: bytes | mmap.mmap) -> None:
     payload = data[block.start : block.start + block.length]
     match block.kind:
         case file.BlockKind.ROWS:
             width = file.ROW_HEAD.unpack_from(payload)[0] if block.length >= 4 else 0
             count, rest = divmod(block.length - 4, 8 * width) if width else (0, 1)
             if rest or not count:
-                found.misread += 1
+                content.misread += 1
                 return
-            found.tables.append((block.start + file.ROW_HEAD.size, count, width))
-            found.rows += count
+            content.tables.append((block.start + file.ROW_HEAD.size, count, width))
+            content.rows += count
         case file.BlockKind.CLOSING:
-            found.closed = True
+            content.closed = True
         case _:
             said = _json_object(payload)
             if said is None:
-                found.misread += 1
+                content.misread += 1
             elif block.kind is file.BlockKind.METADATA:
-                found.metadata = said
+                content.metadata = said
             else:
                 row, fields = said.get("row"), said.get("fields")
-                found.events.append(
+                content.events.append(
                     TraceEvent(
                         str(said.get("kind", "")),
                         fields if isinstance(fields, dict) else {},
-                        row if isinstance(row, int) else found.rows,
+                        row if isinstance(row, int) else content.rows,
                     )
                 )
 
 
-def _columns(metadata: Mapping[str, Any], found: _Found) -> tuple[str, ...]:
+def _columns(metadata: Mapping[str, Any], content: _Found) -> tuple[str, ...]:
     named = metadata.get("columns")
     if isinstance(named, list) and named:
         return tuple(str(name) for name in named)
     # The names went with the metadata; the values did not.
-    width = found.tables[0][2] if found.tables else 0
+    width = content.tables[0][2] if content.tables else 0
     return tuple(f"column_{number + 1}" for number in range(width))
 
 
-def _damage(found: _Found, data: bytes | mmap.mmap) -> Damage:
+def _damage(content: _Found, data: bytes | mmap.mmap) -> Damage:
     said = []
     version = file.header_version(data)
     if version is None:
         said.append("the file's header is missing or damaged")
     elif version != file.VERSION:
         said.append(f"the file is of version {version}; this program reads {file.VERSION}")
-    if found.metadata is None:
+    if content.metadata is None:
         said.append("the metadata are lost, and with them the columns' names")
-    if found.lost_blocks:
-        said.append(f"{found.lost_blocks} blocks are missing by their numbers")
-    for gap in found.gaps[:5]:
+    if content.lost_blocks:
+        said.append(f"{content.lost_blocks} blocks are missing by their numbers")
+    for gap in content.gaps[:5]:
         said.append(f"bytes {gap.start} to {gap.end - 1} belong to no whole block")
-    if len(found.gaps) > 5:
-        said.append(f"and {len(found.gaps) - 5} more such places")
-    if found.misread:
-        said.append(f"{found.misread} blocks are whole but say nothing this program understands")
-    if not found.closed:
+    if len(content.gaps) > 5:
+        said.append(f"and {len(content.gaps) - 5} more such places")
+    if content.misread:
+        said.append(f"{content.misread} blocks are whole but say nothing this program understands")
+    if not content.closed:
         said.append(
             "the record was not closed: the program ended before; all that was acknowledged and "
             "not damaged since is here"
         )
-    return Damage(found.lost_bytes, found.lost_blocks, found.closed, tuple(said))
+    return Damage(content.lost_bytes, content.lost_blocks, content.closed, tuple(said))
 
 
 def _json_object(payload: bytes) -> dict[str, Any] | None:
