@@ -366,7 +366,7 @@ def _refusal(
     reason: Reason,
     sequence: int | None = None,
 ) -> CheckResult:
-    """True where a payload of a kind is refused for a reason, and the output stays at zero."""
+    """Check that a payload of a kind is refused for a reason, and the output stays at zero."""
     found = talk.answer(talk.send_raw(kind, payload, sequence))
     # Time for an output that should not be there to show.
     talk.listen_for(3e-3)

@@ -272,7 +272,7 @@ def driven_ceramics(plate: RectangularPlate) -> int:
 def amplifier_check(
     amplifier: Amplifier, voltage: si.Volt, current: si.Ampere, slew_rate: si.VoltPerSecond
 ) -> AmplifierCheck:
-    """True where an amplifier gives a voltage and a current amplitude (V, A) with a slope (V/s)."""
+    """Check that an amplifier gives a voltage and a current amplitude (V, A) with a slope (V/s)."""
 
     def said(value: float, unit: str) -> str:
         return si.format_quantity(value, si.Unit(unit), 3)

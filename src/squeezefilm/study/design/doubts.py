@@ -37,7 +37,7 @@ def doubts_of(design: StudyDesign, observer: Observer, reach: bool = False) -> t
 
 
 def _of_range(design: StudyDesign, observer: Observer) -> list[str]:
-    """True where differences from the reference lie on both sides of the predicted threshold."""
+    """Doubt of differences from the reference that do not bracket the predicted threshold."""
     fraction = predicted_fraction(design, observer)
     if not design.compares or not design.on_a_scale or fraction is None:
         return []

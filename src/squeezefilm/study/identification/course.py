@@ -115,6 +115,6 @@ def attention(caught: Answers) -> tuple[Attention, ...]:
 
 
 def judged(person: str, right: int, asked: int) -> Attention:
-    """True where somebody who attends would miss so many catch trials."""
+    """Verdict on whether somebody who attends would miss so many catch trials."""
     p = float(stats.binom.cdf(right, asked, ATTENDS))
     return Attention(person, right, asked, p, p >= _DOUBTFUL)

@@ -241,7 +241,7 @@ def _follows(mine: Answers, models: _Models | tuple[()]) -> float:
 
 
 def _changed(mine: Answers, models: _Models) -> list[str]:
-    """True where a part of the session, from its begin or to its end, was guessed or mixed up; or
+    """Doubts of a part of the session, from its begin or to its end, guessed or mixed up; or
     all of it has more lapses than the rule allows."""
     rule, one_for_all, said = rule_of(mine.design), max(_best(model) for model in models), []
     least = max(_LEAST_PART, mine.trials // 4)

@@ -192,7 +192,7 @@ class Player:
         self._write()
 
     def judge(self) -> Usability:
-        """True where what was played can be used; the verdict goes into the record."""
+        """Verdict on whether what was played can be used; it goes into the record."""
         found = self._ticks.judged(self.late_commands)
         self._note("usability", found.to_json())
         return found
