@@ -7,10 +7,11 @@ from collections import deque
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from squeezefilm.core.drive_limits import Limits
-from squeezefilm.core.errors import DeviceError
+from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.device.host import MOST_READINGS, DeviceHost
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.states import Fault, Reason, State
@@ -211,3 +212,39 @@ def test_a_refusal_that_asking_later_does_not_mend_is_raised(
         with pytest.raises(DeviceError, match=f"refused {name}"):
             host.poll()
     assert host.poll() == []
+
+
+@pytest.mark.parametrize("count", [1, m.MOST_LEVELS, m.MOST_LEVELS + 1, m.LONGEST_TILE])
+def test_a_tile_goes_over_in_frames_that_say_where_they_begin(count: int) -> None:
+    link = Link()
+    levels = np.linspace(0.0, 10.0, count).astype(np.float32)
+    host_of(link).load_tile(-1.5e-3, 25e-6, levels)
+    begin, *data = link.asked
+    assert begin == m.TileBegin(-1500, 25, count)
+    firsts, sent = [], []
+    for frame in data:
+        assert isinstance(frame, m.TileData)
+        first, volts = dataclasses.astuple(frame)
+        firsts.append(first)
+        sent += volts
+    assert firsts == list(range(0, count, m.MOST_LEVELS))
+    np.testing.assert_array_equal(sent, levels)
+
+
+def test_a_tile_of_none_or_too_many_is_refused_whole() -> None:
+    link = Link()
+    for count in (0, m.LONGEST_TILE + 1):
+        with pytest.raises(InputError, match=f"a tile of {count} amplitudes; 1 to 512 fit"):
+            host_of(link).load_tile(0.0, 1e-3, np.zeros(count))
+    assert link.asked == []
+
+
+def test_a_device_without_a_fault_has_nothing_to_clear() -> None:
+    link = Link()
+    host_of(link).clear()
+    assert link.kinds() == ["KeepAlive"]
+    failed = Link(state=State.FAULT, fault=3)
+    failed.levels = [2, 1, 0]
+    host_of(failed).clear()
+    assert failed.kinds() == [*["KeepAlive"] * 3, "ClearFault"]
+    assert failed.asked[-1] == m.ClearFault(3)

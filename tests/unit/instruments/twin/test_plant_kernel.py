@@ -184,7 +184,7 @@ def where(time: float) -> tuple[float, float]:
     return 0.01 + SPEED_X * at, 0.02 + SPEED_Y * at
 
 
-@pytest.mark.parametrize("latency", [0.0, 700.0, 1500.0])
+@pytest.mark.parametrize("latency", [0.0, 700.0, 2500.0])
 def test_the_sensor_shows_the_newest_sample_that_has_arrived(latency: float) -> None:
     plant = bench(LATENCY=latency)
     taken = [int(n * 1e6 / 3000.0) for n in range(100)]
