@@ -247,8 +247,8 @@ class Covering:
             self._data.read()
 
     def tests(self, path: Path, line: int, files: Sequence[str]) -> list[str]:
-        """Those of a line of a file that has not changed since, one of each function's variants,
-        those of the given files first."""
+        """Those of a line of a file that has not changed since, those of the given files first;
+        one of each function's variants, and last the others of the first file."""
         if not self._from or path.stat().st_mtime > self._from:
             return []
         contexts = self._data.contexts_by_lineno(str(path)).get(line, [])
@@ -258,7 +258,9 @@ class Covering:
         nearest = sorted(
             functions.values(), key=lambda test: rank.get(test.partition("::")[0], len(rank))
         )
-        return nearest[:_COVERING]
+        own = [test for test in named if files and test.startswith(f"{files[0]}::")]
+        others = [test for test in own if test not in nearest]
+        return nearest[:_COVERING] + others[:_COVERING]
 
 
 class Report:

@@ -169,6 +169,17 @@ def _predicted(method: BayesianAdaptive, x: float) -> float:
     return total
 
 
+def test_the_estimate_is_the_posterior_mean_of_place_and_geometric_mean_of_width() -> None:
+    method = BayesianAdaptive(AdaptiveDesign((2.0, 6.0), PRIOR, cells=(4, 4, 2)))
+    method.update(6.0, True)
+    places, widths = (PRIOR.quantile(at, (np.arange(4) + 0.5) / 4, "linear") for at in range(2))
+    place = log_width = 0.0
+    for (i, j, _), weight in np.ndenumerate(method.probability):
+        place += weight * places[i]
+        log_width += weight * widths[j]
+    assert method.estimate() == pytest.approx((place, np.exp(log_width)))
+
+
 def test_the_posterior_is_bayes_rule() -> None:
     method = BayesianAdaptive(AdaptiveDesign((2.0, 6.0), PRIOR, cells=(4, 3, 2)))
     method.update(6.0, True)

@@ -8,7 +8,9 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.sweep.answers import Asked, asked_for, catalogue, numbers_of, without_units
+from squeezefilm.design.sweep.verbs import VERBS
 from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.display import load_display
 
 sys.path.append(str(Path(__file__).parents[4] / "tools"))
 
@@ -134,3 +136,8 @@ def test_the_list_is_as_its_tool_writes_it() -> None:
 
     for verb, keys in catalogue().items():
         assert sorted(keys) == sorted(sweep_answers.keys(verb)), "run tools/sweep_answers.py"
+
+
+def test_a_rendering_without_a_texture_is_refused() -> None:
+    with pytest.raises(InputError, match="render needs a texture"):
+        VERBS["render"].answer(load_display("biet2008-plate"), {}, 0)

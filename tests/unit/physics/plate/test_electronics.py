@@ -176,6 +176,17 @@ def test_a_stator_that_nothing_fits_has_no_load() -> None:
     assert load_of_mode(low, mode, 20.0, 900.0) is None
 
 
+@pytest.mark.slow
+def test_a_stator_with_a_measured_amplitude_takes_the_current_that_its_circuit_takes() -> None:
+    """The circuit and the curve are each set to that amplitude, in ways of their own."""
+    stator = load_display("biet2008-stator").actuator
+    assert isinstance(stator, AnnularStator)
+    found = ring_admittance(stator)
+    assert found.circuit is not None
+    peak = found.admittance.real.max()
+    assert peak == pytest.approx(1 / found.circuit.motional_resistance, rel=0.1)
+
+
 def test_ceramics_that_are_driven_are_counted() -> None:
     plate: Any = load_display("biet2008-plate").actuator
     assert isinstance(plate, RectangularPlate)
