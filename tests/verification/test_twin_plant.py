@@ -23,7 +23,12 @@ from squeezefilm.instruments.twin.envelope_step import (
 from squeezefilm.instruments.twin.hand import Hand
 from squeezefilm.instruments.twin.plant import Plant
 from squeezefilm.instruments.twin.plant_kernel import COLUMNS
-from squeezefilm.instruments.twin.settings import Amplifier, PlateDrift, TwinSettings
+from squeezefilm.instruments.twin.settings import (
+    FRICTION_LAG,
+    Amplifier,
+    PlateDrift,
+    TwinSettings,
+)
 from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
@@ -33,7 +38,8 @@ from squeezefilm.physics.render.motion.stroke import Stroke
 from squeezefilm.physics.render.resonator.envelope import envelope_time_constant
 
 STEADY = PlateDrift(temperature_coefficient=0.0)
-CALM = TwinSettings(drift=STEADY, truth_period=100e-6)
+CALM = TwinSettings(drift=STEADY, truth_period=100e-6, friction_lag=0.0)
+"""No drift, and friction at once: what closed forms say."""
 VOLTS = 10_000_000
 
 
@@ -54,6 +60,37 @@ def column(plant: Plant, name: str) -> np.ndarray:
 def pressed(force: float = 0.5) -> Hand:
     """A finger that presses within 10 ms and slides at a constant speed."""
     return Hand(Stroke(0.08, 0.5), normal_force=force, begin=0.0, press=10e-3)
+
+
+@pytest.mark.parametrize("frequency", [25.0, 130.0, 500.0])
+def test_friction_lags_the_amplitude_by_20_degrees_where_it_was_measured_to(
+    frequency: float,
+) -> None:
+    """At 130 Hz, which was f0/2Q there; elsewhere by arctan ωτ. The skin adds a little of its own,
+    whose speed under the friction changes with it."""
+    own, late = (phase_of_friction(lag, frequency) for lag in (0.0, FRICTION_LAG))
+    expected = -math.degrees(math.atan(2 * math.pi * frequency * FRICTION_LAG))
+    assert late - own == pytest.approx(expected, abs=1.0)
+    if frequency == 130.0:
+        assert expected == pytest.approx(-20.0, abs=0.5)
+        assert -4.0 < own <= 0.0
+
+
+def phase_of_friction(lag: float, frequency: float) -> float:
+    """By how much (degrees) µ′/µ is ahead of the amplitude's fall, for a small wave of level."""
+    settings = replace(CALM, friction_lag=lag)
+    plant = Plant(point(), settings, pressed())
+    count, first = round(0.3 / settings.tick), round(0.1 / settings.tick)
+    turn = 2 * math.pi * frequency * settings.tick * np.arange(count)
+    for tick in range(count):
+        level = round(VOLTS * (1 + 0.1 * math.sin(turn[tick])))
+        plant.advance((tick + 1) * settings.tick_us, level, carrier())
+    wave = np.exp(-1j * turn[first:])
+    amplitude, friction = (
+        np.sum((values[first:] - values[first:].mean()) * wave)
+        for values in (column(plant, "amplitude_m"), column(plant, "relative_friction"))
+    )
+    return math.degrees(np.angle(-friction / amplitude))
 
 
 @pytest.mark.slow

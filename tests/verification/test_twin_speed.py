@@ -22,7 +22,11 @@ from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.physics.render.motion.stroke import Stroke
 
 CALM = TwinSettings(
-    drift=PlateDrift(temperature_coefficient=0.0), tick=50e-6, steps_per_tick=1, truth_period=50e-6
+    friction_lag=0.0,
+    drift=PlateDrift(temperature_coefficient=0.0),
+    tick=50e-6,
+    steps_per_tick=1,
+    truth_period=50e-6,
 )
 FORCE = 0.5
 LEVELS = (15_000_000, 0, 5_000_000, 20_000_000)

@@ -355,6 +355,7 @@ def _constants(
     c[k.C_REFERENCE] = dry.reference_force
     c[k.C_RATE] = sensor.rate
     c[k.C_SHARE_LOST] = sensor.loss
+    c[k.C_LAG] = settings.friction_lag
     c[k.C_LATENCY] = sensor.latency * 1e6
     c[k.C_JITTER] = sensor.jitter * 1e6
     c[k.C_NOISE] = sensor.noise

@@ -9,9 +9,8 @@ and the outcome does not depend on the pieces in which time is advanced. In each
 3. the arm leads the finger, a mass on spring and damper, in closed form under the skin's pull,
    which is extrapolated to the middle of the step (second order),
 4. the skin follows by the compiled marches of `physics.contact.sliding`, under the friction of the
-law:
-   over its own sliding speed where the law depends on that, the rows at the start and the end of
-   the step between which it is a line,
+   law behind the amplitude by a time constant: over its own sliding speed where the law depends on
+   that, the rows at the start and the end of the step between which it is a line,
 5. the sensor takes its samples, and the truth gets a row where one is due.
 
 Motion is along x for the skin; along y the arm leads without friction.
@@ -58,7 +57,8 @@ X, VX, Y, VY = range(5, 9)
 SKIN_X, SKIN_V, PULL, PULL_BEFORE, BEFORE, FRICTION, FORCE = range(9, 16)
 VOLTAGE, CURRENT_A, RELATIVE, SEEN_X, SEEN_Y = range(16, 21)
 CHARGE = 21  # the charge coefficient over the cold one
-STATE = 22
+FELT = 22  # the amplitude that friction has followed (m)
+STATE = 23
 # The counts, int64; times in µs.
 NOW, SEEN_TAKEN, SEEN_TOUCHING, SAMPLE, HEAD, TAIL, ARRIVED, ROWS = range(8)
 AT_RAIL, AT_SLEW, AT_CURRENT, BEYOND, FAILED, LOST_SAMPLES, CARRIER = range(8, 15)
@@ -72,7 +72,8 @@ C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS = range(22, 28)
 C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS = range(28, 34)
 C_SUBSTEPS, C_STATIC, C_EXPONENT, C_REFERENCE, C_FORCE = range(34, 39)
 C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(39, 45)
-CONSTANTS = 45
+C_LAG = 45  # s
+CONSTANTS = 46
 COLUMNS = (
     "time_s",
     "x_m",
@@ -99,6 +100,7 @@ _SECOND = np.uint64(0x94D049BB133111EB)
 _THIRTY, _SEVEN, _ONE = np.uint64(30), np.uint64(27), np.uint64(31)
 _DROPPED = np.uint64(11)
 _TWO_53 = 2.0**-53
+_LEAST = 1e-15  # m
 
 
 @compiled()
@@ -232,6 +234,16 @@ def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: si.Array, c
 
 
 @compiled()
+def lagged(felt: float, before: float, after: float, h: float, lag: float) -> float:
+    """What follows an amplitude (m) with a time constant `lag` (s; 0: at once), after a step h (s)
+    in which the amplitude goes straight from `before` to `after`."""
+    if lag <= 0.0 or (after == 0.0 and felt < _LEAST):
+        return after
+    behind = lag * (after - before) / h
+    return after - behind + (felt - before + behind) * math.exp(-h / lag)
+
+
+@compiled()
 def _grip(force: float, amplitude: float, plant: State, fingers: Fingers) -> None:
     """The friction at the end of a step; what was there becomes that at its start."""
     _, n, c, (tables, _, _, _, limit, rows, _) = plant
@@ -327,10 +339,11 @@ def advance(
         else:
             s[VOLTAGE], s[CURRENT_A] = 0.0, 0.0
         amplitude = abs(z)
+        s[FELT] = lagged(s[FELT], before, amplitude, h, c[C_LAG])
         _follow(h, here[0], there[0], here[1], there[1], s, c)
         s[FORCE] = force
         if force > 0.0 or began > 0.0:
-            _grip(force, amplitude, plant, fingers)
+            _grip(force, s[FELT], plant, fingers)
             if began <= 0.0:
                 # A relaxed skin, that lands with the bone's place and speed.
                 s[SKIN_X], s[SKIN_V], rows[0] = x0, v0, rows[1]

@@ -20,6 +20,9 @@ PerSecond = Annotated[float, si.Unit("1/s")]
 ASSUMED = "assumed"
 # Frozen, so that all settings may share it.
 _COULOMB = DryFriction()
+FRICTION_LAG: si.Second = 0.45e-3
+"""By which friction follows the amplitude: 20° at 130 Hz, the half-bandwidth f0/2Q of the plate
+that it was measured on (glass, 39 kHz; EuroHaptics 2018). Of others it is assumed."""
 
 PickupKind = Literal["motional_current", "sensing_patch", "none"]
 
@@ -152,6 +155,7 @@ class TwinSettings:
             hold, and are counted.
         drift, amplifier, arm, sensor, pickup: see there.
         dry: static friction and its dependence on speed and load.
+        friction_lag: time constant with which friction follows the amplitude (s); 0 for at once.
 
     Raises:
         InputError: a value outside its range.
@@ -169,6 +173,7 @@ class TwinSettings:
     sensor: SensorModel = TOUCH_PANEL_240_HZ
     pickup: PickupModel = PickupModel()
     dry: DryFriction = _COULOMB
+    friction_lag: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(0.1)] = FRICTION_LAG
 
     def __post_init__(self) -> None:
         si.require("truth_period", self.truth_period, si.Unit("s"), at_least=self.tick)

@@ -66,7 +66,7 @@ def bench(
         "STIFFNESS": 800.0, "DAMPING": 6.0, "PAD_MASS": 0.2e-3, "PAD_DAMPING": 1.0,
         "PAD_STIFFNESS": 1000.0, "SUBSTEPS": 8, "STATIC": 1.0,
         "EXPONENT": 1.0, "REFERENCE": 0.5, "FORCE": 0.0, "RATE": 3000.0, "LATENCY": 700.0,
-        "JITTER": 0.0, "NOISE": 0.0, "QUANTUM": 0.0, "SHARE_LOST": 0.0,
+        "JITTER": 0.0, "NOISE": 0.0, "QUANTUM": 0.0, "SHARE_LOST": 0.0, "LAG": 0.0,
     }  # fmt: skip
     named.update(changes)
     constants = np.zeros(k.CONSTANTS)
