@@ -28,7 +28,7 @@ LAPSE, BIAS, CRITERION, NOISE = 0.02, 0.03, 1.4, 0.25
 QUARTILE, D_PRIME = 0.6744897501960817, 0.9538725524
 
 DESIGNS = {
-    "constant": dataclasses.replace(load_design("friction-jnd"), practice=0),
+    "constant": dataclasses.replace(load_design("friction-jnd"), practice=0, catch=()),
     "adaptive": dataclasses.replace(load_design("period-jnd"), practice=0),
     "same-different": dataclasses.replace(load_design("period-same-different"), practice=0),
     "same-different, adaptive": dataclasses.replace(

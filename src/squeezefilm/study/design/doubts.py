@@ -26,7 +26,7 @@ def doubts_of(design: StudyDesign, observer: Observer, reach: bool = False) -> t
     makes at its largest amplitude. Raises what `load_display` and `predict` raise.
     """
     found = [*_of_range(design, observer)]
-    if not design.catch:
+    if design.answers and not design.catch:
         found.append(
             "there are no catch trials: who does not attend is told by the answers alone; add "
             "[[catch]] with a surface that everybody tells"

@@ -30,8 +30,15 @@ def test_a_range_beside_the_predicted_threshold_is_said() -> None:
 
 def test_a_series_and_a_task_without_differences_are_judged_as_they_are() -> None:
     assert doubts_of(load_design("period-jnd"), OBSERVER) == ()
-    (said,) = doubts_of(load_design("coarseness-magnitude"), OBSERVER)
-    assert "no catch trials" in said
+    # Of a number nobody can say that it is wrong.
+    assert doubts_of(load_design("coarseness-magnitude"), OBSERVER) == ()
+
+
+def test_a_task_with_right_answers_wants_catch_trials() -> None:
+    design = load_design("friction-jnd")
+    assert not [doubt for doubt in doubts_of(design, OBSERVER) if "catch" in doubt]
+    doubts = doubts_of(dataclasses.replace(design, catch=()), OBSERVER)
+    assert len([doubt for doubt in doubts if "no catch trials" in doubt]) == 1
 
 
 def test_a_display_that_does_not_reach_a_stimulus_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -36,7 +36,7 @@ PERIODS = dataclasses.replace(
     load_design("period-same-different"), task="two-interval", practice=0, repetitions=10
 )
 ALIKE = dataclasses.replace(load_design("period-same-different"), practice=0, repetitions=10)
-DEPTHS = dataclasses.replace(load_design("friction-jnd"), practice=0)
+DEPTHS = dataclasses.replace(load_design("friction-jnd"), practice=0, catch=())
 NUMBERS = dataclasses.replace(load_design("coarseness-magnitude"), familiarisation=0)
 
 
