@@ -1,7 +1,7 @@
 /* The reference firmware's state machine and framing: C99, no allocation, no libm, no clock.
  *
- * The twin of src/squeezefilm/device/machine.py; docs/development/protocol.md states the rules. Everything is
- * integer (us, uV, mHz, um); the volts on the wire, IEEE binary32, are turned into uV in integers too,
+ * The twin of src/squeezefilm/instruments/device/machine/; docs/development/protocol.md states the rules.
+ * Everything is integer (us, uV, mHz, um); the volts on the wire, IEEE binary32, are turned into uV in integers too,
  * exactly. Not reentrant: call it from one context, or mask interrupts around it.
  *
  * A board gives its hooks (sf_board) and three calls: sf_receive for every byte from the host,

@@ -2,8 +2,7 @@
  * alone, no state of its own. The twin of src/squeezefilm/instruments/control/plate_loop.py, which
  * states the equations, the fields and their units; a test compares the two, number for number.
  *
- * A board calls sf_loop_step once a step with what its pickup showed over that step, and puts level
- * and frequency on its carrier, within the limits that squeezefilm_fw.h holds.
+ * squeezefilm_held.c steps them in the state machine's tick, so that its limits hold of what they ask.
  */
 #ifndef SQUEEZEFILM_LOOPS_H
 #define SQUEEZEFILM_LOOPS_H
