@@ -33,6 +33,7 @@ from typing import IO
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
 from squeezefilm.instruments.device.priority import (
     PLAYERS_PRIORITY,
     collect_garbage_first,
@@ -276,9 +277,11 @@ def _warm_up(device: TwinDevice, hand: Hand | None) -> None:
     limits = m.SetLimits(1.0, 1000, 1.0, 1000, 1000, 1_000_000_000, 1000, 1000, 0)
     start = m.Start(round(1e3 * device.plant.resonance_frequency))
     session = [m.Hello(1), m.AskInfo(), m.Report(1000), limits]
+    gains = loop_gains(IdentifiedPlate(30e3, 100.0, 0.01), LoopAims(29e3, 31e3, 1.0, 0.5))
+    session += [m.Negotiate(m.REVISION), m.SetLoops(gains), m.SwitchLoops(1)]
     session += [m.TileBegin(0, 1000, 2), m.TileData(0, (0.5, 1.0))]
-    session += [m.Arm(spare.machine.token), start, m.TimedEnvelope(12_000, 200, (0.5, 1.0))]
-    session += [m.Envelope(200, (0.5, 1.0)), m.Follow(), m.KeepAlive(), m.Stop()]
+    session += [m.Arm(spare.machine.token), start, m.TimedEnvelope(15_000, 200, (0.5, 1.0))]
+    session += [m.Envelope(200, (0.5, 1.0)), m.Follow(), m.AskLoops(), m.Stop()]
     for number, message in enumerate(session, start=1):
         spare.receive(message.frame(number).encoded(), 1000 * number)
         spare.advance(1000 * number + 900)
