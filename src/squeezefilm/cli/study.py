@@ -16,6 +16,7 @@ from squeezefilm.cli.app import (
     app,
     given,
     print_json,
+    reachable,
     read_option,
     working,
     written_to,
@@ -73,6 +74,25 @@ Display = Annotated[
     typer.Option(help="Name of one of the design's, or any other by name or file, like mine.toml."),
 ]
 Observer = Annotated[str, typer.Option(help="Observer of people: a preset or a TOML file.")]
+
+
+@study.command()
+def new(
+    file: Annotated[Path, typer.Argument(callback=reachable, help="The TOML file to write.")],
+    source: Annotated[
+        str,
+        typer.Option("--from", help="The study to start from; study presets lists them."),
+    ],
+    display: Annotated[
+        list[str] | None, typer.Option(help="Display by name or file in place of the study's own.")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Replace the file if it exists.")] = False,
+) -> None:
+    """Write a commented TOML file of your own study, starting from a preset."""
+    from squeezefilm.study.design.plan import new_study_file
+
+    new_study_file(file, source, displays=display or (), replace=force)
+    typer.echo(f"wrote {file}; edit it, then: squeezefilm study plan {file}")
 
 
 @study.command()

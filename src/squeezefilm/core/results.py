@@ -10,6 +10,7 @@ import inspect
 import json
 import math
 import os
+import re
 import secrets
 import typing
 from collections.abc import Iterator
@@ -206,6 +207,19 @@ def write_whole(path: Path, content: str | bytes) -> None:
         raise InputError(
             f"{path} is written, but the disk did not confirm it: {error.strerror}; write it again"
         ) from error
+
+
+def write_named(file: Path, text: str, *, replace: bool = False) -> None:
+    """Write TOML whose first `name` becomes that of the file.
+
+    Raises `InputError` if the file exists and is not to be replaced.
+    """
+    if file.is_dir():
+        raise InputError(f"{file} is a directory; give the name of a TOML file to write")
+    if file.exists() and not replace:
+        raise InputError(f"{file} exists; give another name, or force to replace it")
+    name = re.sub(r"[^A-Za-z0-9._-]+", "-", file.stem) or "own"
+    write_whole(file, re.sub(r'(?m)^name = ".*"$', f'name = "{name}"', text, count=1))
 
 
 def write_new(path: Path, content: str | bytes) -> None:

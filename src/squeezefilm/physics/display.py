@@ -19,7 +19,7 @@ from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import FREQUENCY, ROUGHNESS
 from squeezefilm.core.materials import Gas
-from squeezefilm.core.results import Result, write_new, write_whole
+from squeezefilm.core.results import Result, write_named, write_new
 from squeezefilm.physics.contact.finger.fingertip import Finger
 from squeezefilm.physics.plate.heat.thermal import Thermal
 from squeezefilm.physics.plate.layout import Actuator
@@ -308,21 +308,15 @@ def new_display_file(file: Path, preset: str, *, replace: bool = False) -> None:
     import re
 
     text = presets.path(preset).read_text(encoding="utf-8")
-    if file.is_dir():
-        raise InputError(f"{file} is a directory; give the name of a TOML file to write")
-    if file.exists() and not replace:
-        raise InputError(f"{file} exists; give another name, or force to replace it")
-    name = re.sub(r"[^A-Za-z0-9._-]+", "-", file.stem) or "display"
-    own = re.sub(r'(?m)^name = ".*"$', f'name = "{name}"', text, count=1)
     # What was measured of the preset's device was not measured of this one.
-    own = re.sub(r"(?m)^# [^\n]*\n\[measured\]\n(?:.+\n)*\n?", "", own)
+    own = re.sub(r"(?m)^# [^\n]*\n\[measured\]\n(?:.+\n)*\n?", "", text)
     header = (
         f"# Started from the preset {preset}: change what is yours, the title too, "
         "and say where it is from.\n"
         "# While the next line stands, a number that you change loses the source beside it, until\n"
         f'# the words of the source are yours too.\ncopied_from = "{preset}"\n\n'
     )
-    write_whole(file, header + own)
+    write_named(file, header + own, replace=replace)
 
 
 def save_display(display: Display, path: str | Path) -> None:

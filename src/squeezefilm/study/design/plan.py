@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import math
+import re
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, ClassVar
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import PLANNED_TRIALS, require_within
-from squeezefilm.core.results import Result
+from squeezefilm.core.regular_file import read_toml_text
+from squeezefilm.core.results import Result, write_named
 from squeezefilm.physics.perception.observer import NamedObserver, load_observer
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.doubts import doubts_of
@@ -174,3 +180,34 @@ def _balanced(design: StudyDesign) -> int:
     rows = len(williams_square(count)) if design.order == "williams" else count
     alone = (design.blocks * design.repetitions) % rows == 0
     return displays if alone else math.lcm(rows, displays)
+
+
+def new_study_file(
+    file: Path, preset: str, *, displays: Sequence[str] = (), replace: bool = False
+) -> None:
+    """Write a commented TOML file that starts from a preset study, named for the file, on other
+    `displays` (preset names or paths) where any are given.
+
+    Raises `InputError` if the file exists and is not to be replaced or for a display that cannot
+    be found, `ConfigError` for a preset that is not known.
+    """
+    from squeezefilm.core import config, presets
+
+    if preset not in presets.study_names():
+        raise InputError(
+            f"there is no preset study '{preset}'.{si.did_you_mean(preset, presets.study_names())} "
+            f"There are {', '.join(presets.study_names())}",
+            quantity="preset",
+        )
+    text = read_toml_text(presets.resolve_study(preset))
+    if displays:
+        for display in displays:
+            presets.resolve(display)
+        own = ", ".join(json.dumps(str(display)) for display in displays)
+        text = re.sub(r"(?m)^displays = .*$", lambda _: f"displays = [{own}]", text, count=1)
+    header = (
+        f"# Started from the preset {preset}: change what is yours, the title too.\n"
+        f"# squeezefilm study plan {file.name} says what is doubtful of it.\n\n"
+    )
+    config.load_text(StudyDesign, header + text, file=str(file))
+    write_named(file, header + text, replace=replace)
