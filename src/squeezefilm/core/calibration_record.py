@@ -188,7 +188,7 @@ class JointSpread:
         scores = ndtri(np.clip(table, 1e-4, 1 - 1e-4))
         values, vectors = np.linalg.eigh(np.atleast_2d(np.cov(scores.T)))
         root = vectors @ np.diag(np.sqrt(np.maximum(values, 0.0))) @ vectors.T
-        points_moved = np.array(points, dtype=float)
-        own = ndtri(np.clip(points_moved[:, columns], 1e-9, 1 - 1e-9))
-        points_moved[:, columns] = ndtr(scores.mean(axis=0) + own @ root)
-        return points_moved
+        moved_points = np.array(points, dtype=float)
+        own = ndtri(np.clip(moved_points[:, columns], 1e-9, 1 - 1e-9))
+        moved_points[:, columns] = ndtr(scores.mean(axis=0) + own @ root)
+        return moved_points

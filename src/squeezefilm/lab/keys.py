@@ -93,10 +93,10 @@ class Keys:
     def use_link(self, token: str) -> tuple[Session, str] | None:
         """The session that a link opens, and where it begins; None for one that is unknown, used
         or too old."""
-        found = self._links.pop(token, None)
-        if found is None or found.until < self.clock():
+        link = self._links.pop(token, None)
+        if link is None or link.until < self.clock():
             return None
-        return self._open(found.role, found.station), found.home
+        return self._open(link.role, link.station), link.home
 
     def new_code(self, home: str = "/participant") -> str:
         """Six digits that pair one tablet as a participant station, once, within two minutes; it

@@ -53,22 +53,22 @@ def lan_listener(address: str, port: int = PORT) -> socket.socket:
             not this computer's, or no free port.
     """
     try:
-        found = ipaddress.IPv4Address(address)
+        parsed = ipaddress.IPv4Address(address)
     except ValueError:
         raise InputError(
             f"lan {address[:60]} is no IPv4 address; give this computer's in the local network, "
             "like 192.168.1.20"
         ) from None
-    if found.is_unspecified or found.is_multicast or not found.is_private:
+    if parsed.is_unspecified or parsed.is_multicast or not parsed.is_private:
         raise InputError(
-            f"lan {found} is not allowed: only one address of this computer in a private network "
+            f"lan {parsed} is not allowed: only one address of this computer in a private network "
             "(10.x, 172.16–31.x, 192.168.x, 169.254.x) is"
         )
     try:
-        return listening_socket(port, str(found))
+        return listening_socket(port, str(parsed))
     except OSError as error:
         raise InputError(
-            f"lan {found} is no address of this computer; look it up in its network settings"
+            f"lan {parsed} is no address of this computer; look it up in its network settings"
         ) from error
 
 

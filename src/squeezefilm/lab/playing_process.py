@@ -124,8 +124,8 @@ def check(connection: Connection, drive: str, display: str) -> None:
     tell = telling(connection)
     with _ends(tell, lambda: "the check was stopped"):
         result = check_drive(drive, display, progress=_Watched(tell).progress)
-        found = {"passed": result.passed, "results": to_json(result.results)}
-        tell({"type": "device checked", **found})
+        outcome = {"passed": result.passed, "results": to_json(result.results)}
+        tell({"type": "device checked", **outcome})
         tell({"type": "device ended", "failed": False, "message": "checked"})
 
 

@@ -201,23 +201,23 @@ def search(connection: Connection, text: str, folder: Path, out: Path, **how: An
     tell = telling(connection)
     try:
         hear_interrupts()
-        found = _found(stop, tell, text, folder, out, how)
+        outcome = _found(stop, tell, text, folder, out, how)
     except KeyboardInterrupt:
         # Before the first design, or a second time while it was counted what there is.
-        found = {"failed": False, "message": "stopped"}
+        outcome = {"failed": False, "message": "stopped"}
     except SqueezefilmError as error:
-        found = {"failed": True, "message": str(error)}
+        outcome = {"failed": True, "message": str(error)}
     except MemoryError:
-        found = {
+        outcome = {
             "failed": True,
             "message": f"the search needs more than {LARGEST_MEMORY / 1024**3:g} GiB of memory and "
             "was ended; screen or solve fewer designs",
         }
     except Exception as error:
         # A mistake of ours: the page says it, and not that the search died.
-        found = {"failed": True, "message": f"not foreseen: {type(error).__name__}: {error}"}
+        outcome = {"failed": True, "message": f"not foreseen: {type(error).__name__}: {error}"}
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    tell({"type": SearchProcess.ended, **found})
+    tell({"type": SearchProcess.ended, **outcome})
 
 
 def _found(

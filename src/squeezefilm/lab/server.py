@@ -218,20 +218,20 @@ def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:
         OSError: `host` is no address of this computer.
     """
     for candidate in range(port, port + 20):
-        one = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         if os.name == "posix":
             # Elsewhere this would let two labs have one port.
-            one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
-            one.bind((host, candidate))
+            listener.bind((host, candidate))
             # A browser that is faster than the server's start waits here and is not refused.
-            one.listen()
+            listener.listen()
         except OSError as error:
-            one.close()
+            listener.close()
             if error.errno == errno.EADDRNOTAVAIL:
                 raise
             continue
-        return one
+        return listener
     raise InputError(
         f"ports {port} to {port + 19} of {host} are all in use; say another port, or stop "
         "what uses them"

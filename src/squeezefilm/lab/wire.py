@@ -82,7 +82,7 @@ class Dispatcher:
                 )
             model, handler = self._known[kind]
             request = model.model_validate(raw)
-            found = await handler(request)
+            reply = await handler(request)
         except ValidationError as error:
             first = error.errors()[0]
             place = ".".join(str(part) for part in first["loc"])
@@ -99,7 +99,7 @@ class Dispatcher:
             # A mistake of ours: said on the page and in the terminal; the conversation goes on.
             _LOG.exception("the lab could not answer a message")
             return _error(number, _OURS)
-        return {"id": request.id, **found}
+        return {"id": request.id, **reply}
 
 
 def as_text(answer: Answer) -> str:

@@ -174,18 +174,18 @@ def analyze_ring(
     body = ring_body(actuator)
     label = mode or body.label
     tell(f"mode B({label[0]},{label[1]})")
-    found = body.mode(label)
-    limits = band or (0.92 * found.frequency, 1.08 * found.frequency)
+    working = body.mode(label)
+    limits = band or (0.92 * working.frequency, 1.08 * working.frequency)
     whole = deadline is None or deadline.allows(_BAND * (body.label[1] + 2))
-    modes = modes_in_band(body, limits, tell) if whole else (found,)
-    _, along = half_wavelength_of(found)
+    modes = modes_in_band(body, limits, tell) if whole else (working,)
+    _, along = half_wavelength_of(working)
     tell(f"response at {points} frequencies")
-    sweep = sweep_around(found.frequency, found.quality_factor, points | 1)
-    beside = {found.harmonic - 1, found.harmonic + 1} if found.harmonic else set()
-    harmonics = sorted({found.harmonic, *beside, *(one.harmonic for one in modes)})
-    response = ring_response(body, found, sweep, harmonics)
-    driven = found.modal_force(body.drive) > 1e-9 * abs(found.modal_force_all_round)
-    circuit = ring_circuit(body, found, response) if driven else None
+    sweep = sweep_around(working.frequency, working.quality_factor, points | 1)
+    beside = {working.harmonic - 1, working.harmonic + 1} if working.harmonic else set()
+    harmonics = sorted({working.harmonic, *beside, *(one.harmonic for one in modes)})
+    response = ring_response(body, working, sweep, harmonics)
+    driven = working.modal_force(body.drive) > 1e-9 * abs(working.modal_force_all_round)
+    circuit = ring_circuit(body, working, response) if driven else None
     capacitance = static_capacitance(body, circuit)
     tell("airborne sound")
     return RingAnalysis(
@@ -193,14 +193,14 @@ def analyze_ring(
         body=body,
         modes=modes,
         rows=tuple(mode_row(body, one, capacitance) for one in modes),
-        mode=ring_working_mode(actuator, body, found),
-        annular=found,
-        working=mode_row(body, found, capacitance),
+        mode=ring_working_mode(actuator, body, working),
+        annular=working,
+        working=mode_row(body, working, capacitance),
         half_wavelength_along=along,
-        circles=nodal_circles(found),
+        circles=nodal_circles(working),
         response=response,
         circuit=circuit,
-        sound=_sound(display, found, response),
+        sound=_sound(display, working, response),
         objections=(*require_plausible(display), *(() if whole else (ALONE,))),
     )
 
@@ -266,7 +266,7 @@ def modes_in_band(
     tell = progress or (lambda _: None)
     low, high = band
     require_half_wave(high, body.section.shear_times, "a band up to")
-    found: list[AnnularMode] = []
+    in_band: list[AnnularMode] = []
     for m in range(_MOST_HARMONICS):
         tell(f"all modes in the band, {m} nodal diameters")
         count = 4
@@ -285,10 +285,10 @@ def modes_in_band(
                 break
             require_within(RING_MODES, len(inside), "band", enough="ask for a narrower band")
             count *= 2
-        found += inside
+        in_band += inside
         if m > body.label[1] and all(x.frequency > high for x in modes):
             break
-    if not found:
+    if not in_band:
         hertz = si.Unit("Hz")
         raise InputError(
             f"no mode lies between {si.format_quantity(low, hertz)} and "
@@ -296,7 +296,7 @@ def modes_in_band(
             "around the working mode",
             quantity="band",
         )
-    return tuple(sorted(found, key=lambda mode: mode.frequency))
+    return tuple(sorted(in_band, key=lambda mode: mode.frequency))
 
 
 def _sound(display: Display, mode: AnnularMode, response: RingResponse) -> SoundField:

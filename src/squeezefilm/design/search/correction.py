@@ -54,16 +54,16 @@ class Correction:
 
     def of_all(self, screened: Sequence[Evaluated]) -> list[dict[str, float]]:
         """The numbers of screened designs, corrected (SI)."""
-        found = [dict(candidate.numbers) for candidate in screened]
-        if not found or not self.fits:
-            return found
+        corrected = [dict(candidate.numbers) for candidate in screened]
+        if not corrected or not self.fits:
+            return corrected
         places = np.array([_features(self.space, candidate) for candidate in screened])
         for key, fit in self.fits.items():
             moved = np.clip(fit(places), -np.log(_MOST), np.log(_MOST))
-            for numbers, by in zip(found, moved, strict=True):
+            for numbers, by in zip(corrected, moved, strict=True):
                 if key in numbers:
                     numbers[key] *= float(np.exp(by))
-        return found
+        return corrected
 
 
 def _features(space: Space, candidate: Evaluated) -> list[float]:

@@ -213,12 +213,12 @@ def numbers_of_solved(
 ) -> dict[str, float]:
     """The criteria that only a solved plate has; those that take long where a limit asks."""
     limits = requirements.limits
-    found: dict[str, float] = {}
+    numbers: dict[str, float] = {}
     load = load_of_mode(display.actuator, p.mode, p.voltage, p.frequency)
     if load is not None:
-        found["current"] = load.current
+        numbers["current"] = load.current
     beside = p.mode.neighbour
-    found["neighbour"] = (
+    numbers["neighbour"] = (
         math.inf if beside is None or beside.share < CROWDED else abs(beside.distance)
     )
     if limits.least_area is not None or limits.most_relative_friction is not None:
@@ -226,15 +226,15 @@ def numbers_of_solved(
         wanted = limits.most_relative_friction or 0.7
         share = None if area is None else area.share_below(wanted)
         if share is not None:
-            found["area"] = share
+            numbers["area"] = share
     if limits.most_sound_level is not None:
         with contextlib.suppress(SqueezefilmError):
             heard = ear_exposure(display, p)
             if heard is not None:
-                found["sound_level"] = heard.level_dB
+                numbers["sound_level"] = heard.level_dB
     if limits.confidence == "95 %":
-        found["surest_friction"] = uncertain_friction(display, p).interval[1]
-    return found
+        numbers["surest_friction"] = uncertain_friction(display, p).interval[1]
+    return numbers
 
 
 @functools.cache

@@ -168,5 +168,5 @@ def _trial(params: dict[str, float], values: Sequence[float], excess: Sequence[f
 
 
 def _constraints(trial: Any) -> Sequence[float]:
-    found: Sequence[float] = trial.user_attrs[_EXCESS]
-    return found
+    excess: Sequence[float] = trial.user_attrs[_EXCESS]
+    return excess

@@ -181,8 +181,8 @@ class DesignSearch(Result):
         as `member`, or where the front is empty."""
         if name is None and self.chosen is None:
             raise InputError("the front is empty: no plate meets the requirements")
-        one = self.member(name or self.chosen_name)
-        return sourced_display_of(self.requirements, one.evaluated.design)
+        member = self.member(name or self.chosen_name)
+        return sourced_display_of(self.requirements, member.evaluated.design)
 
     def summary(self) -> dict[str, Any]:
         """Mapping that ``--json`` prints; keys carry units."""

@@ -50,7 +50,7 @@ def limit_reasons(
     requirements: Requirements, screened: Sequence[Evaluated]
 ) -> tuple[LimitReason, ...]:
     """Effect of every limit on the screened designs, the one that is broken most first."""
-    found = []
+    reasons = []
     best = _best(requirements, [candidate for candidate in screened if candidate.is_feasible])
     for criterion, bound in bounded(requirements.limits):
         broken = [
@@ -65,8 +65,8 @@ def limit_reasons(
             for key, value in without.items()
             if np.isfinite(value) and value < best.get(key, np.inf)
         }
-        found.append(LimitReason(criterion.key, bound, len(broken), len(alone), gained))
-    return tuple(sorted(found, key=lambda reason: -reason.broken))
+        reasons.append(LimitReason(criterion.key, bound, len(broken), len(alone), gained))
+    return tuple(sorted(reasons, key=lambda reason: -reason.broken))
 
 
 def _best(requirements: Requirements, designs: Sequence[Evaluated]) -> dict[str, float]:
@@ -80,7 +80,7 @@ def empty_corners(
     requirements: Requirements, screened: Sequence[Evaluated]
 ) -> tuple[EmptyCorner, ...]:
     """The parts of each variable's range in which no screened design is feasible, with why."""
-    found: list[EmptyCorner] = []
+    corners: list[EmptyCorner] = []
     for number, space in enumerate(requirements.spaces):
         here = [candidate for candidate in screened if candidate.design.shape == number]
         for variable in space.free:
@@ -90,8 +90,8 @@ def empty_corners(
             for where, inside in parts.items():
                 if len(inside) < _LEAST_DESIGNS or any(one.is_feasible for one in inside):
                     continue
-                found.append(_corner(space, where, inside))
-    return tuple(sorted(found, key=lambda corner: -corner.designs))
+                corners.append(_corner(space, where, inside))
+    return tuple(sorted(corners, key=lambda corner: -corner.designs))
 
 
 def _corner(space: Space, where: str, inside: Sequence[Evaluated]) -> EmptyCorner:
@@ -153,19 +153,19 @@ def conflict_of(screened: Sequence[Evaluated]) -> tuple[str, str, si.Dimensionle
 def margins(requirements: Requirements, candidate: Evaluated) -> dict[str, si.Dimensionless]:
     """Distance of a design from each limit that it could be judged by, as a share of it, the
     nearest first."""
-    found = {
+    margin_of = {
         criterion.key: -excess_of(criterion, value, bound)
         for criterion, bound in bounded(requirements.limits)
         if not math.isnan(value := criterion.value(candidate.numbers))
     }
-    return dict(sorted(found.items(), key=lambda item: item[1]))
+    return dict(sorted(margin_of.items(), key=lambda item: item[1]))
 
 
 def limit_in_words(reason: LimitReason, screened: int) -> str:
     """Sentence on what a limit does."""
-    one = CRITERIA[reason.key]
+    criterion = CRITERIA[reason.key]
     said = (
-        f"{one.limit_said(reason.limit)}: broken by {reason.broken} of {screened} "
+        f"{criterion.limit_said(reason.limit)}: broken by {reason.broken} of {screened} "
         f"screened designs, by {reason.alone} as the only limit"
     )
     if reason.best_without:

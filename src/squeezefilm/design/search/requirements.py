@@ -127,9 +127,9 @@ class Limits:
         """The limits given that plates made of a drawing are not judged by: only plates solved in
         three dimensions have what they bound."""
         alone = ("least_area", "least_neighbour", "most_sound_level")
-        found = tuple(name for name in alone if getattr(self, name) is not None)
+        unasked = tuple(name for name in alone if getattr(self, name) is not None)
         sure = self.confidence == "95 %" and self.most_relative_friction is not None
-        return (*found, *(("most_relative_friction",) if sure else ()))
+        return (*unasked, *(("most_relative_friction",) if sure else ()))
 
 
 @si.checked_numbers

@@ -106,10 +106,10 @@ def search_until_stopped(asked: SearchRequest) -> tuple[DesignSearch, str]:
     except KeyboardInterrupt:
         stopped = "stopped"
     except WorkersError as error:
-        found = run.result()
-        if not found.screened:
+        search = run.result()
+        if not search.screened:
             raise
-        return found, str(error)
+        return search, str(error)
     return run.result(), stopped
 
 
@@ -167,8 +167,8 @@ class SearchRun:
                 self._say_screening(space.shape, shape * share + batch * size, begun)
                 others = self._store.of_others(shape, "screened")
                 asked = proposals.ask(min(size, share - batch * size), batch, others)
-                found = self._evaluated(pool, [design for _, design in asked], "screened")
-                proposals.tell([(trial, found[design]) for trial, design in asked])
+                screened = self._evaluated(pool, [design for _, design in asked], "screened")
+                proposals.tell([(trial, screened[design]) for trial, design in asked])
                 self._show()
         if all(candidate.reason for candidate in self._seen["screened"].values()):
             first = next(iter(self._seen["screened"].values()))
@@ -321,14 +321,14 @@ class SearchRun:
         self, pool: Workers, designs: Sequence[Design], level: Level
     ) -> Mapping[Design, Evaluated]:
         """Designs at a level, kept ones as they are."""
-        found: dict[Design, Evaluated] = {}
+        evaluated: dict[Design, Evaluated] = {}
         missing: dict[Design, None] = {}
         for design in designs:
             known = self._store.get(design, level)
             if known is None:
                 missing[design] = None
             else:
-                found[design] = known
+                evaluated[design] = known
         each = tuple(missing)
         parts = [each[begin : begin + _TOGETHER] for begin in range(0, len(each), _TOGETHER)]
         if level == "solved":
@@ -343,13 +343,13 @@ class SearchRun:
                         for one in parts[number]
                     ]
                 self._store.add(answers)
-                found.update((answer.design, answer) for answer in answers)
-                self._show_meanwhile(level, found)
+                evaluated.update((answer.design, answer) for answer in answers)
+                self._show_meanwhile(level, evaluated)
         finally:
             # What came before Ctrl-C is shown, too.
-            came = [design for design in designs if design in found]
-            self._seen[level].update((design, found[design]) for design in came)
-        return found
+            came = [design for design in designs if design in evaluated]
+            self._seen[level].update((design, evaluated[design]) for design in came)
+        return evaluated
 
     def _front(self, seen: Seen | None = None) -> list[Evaluated]:
         """The feasible solved designs that none other beats, the first objective rising."""

@@ -26,41 +26,41 @@ def plate_sources(
     """Source of each number of a plate's display, by its dotted path: chosen by the search among
     what the shape of a number allows (the `settings` by name), asked for or given by the
     requirements, of the library of materials, or of the display that the search started from."""
-    found = shared_sources(requirements)
+    sources = shared_sources(requirements)
     own = f"the requirements '{requirements.name}'"
     chosen = Provenance(f"chosen by squeezefilm design for {own}", "derived")
     given = Provenance(f"given by {own}", "assumed")
     of_fixed = {variable.name for variable in requirements.spaces[shape] if variable.is_fixed}
-    found["drive.voltage"] = given if VOLTAGE in of_fixed else chosen
+    sources["drive.voltage"] = given if VOLTAGE in of_fixed else chosen
     for leaf in _stated(display):
         name = leaf.path[1]
         path = ".".join(map(str, leaf.path))
         if name in _GIVEN or name in of_fixed:
-            found[path] = given
+            sources[path] = given
         elif name == "quality_factor":
-            found[path] = _quality(requirements, given)
+            sources[path] = _quality(requirements, given)
         elif name not in _PARTS:
-            found[path] = chosen
+            sources[path] = chosen
     base = requirements.started_from
     for part, kind in _PARTS.items():
-        found |= _of_material(base, part, str(settings[part]), kind, display)
-    return found
+        sources |= _of_material(base, part, str(settings[part]), kind, display)
+    return sources
 
 
 def shared_sources(requirements: Requirements) -> dict[str, Provenance]:
     """Sources of all numbers but those of body and drive, which every plate of a search shares:
     finger, gas, surfaces and cooling."""
     base = requirements.started_from
-    found = dict(_kept(requirements, base))
+    sources = dict(_kept(requirements, base))
     asked = Provenance(f"asked for by the requirements '{requirements.name}'", "assumed")
-    found["finger.speed"] = asked
+    sources["finger.speed"] = asked
     # Where the display does not say it, the contact's size is that at the display's own force.
     own = base.provenance.get("finger.normal_force")
     if requirements.base.finger.contact_area_force is not None and own is not None:
-        found.setdefault("finger.contact_area_force", own)
+        sources.setdefault("finger.contact_area_force", own)
     if requirements.touch.normal_force is not None:
-        found["finger.normal_force"] = asked
-    return found
+        sources["finger.normal_force"] = asked
+    return sources
 
 
 def _stated(display: Display) -> Iterator[Leaf]:
@@ -105,11 +105,11 @@ def _of_material(
     if name == OWN:
         return {path: one for path, one in base.provenance.items() if path.startswith(at)}
     split = split_provenance(presets.materials.table(name, kind))
-    found = {}
+    sources = {}
     for path, source in split.sources.items():
         spread = split.spreads.get(path)
         if spread is not None:
             value, unit = value_at(display, f"{at}{path}")
             source = dataclasses.replace(source, distribution=distribution_of(value, unit, spread))
-        found[at + path] = source
-    return found
+        sources[at + path] = source
+    return sources

@@ -150,16 +150,16 @@ class Space:
     def moved(self, places: Mapping[str, float], draw: np.random.Generator) -> dict[str, float]:
         """Places a little beside others: lengths and voltages by some percent of their range, each
         with even odds, steps to one near by or any other now and then, names to any other."""
-        found = dict(places)
+        beside = dict(places)
         for variable in self.free:
             chance, step = draw.random(), _STEP * draw.standard_normal()
             if isinstance(variable, Number) and chance < 0.5:
-                found[variable.name] = float(np.clip(places[variable.name] + step, 0.0, 1.0))
+                beside[variable.name] = float(np.clip(places[variable.name] + step, 0.0, 1.0))
             elif not isinstance(variable, Number) and chance < _JUMP:
-                found[variable.name] = float(draw.random())
+                beside[variable.name] = float(draw.random())
             elif isinstance(variable, Step) and chance < _JUMP + _NEAR_BY:
-                found[variable.name] = float(np.clip(places[variable.name] + 2 * step, 0.0, 1.0))
-        return found
+                beside[variable.name] = float(np.clip(places[variable.name] + 2 * step, 0.0, 1.0))
+        return beside
 
     def beside(self, places: Mapping[str, float]) -> Iterator[dict[str, float]]:
         """Places that differ in one number, by a few of its grains either way: the next that can be

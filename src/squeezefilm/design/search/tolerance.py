@@ -58,9 +58,9 @@ def made_of(
     nominal = _numbers(requirements, solved.design, np.zeros(len(_NAMES)))
     drawn = qmc.Sobol(len(_NAMES), seed=seed).random(draws)
     normal = np.asarray(norm.ppf(np.clip(drawn, 1e-9, 1 - 1e-9)))
-    found = [_scaled(_numbers(requirements, solved.design, row), nominal, solved) for row in normal]
+    made = [_scaled(_numbers(requirements, solved.design, row), nominal, solved) for row in normal]
     limits, broken, kept = requirements.limits, dict[str, int](), 0
-    for numbers in found:
+    for numbers in made:
         wrong = breaches(numbers, limits) if numbers else ()
         kept += bool(numbers) and not wrong
         for limit in wrong:
@@ -68,20 +68,20 @@ def made_of(
     keys = [key for key in solved.numbers if key in CORRECTED]
     intervals = {}
     for key in keys:
-        values = np.array([one.get(key, np.nan) for one in found])
+        values = np.array([one.get(key, np.nan) for one in made])
         values = values[np.isfinite(values)]
         if values.size:
             low, high = np.quantile(values, (0.05, 0.95))
             intervals[key] = float(low), float(high)
     effects = _effects(requirements, solved, nominal)
-    return Made(draws, kept / draws, broken, intervals, effects, found.count({}))
+    return Made(draws, kept / draws, broken, intervals, effects, made.count({}))
 
 
 def _effects(
     requirements: Requirements, solved: Evaluated, nominal: Mapping[str, float]
 ) -> dict[str, dict[str, float]]:
     """Effects of those tolerances of the file that are not zero, by central differences."""
-    found: dict[str, dict[str, float]] = {}
+    effects: dict[str, dict[str, float]] = {}
     for number, name in enumerate(_NAMES):
         if getattr(requirements.tolerances, name) == 0:
             continue
@@ -93,12 +93,12 @@ def _effects(
         if all(ends):
             told = ("resonance_frequency", *requirements.objectives)
             keys = {one: criterion_of(one).key for one in told}
-            found[name] = {
+            effects[name] = {
                 one: (ends[1][key] - ends[0][key]) / 2
                 for one, key in keys.items()
                 if key in ends[0]
             }
-    return found
+    return effects
 
 
 def _scaled(

@@ -71,7 +71,7 @@ def worth_solving(
 def worst_corner(requirements: Requirements, rows: si.FloatArray) -> si.FloatArray:
     """The corner from which a hypervolume is measured (SI): limits where there are any, µ′/µ of 1,
     gratings of 5 mm, else a tenth beyond the worst of rows of objectives."""
-    found = []
+    corner = []
     for number, name in enumerate(requirements.objectives):
         own = criterion_of(name).limit
         bound = getattr(requirements.limits, own) if own else None
@@ -79,8 +79,8 @@ def worst_corner(requirements: Requirements, rows: si.FloatArray) -> si.FloatArr
             bound = _NATURAL_WORST.get(name)
         if bound is None:
             bound = 1.1 * float(np.max(rows[:, number], initial=0.0)) or 1.0
-        found.append(float(bound))
-    return np.array(found)
+        corner.append(float(bound))
+    return np.array(corner)
 
 
 def _numbered(plates: Sequence[Design]) -> si.IntArray:

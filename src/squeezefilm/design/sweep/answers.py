@@ -131,19 +131,19 @@ def asked_for(texts: Sequence[str]) -> tuple[Asked, ...]:
     of a group asks for all numbers in it. Raises `InputError` for a name that no verb knows, or
     that stands for two quantities.
     """
-    found: dict[Asked, None] = {}
+    wanted: dict[Asked, None] = {}
     for text in texts:
         # A few names have a comma in them.
         whole = any(_spelled_out(text.strip(), keys) for keys in catalogue().values())
         for name in [text] if whole else text.split(","):
             if name.strip():
-                found.update(dict.fromkeys(_asked_by(name.strip())))
-    if not found:
+                wanted.update(dict.fromkeys(_asked_by(name.strip())))
+    if not wanted:
         raise InputError(
             "nothing is asked for; give ask = relative_friction,resonance_frequency",
             quantity="ask",
         )
-    return tuple(found)
+    return tuple(wanted)
 
 
 def _asked_by(name: str) -> list[Asked]:

@@ -90,7 +90,7 @@ def axis_of(name: str, values: Any, display: Display) -> Axis:
         spaced = _RANGE.fullmatch(values)
         if spaced is not None and unit is not None:
             logarithmic = spaced["log"] is not None
-            found: list[Value] = [
+            steps: list[Value] = [
                 one if option is None else option.number(one) for one in _spaced(name, spaced, unit)
             ]
         else:
@@ -100,19 +100,19 @@ def axis_of(name: str, values: Any, display: Display) -> Axis:
                     "or draw samples in it with sample 200"
                 )
             parts = values.split("," if option is None else option.between)
-            found = [_value(name, part.strip(), option, unit) for part in parts]
+            steps = [_value(name, part.strip(), option, unit) for part in parts]
     elif np.ndim(values) == 0:
-        found = [_value(name, values, option, unit)]
+        steps = [_value(name, values, option, unit)]
     else:
-        found = [_value(name, value, option, unit) for value in values]
-    require_within(SWEEP_STEPS, len(found), f"steps of {name}")
+        steps = [_value(name, value, option, unit) for value in values]
+    require_within(SWEEP_STEPS, len(steps), f"steps of {name}")
     if whole:
-        found = [_whole(name, value) for value in found]
-    if len(set(found)) < len(found):
+        steps = [_whole(name, value) for value in steps]
+    if len(set(steps)) < len(steps):
         raise InputError(
             f"{name} takes a value twice; give each once, or fewer steps", quantity=name
         )
-    return Axis((name,), (unit,), tuple((value,) for value in found), logarithmic)
+    return Axis((name,), (unit,), tuple((value,) for value in steps), logarithmic)
 
 
 def axis_of_file(path: str | Path, display: Display) -> Axis:
@@ -154,8 +154,8 @@ def _rows(path: str | Path) -> Iterator[tuple[int, list[str]]]:
 
 
 def _head(cell: str) -> tuple[str, str]:
-    found = re.fullmatch(r"\s*(.+?)\s*(?:\[(.+)\])?\s*", cell)
-    return (found[1], (found[2] or "").strip()) if found else (cell, "")
+    match = re.fullmatch(r"\s*(.+?)\s*(?:\[(.+)\])?\s*", cell)
+    return (match[1], (match[2] or "").strip()) if match else (cell, "")
 
 
 def _column(

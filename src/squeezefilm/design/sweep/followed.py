@@ -191,8 +191,8 @@ def _neighbours(
     grid = np.arange(int(np.prod(shape))).reshape(shape)
     reached, front = {begin}, [begin]
     while front:
-        one = front.pop(0)
-        place = np.unravel_index(one, shape)
+        point = front.pop(0)
+        place = np.unravel_index(point, shape)
         for axis in range(len(shape)):
             for step in (-1, 1):
                 to = [int(p) for p in place]
@@ -206,4 +206,4 @@ def _neighbours(
                 if other not in reached:
                     reached.add(other)
                     front.append(other)
-                    yield one, other
+                    yield point, other

@@ -67,12 +67,12 @@ class _Range:
         """The values at shares of the range, from 0 to 1."""
         low, high = self.first, self.last
         if self.whole:
-            found = np.floor(low + shares * (high - low + 1))
+            drawn = np.floor(low + shares * (high - low + 1))
         elif self.logarithmic:
-            found = low * (high / low) ** shares
+            drawn = low * (high / low) ** shares
         else:
-            found = low + shares * (high - low)
-        values = [float(f"{value:.12g}") for value in found.tolist()]
+            drawn = low + shares * (high - low)
+        values = [float(f"{value:.12g}") for value in drawn.tolist()]
         if self.whole:
             return [int(value) for value in values]
         return values if self.option is None else [self.option.number(value) for value in values]
@@ -99,9 +99,9 @@ def axes_of_ranges(
     )
     ranges: dict[int, _Range] = {}
     for number, (name, values) in enumerate(pairs):
-        found = _RANGE.fullmatch(values) if isinstance(values, str) else None
-        if found is not None:
-            ranges[number] = _range(name, found, display)
+        match = _RANGE.fullmatch(values) if isinstance(values, str) else None
+        if match is not None:
+            ranges[number] = _range(name, match, display)
     if not ranges:
         raise InputError(
             'samples are drawn in ranges, and none is given; give vary = "actuator.thickness='

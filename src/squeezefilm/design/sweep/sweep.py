@@ -160,11 +160,11 @@ class Run:
         questions, refused = self.plan.points[number]
         if refused:
             return refused
-        found = [self._found.get((number, verb)) for verb in questions]
-        said = [answer.reason for answer in found if answer is not None and answer.reason]
+        answers = [self._found.get((number, verb)) for verb in questions]
+        said = [answer.reason for answer in answers if answer is not None and answer.reason]
         if said:
             return "; ".join(dict.fromkeys(said))
-        return NOT_YET if None in found else ""
+        return NOT_YET if None in answers else ""
 
     def _columns(self, asked: Asked, follows: Sequence[FollowedMode]) -> Iterator[Column]:
         every = range(len(self.plan.points))
@@ -177,14 +177,14 @@ class Run:
                 yield Column(name, asked.unit, mode.values(self._modes(), quantity))
             return
         verb = self.plan.verb_of(asked)
-        found = [self._found.get((number, verb)) for number in every]
-        values = [math.nan if a is None else a.numbers.get(asked.key, math.nan) for a in found]
+        answers = [self._found.get((number, verb)) for number in every]
+        values = [math.nan if a is None else a.numbers.get(asked.key, math.nan) for a in answers]
         yield Column(asked.column, asked.unit, np.array(values))
 
     def _modes(self) -> list[Any]:
         """Modes that the points tell of; None where they say nothing."""
-        found = [self._found.get((k, FOLLOWED)) for k in range(len(self.plan.points))]
-        return [None if answer is None else answer.modes for answer in found]
+        answers = [self._found.get((k, FOLLOWED)) for k in range(len(self.plan.points))]
+        return [None if answer is None else answer.modes for answer in answers]
 
     def _followed(self) -> tuple[FollowedMode, ...]:
         if all(number.verb != FOLLOWED for number in self.plan.asked):

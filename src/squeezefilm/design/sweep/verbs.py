@@ -135,8 +135,8 @@ class Verb:
         arguments = {name: OPTIONS[name].argument(value) for name, value in settings.items()}
         if self.draws:
             arguments["samples"] = samples
-        found: dict[str, Any] = self.call(display, **arguments).summary()
-        return found
+        summary: dict[str, Any] = self.call(display, **arguments).summary()
+        return summary
 
 
 def _render(display: Display, **options: Any) -> Any:

@@ -102,12 +102,12 @@ class Processes:
                 done, _ = wait(running, return_when=FIRST_COMPLETED)
                 for future in done:
                     process, key = running.pop(future)
-                    found: A | Lost = Lost()
+                    answer: A | Lost = Lost()
                     try:
-                        found = future.result()
+                        answer = future.result()
                     except BrokenProcessPool:
                         self._renew(process)
-                    yield key, found
+                    yield key, answer
                     begin(process)
         finally:
             if running:  # stopped while some are at work: nobody waits for them

@@ -81,9 +81,9 @@ class Conversation:
         end = self.clock() + timeout
         while True:
             for heard in self.listen():
-                found = heard.message
-                if isinstance(found, m.Status) and found.answered_sequence == sequence:
-                    return found
+                message = heard.message
+                if isinstance(message, m.Status) and message.answered_sequence == sequence:
+                    return message
             if self.clock() >= end:
                 return None
             self.wait(_STEP)

@@ -153,9 +153,9 @@ def judge_session(setup: PlaySetup, trace: Trace, truth: Path | None = None) -> 
     # How the device's clock stands to the loop's is known from the first answer on.
     offset = _last(trace, "end").get("device_clock_offset_s")
     if truth is not None and offset is not None:
-        found = _true_way(setup, trace, truth, offset)
-        by_truth = _judge(setup, found)
-        error = _position_error(trace, found)
+        true_way = _true_way(setup, trace, truth, offset)
+        by_truth = _judge(setup, true_way)
+        error = _position_error(trace, true_way)
     lag = rows[:, column.LAG]
     lag = lag[np.isfinite(lag)]
     flags = rows[:, column.FLAGS].astype(np.int64)
@@ -242,9 +242,9 @@ def _last(trace: Trace, kind: str) -> Mapping[str, Any]:
 def _played_until(trace: Trace) -> si.Second:
     """Time at which the session began to end (s); after it nothing was to be rendered."""
     fields = _last(trace, "end")
-    found = fields.get("faded_at_s")
+    faded = fields.get("faded_at_s")
     last = float(trace.rows[-1, column.TIME]) if len(trace.rows) else 0.0
-    return last if found is None else min(float(found), last)
+    return last if faded is None else min(float(faded), last)
 
 
 def _way(

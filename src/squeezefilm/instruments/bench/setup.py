@@ -88,10 +88,10 @@ class PlaySetup:
         """Relative friction (1) by the display's law at amplitudes (m, held beyond the largest)
         under a finger at speeds (m/s); not a number where one of them is none."""
         known = np.isfinite(amplitude) & np.isfinite(speed)
-        found = np.full(np.shape(amplitude), np.nan)
+        relative = np.full(np.shape(amplitude), np.nan)
         if np.any(known):
-            found[known] = self.inverse.friction_at(amplitude[known], speed[known])
-        return found
+            relative[known] = self.inverse.friction_at(amplitude[known], speed[known])
+        return relative
 
 
 def play_setup(

@@ -31,15 +31,15 @@ def friction(session: PlayedSession) -> Figure:
         said = "There is no place to draw friction over."
         return style.message_figure("The finger was not seen", said)
     title = f"{style.plain(session.setup.name, 40)}: "
-    found = judged.fidelity
-    if found is None:
+    fidelity = judged.fidelity
+    if fidelity is None:
         title += "it cannot be judged"
     else:
-        kept = found.contrast_kept[np.isfinite(found.contrast_kept)]
+        kept = fidelity.contrast_kept[np.isfinite(fidelity.contrast_kept)]
         title += f"{100 * float(kept[0]):.0f} % of the contrast is kept" if kept.size else "played"
-        if math.isfinite(found.lag):
-            word = "late" if found.lag >= 0 else "early"
-            title += f", {1e3 * abs(found.lag):.2f} mm {word}"
+        if math.isfinite(fidelity.lag):
+            word = "late" if fidelity.lag >= 0 else "early"
+            title += f", {1e3 * abs(fidelity.lag):.2f} mm {word}"
     figure = style.new_figure(title, f"{way.source}; friction by the display's law", 4.2)
     axes = figure.subplots()
     part = _middle_pass(way)

@@ -191,12 +191,12 @@ def play_rows(result: PlayResult) -> list[tuple[str, str, str]]:
 
 def _usable_because(result: PlayResult) -> str:
     """The numbers that say whether a session can be used, or why it cannot."""
-    found = result.outcome.usability
-    if found is None or result.outcome.failed:
+    usability = result.outcome.usability
+    if usability is None or result.outcome.failed:
         return ""
-    return found.sentence or (
-        f"{100 * found.share_made:.1f} % of {found.ticks} ticks made, longest gap "
-        f"{shown(found.longest_gap, S, 3)}, {100 * found.share_late:.1f} % too late"
+    return usability.sentence or (
+        f"{100 * usability.share_made:.1f} % of {usability.ticks} ticks made, longest gap "
+        f"{shown(usability.longest_gap, S, 3)}, {100 * usability.share_late:.1f} % too late"
     )
 
 
@@ -206,20 +206,20 @@ def _duration(session: PlayedSession) -> float:
 
 
 def _judged_rows(who: str, judged: Judged) -> list[tuple[str, str, str]]:
-    found = judged.fidelity
-    if found is None:
+    fidelity = judged.fidelity
+    if fidelity is None:
         return [(f"{who}: contrast, lag", "–", judged.unjudged or "")]
     rows = []
     for f, kept, swing in zip(
-        found.spatial_frequency, found.contrast_kept, found.swing_kept, strict=True
+        fidelity.spatial_frequency, fidelity.contrast_kept, fidelity.swing_kept, strict=True
     ):
         if math.isfinite(kept):
             said = f"in its place; {100 * swing:.0f} % of that wave anywhere"
             name = f"{who}: contrast at {shown(1 / f, M, 3)}"
             rows.append((name, f"{100 * kept:.0f} %", said))
-    said = f"RMS of µ′/µ, swing wanted {found.wanted_swing:.2f}; by {judged.way.source}"
-    rows.append((f"{who}: friction error", f"{found.rms_error:.3f}", said))
-    return rows + lag_rows(found, f"{who}: lag")
+    said = f"RMS of µ′/µ, swing wanted {fidelity.wanted_swing:.2f}; by {judged.way.source}"
+    rows.append((f"{who}: friction error", f"{fidelity.rms_error:.3f}", said))
+    return rows + lag_rows(fidelity, f"{who}: lag")
 
 
 def _loop_rows(loop: Mapping[str, Any]) -> list[tuple[str, str, str]]:

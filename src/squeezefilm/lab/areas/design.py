@@ -105,8 +105,8 @@ class DesignArea:
         return await self._display(design.changed, asked.text, asked.path, asked.value)
 
     async def _limits(self, asked: FieldLimits) -> Answer:
-        found = await self._lab.workers.quick.do("limits", allowed, asked.text, asked.path)
-        return {"type": "field limits", "path": asked.path, "allowed": found}
+        words = await self._lab.workers.quick.do("limits", allowed, asked.text, asked.path)
+        return {"type": "field limits", "path": asked.path, "allowed": words}
 
     async def _compute(self, asked: ComputeDesign) -> Answer:
         point = design.WorkingPoint(**asked.model_dump(exclude={"id", "type", "quality", "of"}))

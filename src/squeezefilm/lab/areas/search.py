@@ -147,15 +147,15 @@ class SearchArea:
         return self._message()
 
     async def _stop(self, _: Request) -> Answer:
-        one = self._search
-        if one is not None and one.end is None:
-            if one.stopping:
+        running = self._search
+        if running is not None and running.end is None:
+            if running.stopping:
                 # Who presses it again does not want to wait.
                 self.process.kill()
             else:
-                one.stopping = True
+                running.stopping = True
                 self.process.stop()
-                asyncio.get_running_loop().call_later(LONGEST_STOP, self._end, one)
+                asyncio.get_running_loop().call_later(LONGEST_STOP, self._end, running)
                 self._tell_pages()
         return {"type": "stopping"}
 
@@ -164,12 +164,12 @@ class SearchArea:
             self.process.kill()
 
     async def _open(self, asked: OpenFound) -> Answer:
-        one = self._search
-        front = [] if one is None else one.found.get("front", [])
-        found = next((plate["design"] for plate in front if plate["name"] == asked.name), None)
-        if one is None or found is None:
+        running = self._search
+        front = [] if running is None else running.found.get("front", [])
+        design = next((plate["design"] for plate in front if plate["name"] == asked.name), None)
+        if running is None or design is None:
             raise InputError(f"no plate {asked.name} is on the front; search again")
-        work = display_text, one.text, self._lab.folder, found["shape"], found["values"]
+        work = display_text, running.text, self._lab.folder, design["shape"], design["values"]
         return {"type": "found display", "text": await self._lab.workers.quick.do(None, *work)}
 
     def _tell(self, message: dict[str, Any]) -> None:

@@ -219,13 +219,13 @@ class StudyArea:
         self._lab.tell({"type": "study changed", "study": study})
 
     async def _listing(self, _: Request) -> Answer:
-        found = await self.thread.do(Studies.listing)
-        return {"type": "studies", **found, "tablets": self._lab.lan is not None}
+        answer = await self.thread.do(Studies.listing)
+        return {"type": "studies", **answer, "tablets": self._lab.lan is not None}
 
     async def _enrol(self, asked: NamedStudy) -> Answer:
-        found = await self.thread.do(Studies.enrol, asked.study)
+        answer = await self.thread.do(Studies.enrol, asked.study)
         self._changed(asked.study)
-        return {"type": "study", **found}
+        return {"type": "study", **answer}
 
     async def _ultrasound(self, asked: OfParticipant) -> Answer:
         display = await self.thread.do(Studies.display_of, asked.study, asked.participant)
@@ -235,9 +235,9 @@ class StudyArea:
     async def _prepare(self, asked: PrepareSitting) -> Answer:
         display = await self.thread.do(Studies.display_of, asked.study, asked.participant)
         require_device(asked.device, display)
-        found = await self.thread.do(partial(Studies.prepare, **asked.own))
+        answer = await self.thread.do(partial(Studies.prepare, **asked.own))
         await self._release_ended()
-        return {"type": "study", **found}
+        return {"type": "study", **answer}
 
     async def _station(self, asked: OfSitting) -> Answer:
         await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
@@ -259,11 +259,11 @@ class StudyArea:
     async def _end(self, asked: OfSitting) -> Answer:
         sitting = await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
         device, lost = await self._measured_last(sitting)
-        found = await self.thread.do(Studies.end, asked.sitting, device)
-        found["problems"] += [lost] if lost else []
+        answer = await self.thread.do(Studies.end, asked.sitting, device)
+        answer["problems"] += [lost] if lost else []
         await self._release_ended()
         self._lab.tell({"type": "sitting ended", "sitting": asked.sitting}, participants=True)
-        return {"type": "study", **found}
+        return {"type": "study", **answer}
 
     async def _delete(self, asked: DeleteParticipant) -> Answer:
         if asked.confirm != asked.participant:
@@ -271,14 +271,14 @@ class StudyArea:
         for sitting in await self.thread.do(lambda studies: studies.sittings.of_study(asked.study)):
             if sitting.participant == asked.participant:
                 await self._devices.release(sitting.id)
-        found = await self.thread.do(Studies.delete, asked.study, asked.participant)
+        answer = await self.thread.do(Studies.delete, asked.study, asked.participant)
         self._changed(asked.study)
-        return {"type": "study", **found}
+        return {"type": "study", **answer}
 
     async def _rehearse(self, asked: RehearseStudy) -> Answer:
-        found = await self._of_file(asked, None, rehearsed, asked.participants)
+        answer = await self._of_file(asked, None, rehearsed, asked.participants)
         self._changed(asked.study)
-        return {"type": "rehearsed", **found}
+        return {"type": "rehearsed", **answer}
 
     async def _analyze(self, asked: NamedStudy) -> Answer:
         return {"type": "analysis", **await self._of_file(asked, "analysis", analysis_of)}
@@ -305,8 +305,8 @@ class StudyArea:
             return await self._measured(sitting), ""
         except (DeviceError, InputError) as error:
             lost = f"the device could not be verified: {error}"
-            found = DeviceVerification(measurable=False, remark=lost)
-            return Measured(DeviceIdentity(sitting.device.partition(":")[0]), found), lost
+            verification = DeviceVerification(measurable=False, remark=lost)
+            return Measured(DeviceIdentity(sitting.device.partition(":")[0]), verification), lost
 
     async def _release_ended(self) -> None:
         for held in self._devices.holders():
@@ -326,20 +326,20 @@ class StudyArea:
                 seen = await self._exposed(
                     await self.thread.do(Studies.display_of_sitting, sitting.id)
                 )
-            found = await self.thread.do(Studies.consent, asked.sitting, seen, device)
+            answer = await self.thread.do(Studies.consent, asked.sitting, seen, device)
         except BaseException:
             await self._devices.release(sitting.id)
             raise
         self._changed(sitting.study)
-        return {"type": "where", **found}
+        return {"type": "where", **answer}
 
     async def _present(self, asked: OfSitting) -> Answer:
-        found = await self.thread.do(Studies.present, asked.sitting)
-        study = found.pop("study", None)
+        answer = await self.thread.do(Studies.present, asked.sitting)
+        study = answer.pop("study", None)
         if study is not None:
             # Who presents by hand is told what; the participant's page is not.
             self._changed(study)
-        return {"type": "where", **found}
+        return {"type": "where", **answer}
 
     async def _feel(self, asked: FeelSurface) -> Answer:
         sitting = await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
@@ -378,10 +378,10 @@ class StudyArea:
             felt = await self._devices.felt(asked.sitting, asked.token)
         told = asked.model_dump(exclude={"id", "type", "sitting", "token"})
         response = Response(**told, explorations=felt)
-        found = await self.thread.do(Studies.respond, asked.sitting, asked.token, response)
+        answer = await self.thread.do(Studies.respond, asked.sitting, asked.token, response)
         self._devices.answered(asked.sitting, asked.token)
-        self._changed(found.pop("study"))
-        return {"type": "acknowledged", **found}
+        self._changed(answer.pop("study"))
+        return {"type": "acknowledged", **answer}
 
 
 def _exposure(display: str) -> Exposure:

@@ -31,13 +31,13 @@ def allowed(text: str, path: str) -> str:
     Raises `ConfigError` for a text that is no display, `InputError` for a path that is not there.
     """
     display = display_of(text)
-    found = next(
+    described = next(
         (leaf for leaf in leaves(display) if ".".join(map(str, leaf[0])) == path),
         None,
     )
-    if found is None:
+    if described is None:
         raise InputError(f"the display has no value at '{path[:200]}'; open it again")
-    place, value, annotation, _ = found
+    place, value, annotation, _ = described
     unit = si.unit_of(stated(annotation))
     whole = isinstance(value, int) and not isinstance(value, bool)
     if (unit is None and not whole) or choices(stated(annotation)):

@@ -168,10 +168,10 @@ def banded(point: WorkingPoint, quality: str, samples: int = 64) -> dict[str, An
     display = display_of(point.edited())
     p = predicted(display, quality, point)
     amplitude = np.linspace(0.0, max(2.0 * p.vibration_amplitude, _LEAST_SPAN), _POINTS)
-    found: dict[str, Any] = to_json(
+    band: dict[str, Any] = to_json(
         friction_band(display, p, amplitude[::3], samples=samples, progress=tell)
     )
-    return found
+    return band
 
 
 def predicted(display: Display, quality: str, point: WorkingPoint) -> Prediction:
@@ -206,16 +206,16 @@ def _area(display: Display, p: Prediction) -> dict[str, Any] | None:
     area = active_area(display, p) if solved else None
     if area is None:
         return None
-    found = {**area.summary(), "said": area.sentence, "map": None}
+    shown = {**area.summary(), "said": area.sentence, "map": None}
     if area.relative_friction is not None:
         every = [max(-(-size // _MAP), 1) for size in area.relative_friction.shape]
         thin = area.relative_friction[:: every[0], :: every[1]].T
-        found["map"] = {
+        shown["map"] = {
             "columns": thin.shape[1],
             "rows": thin.shape[0],
             "relative_friction": to_json(np.round(thin.ravel(), 4)),
         }
-    return found
+    return shown
 
 
 def _paper(p: Prediction, amplitude: si.FloatArray) -> si.FloatArray:
@@ -302,8 +302,8 @@ def calibration_of(display: Display) -> dict[str, Any] | None:
     record = display.calibration
     if record is None:
         return None
-    found: dict[str, Any] = to_json(dataclasses.replace(record, answers=()))
-    return found | {
+    values: dict[str, Any] = to_json(dataclasses.replace(record, answers=()))
+    return values | {
         "sentence": record.sentence,
         "responses": _responses(record),
         "frictions": [
@@ -322,7 +322,7 @@ def _responses(record: CalibrationRecord) -> list[dict[str, Any]]:
     by_recording: dict[str, dict[str, ComparedAnswer]] = {}
     for answer in record.compared:
         by_recording.setdefault(answer.recording, {})[answer.said] = answer
-    found = []
+    responses = []
     for name, answers in by_recording.items():
         if not {_FREQUENCY, _AMPLITUDE} <= set(answers):
             continue
@@ -334,8 +334,8 @@ def _responses(record: CalibrationRecord) -> list[dict[str, Any]]:
             }
         except QuantityError:
             continue  # words that somebody changed are shown as they are, and no point is drawn
-        found.append(point)
-    return found
+        responses.append(point)
+    return responses
 
 
 def _quantity(answer: ComparedAnswer, unit: str) -> list[float | None]:

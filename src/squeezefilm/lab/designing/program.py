@@ -122,10 +122,10 @@ def feel(asked: TextureOnDisplay) -> dict[str, Any]:
         factors = wave_factors(display, p)
         along = np.linspace(0.0, 2 * p.mode.half_wavelength, 129)
         across = actuator.lines_across == "width"
-        found = factors.factor(0.0, along) if across else factors.factor(along, 0.0)
+        share = factors.factor(0.0, along) if across else factors.factor(along, 0.0)
         wave = {
             "period_m": 2 * p.mode.half_wavelength,
-            "factor": (found / factor_of_law(p, factors)).tolist(),
+            "factor": (share / factor_of_law(p, factors)).tolist(),
             "along": "y" if across else "x",
         }
     pad = display.finger.fingerpad

@@ -114,8 +114,8 @@ class StudyDevices:
             held = await self._taken(sitting, kind, display, traces)
             await self._silence(held)
             held.forget()
-            found = await self._on(held, held.device.verify_device)
-            return Measured(await self._on(held, held.device.identity), found)
+            verification = await self._on(held, held.device.verify_device)
+            return Measured(await self._on(held, held.device.identity), verification)
 
     async def present(
         self,

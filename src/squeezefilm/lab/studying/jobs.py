@@ -22,7 +22,7 @@ def analysis_of(path: Path) -> dict[str, Any]:
 
     with StudyStore.open(path) as store:
         answers = sum(participant["answered"] for participant in store.participants())
-        found = analyze_study(store)
+        analyses = analyze_study(store)
     return {
         "answers": answers,
         "displays": [
@@ -39,7 +39,7 @@ def analysis_of(path: Path) -> dict[str, Any]:
                     if key != "confusion"
                 ],
             }
-            for display, one in found.items()
+            for display, one in analyses.items()
         ],
     }
 
@@ -90,6 +90,6 @@ def report_of(path: Path) -> dict[str, Any]:
     from squeezefilm.study.report.page import write_overview
 
     with StudyStore.open(path) as store:
-        found = analyze_study(store)
-    page = write_overview(found, path.with_suffix(".results"))
+        analyses = analyze_study(store)
+    page = write_overview(analyses, path.with_suffix(".results"))
     return {"pages": [str(page.relative_to(path.parent.parent))]}

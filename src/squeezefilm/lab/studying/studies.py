@@ -78,12 +78,12 @@ class Studies:
 
     def plan(self, design: str) -> dict[str, Any]:
         """Message of what a design is and how long it takes."""
-        found = load_design(design)
+        loaded = load_design(design)
         return {
-            **described(found),
-            "trials": trial_count(found),
-            "duration_s": expected_duration(found),
-            "consent": CONSENT.format(minutes=round(expected_duration(found) / 60)),
+            **described(loaded),
+            "trials": trial_count(loaded),
+            "duration_s": expected_duration(loaded),
+            "consent": CONSENT.format(minutes=round(expected_duration(loaded) / 60)),
         }
 
     def create(self, design: str, study: str, seed: int) -> dict[str, Any]:
@@ -259,10 +259,10 @@ class Studies:
         sitting = self.sittings.get(id)
         if sitting.ended:
             raise InputError("this sitting has ended")
-        found = self.run(sitting).next_trial(shown=False)
-        if found is None or found.token != token:
+        trial = self.run(sitting).next_trial(shown=False)
+        if trial is None or trial.token != token:
             raise InputError("this trial is not the one to be presented now; go on with the next")
-        virtual = isinstance(found.surfaces[0], Stimulus)
+        virtual = isinstance(trial.surfaces[0], Stimulus)
         if virtual and sitting.device == "none":
             self.by_hand.wait(id, token, place)
             return "by hand"
@@ -275,8 +275,8 @@ class Studies:
         presented. Returns the study and the surface's place. Raises `InputError` for none."""
         sitting = self.sittings.get(id)
         token, place = self.by_hand.in_place(id)
-        found = self.run(sitting).next_trial(shown=False)
-        if found is None or found.token != token:
+        trial = self.run(sitting).next_trial(shown=False)
+        if trial is None or trial.token != token:
             raise InputError("the trial whose surface was waited for is over")
         if place == 0:
             self.run(sitting).next_trial()
@@ -290,10 +290,10 @@ class Studies:
         trial, surfaces = self.run(sitting).presented(token)
         if not 0 <= place < len(surfaces):
             raise InputError(f"trial {trial.number} has {len(surfaces)} surfaces; asked: {place}")
-        found = surfaces[place]
-        if not isinstance(found, Stimulus):
-            raise InputError(f"'{found.name}' is a real grating; no device plays it")
-        return found, trial.seed
+        stimulus = surfaces[place]
+        if not isinstance(stimulus, Stimulus):
+            raise InputError(f"'{stimulus.name}' is a real grating; no device plays it")
+        return stimulus, trial.seed
 
     def needs_device(self, id: str, token: str) -> bool:
         """True where an answer to this trial needs a device that played it: not one that is
@@ -339,8 +339,8 @@ class Studies:
         sitting = self.sittings.get(id)
         problems: tuple[str, ...] = ()
         if sitting.session is not None and not sitting.ended:
-            found = end_session(self.store(sitting.study), sitting.session, device)
-            problems = found.problems
+            verification = end_session(self.store(sitting.study), sitting.session, device)
+            problems = verification.problems
         self.sittings.change(id, ended=True)
         self._runs.pop(id, None)
         self.by_hand.over(id)
@@ -351,8 +351,8 @@ class Studies:
         for sitting in self.sittings.of_study(name):
             if sitting.participant == participant:
                 self._runs.pop(sitting.id, None)
-        found = delete_participant(self.store(name), participant)
-        return {"deleted": to_json(found), **self.status(name)}
+        deleted = delete_participant(self.store(name), participant)
+        return {"deleted": to_json(deleted), **self.status(name)}
 
     def export(self, study: str, format: str) -> dict[str, Any]:
         """Export a study beside its file; `zip` holds the same in base64, for a link."""
@@ -369,8 +369,8 @@ class Studies:
         path = existing(self.folder, other, SUFFIX)
         if other in self._open:
             self._open.pop(other).close()
-        found = merge(self.store(study), path)
-        return {"merged": to_json(found), **self.status(study)}
+        merged = merge(self.store(study), path)
+        return {"merged": to_json(merged), **self.status(study)}
 
     def run(self, sitting: Sitting) -> StudyRun:
         """The run of a sitting that was consented to."""

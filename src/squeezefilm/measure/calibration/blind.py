@@ -257,12 +257,12 @@ def _of_plate(
     many = np.repeat(np.array(drawn), 32, axis=0)
     # One kind at a time is asked: which of the scales does not matter.
     off = scales_of(random.normal(size=(len(many), len(KINDS))))[:, 0]
-    found = {}
+    answers = {}
     for prediction in wanted:
         column = many[:, asked.index(asked_by(prediction))]
         error = off * BELIEVED[prediction.answer] * random.normal(size=len(many))
-        found[id(prediction)] = column * np.exp(error)
-    return found
+        answers[id(prediction)] = column * np.exp(error)
+    return answers
 
 
 def _touched(seen: Observation) -> Touching:

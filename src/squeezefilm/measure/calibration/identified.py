@@ -211,7 +211,7 @@ def ranked(
     rows = random.choice(np.flatnonzero(known), min(_TRUTHS, int(known.sum())), replace=False)
     width = float(np.diff(np.quantile(friction[known], _TAILS))[0])
     noise = random.normal(size=rows.size)
-    found = [
+    measurements = [
         NextMeasurement(
             option.name,
             option.accuracy,
@@ -219,7 +219,7 @@ def ranked(
         )
         for option in options
     ]
-    return tuple(sorted(found, key=lambda option: option.left))
+    return tuple(sorted(measurements, key=lambda option: option.left))
 
 
 def _left(

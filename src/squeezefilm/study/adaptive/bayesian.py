@@ -197,9 +197,9 @@ def _nodes(design: AdaptiveDesign) -> list[si.FloatArray]:
 @functools.lru_cache(maxsize=8)
 def _table(design: AdaptiveDesign) -> si.FloatArray:
     """ψ of every cell at the stimuli: (cells, stimuli), for everybody whose design it is."""
-    found = _probabilities(design, on_axis(np.array(design.stimuli), design.axis))
-    found.flags.writeable = False
-    return found
+    probabilities = _probabilities(design, on_axis(np.array(design.stimuli), design.axis))
+    probabilities.flags.writeable = False
+    return probabilities
 
 
 def _probabilities(design: AdaptiveDesign, places: si.FloatArray) -> si.FloatArray:

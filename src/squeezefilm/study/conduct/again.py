@@ -63,15 +63,15 @@ def _copied(write: sqlite3.Connection, trials: Sequence[Row]) -> list[str]:
     query = "SELECT max(number) FROM trial WHERE participant = ?"
     [last] = write.execute(query, [who]).fetchone()
     columns = [row[1] for row in write.execute("PRAGMA table_info(trial)")]
-    found = []
+    copies = []
     for count, planned in enumerate(trials):
         row: dict[str, Any] = {name: planned[name] for name in columns}
         row |= {"uuid": str(uuid.uuid4()), "number": last + count + 1}
         # The rest was before the first of the block; a copy has it only where it begins again.
         row["pause_s"] = planned["pause_s"] if count == 0 and len(trials) > 1 else 0.0
         insert(write, "trial", row)
-        found.append(row["uuid"])
-    return found
+        copies.append(row["uuid"])
+    return copies
 
 
 def practise_again(write: sqlite3.Connection, design: StudyDesign, who: str, display: str) -> str:
@@ -135,9 +135,9 @@ def restart_block(store: StudyStore, who: str, session: str, row: Row) -> None:
 
 def why_begun_again(store: StudyStore, session: str) -> str:
     """Reason why a session began with a block of before, for the experimenter; empty without."""
-    found = store.rows(
+    rows = store.rows(
         "SELECT a.reason, count(r.trial) AS answers FROM set_aside a LEFT JOIN response r "
         "ON r.trial = a.trial WHERE a.session = ? GROUP BY a.reason",
         [session],
     )
-    return "; ".join(f"{row['reason']}: {row['answers']} answers are set aside" for row in found)
+    return "; ".join(f"{row['reason']}: {row['answers']} answers are set aside" for row in rows)

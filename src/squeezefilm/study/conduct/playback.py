@@ -258,8 +258,8 @@ def named(surface: Playable) -> Surface:
     """A surface with what it is called, in records and markers."""
     if isinstance(surface, Stimulus):
         return surface
-    found = TextureFile.of(surface)
-    return found if found.title else TextureFile(found.texture, found.texture.quantity)
+    texture = TextureFile.of(surface)
+    return texture if texture.title else TextureFile(texture.texture, texture.texture.quantity)
 
 
 def utc_of(moment: si.Second) -> str:

@@ -135,8 +135,8 @@ class SessionDevice:
             DeviceError: a device that is not there, refuses or faults, or a finger that stays.
         """
         self._require_silence()
-        found: DeviceVerification = self._asked(("verify",), "verified")[1]
-        return found
+        verification: DeviceVerification = self._asked(("verify",), "verified")[1]
+        return verification
 
     def prepare(self, surface: Surface) -> None:
         """Solve, compile and start what a surface needs, so that `present` need not.
@@ -253,12 +253,12 @@ class SessionDevice:
                     f"the process that plays said nothing for {limit:g} s and is ended; the "
                     "device stops by its own watchdog"
                 )
-            found: tuple[Any, ...] = connection.recv()
+            message: tuple[Any, ...] = connection.recv()
         except (EOFError, OSError) as error:
             raise DeviceError(
                 "the process that plays ended without a word; the device stops by its own watchdog"
             ) from error
-        return found
+        return message
 
     def _running(self) -> Connection:
         if self._connection is None or not self._process.is_alive():

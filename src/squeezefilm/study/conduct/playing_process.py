@@ -217,8 +217,8 @@ class Bench:
         orders = self._orders
         if not self._stream or (orders.drive == "twin" and self._finger != finger):
             self._twin.close()
-            found = device_stream(orders.drive, orders.target, orders.settings, finger, None)
-            self._stream = self._twin.enter_context(found)
+            stream = device_stream(orders.drive, orders.target, orders.settings, finger, None)
+            self._stream = self._twin.enter_context(stream)
             self._finger = finger
         return self._stream
 
@@ -284,9 +284,9 @@ def explored(trace: Trace, name: str) -> TrialMotion:
     length = speed = math.nan
     touched = 0.0
     if samples > 1:
-        found = explored_table(table)
-        speed, touched = found.mean_speed, found.touched
-        length = found.path_length if touched else math.nan
+        exploration = explored_table(table)
+        speed, touched = exploration.mean_speed, exploration.touched
+        length = exploration.path_length if touched else math.nan
     return TrialMotion(
         path_length=length,
         mean_speed=speed,

@@ -115,18 +115,18 @@ def _responses(study: SimulatedStudy, person: int) -> dict[int, Response]:
     answers = study.answers
     names, mine = answers.design.answers, answers.participant == person
     asked = [trial.number for trial in trials(answers.design, person, study.seed) if trial.asks]
-    found = {}
+    responses = {}
     for at in np.flatnonzero(mine):
         number = int(answers.number[at])
         # What was matched is numbered among the trials that ask.
         number = number if study.matches is None else asked[number - 1]
         estimate = float(answers.estimate[at])
-        found[number] = Response(
+        responses[number] = Response(
             choice=names[answers.choice[at]] if answers.choice[at] >= 0 else "",
             estimate=None if math.isnan(estimate) else estimate,
             response_time=float(answers.response_time[at]),
         )
-    return found
+    return responses
 
 
 # Of surfaces that are kept with what a hand left on them.
@@ -157,12 +157,12 @@ class _Hand:
         """Exploration of each virtual surface; none where the design's rules would not let it
         count, for the hand would break them again."""
         display = presentation.trial.display
-        found = tuple(
+        motions = tuple(
             self._motion(display, surface)
             for surface in presentation.surfaces
             if isinstance(surface, Stimulus)
         )
-        return () if spoiled_by(self._design, found) else found
+        return () if spoiled_by(self._design, motions) else motions
 
     def _motion(self, display: str, surface: Stimulus) -> TrialMotion:
         key = display, id(surface)

@@ -101,11 +101,11 @@ class StudyRun:
     def __init__(
         self, store: StudyStore, session: str, *, clock: Callable[[], si.Second] = time.monotonic
     ) -> None:
-        found = store.rows("SELECT * FROM session WHERE uuid = ?", [session])
-        if not found:
+        rows = store.rows("SELECT * FROM session WHERE uuid = ?", [session])
+        if not rows:
             raise InputError(f"there is no session {session} in {store.path}; begin one first")
         self._store = store
-        self._session = found[0]
+        self._session = rows[0]
         self._presented: str | None = None
         self._clock = clock
         # The trial with a break before it, what was left of that, and when that was seen.
@@ -135,12 +135,12 @@ class StudyRun:
     @property
     def remaining(self) -> int:
         """Trials without an answer."""
-        found = self._store.rows(
+        rows = self._store.rows(
             "SELECT count(*) - count(r.trial) AS n FROM trial t LEFT JOIN response r "
             f"ON r.trial = t.uuid WHERE t.participant = ? AND {COUNTED}",
             [self.participant],
         )
-        return int(found[0]["n"])
+        return int(rows[0]["n"])
 
     def next_trial(self, *, shown: bool = True) -> Presentation | None:
         """The trial to present now; None if none is left on this display.
@@ -269,18 +269,18 @@ class StudyRun:
         return min(max(whole - gone.total_seconds(), 0.0), whole)
 
     def _planned(self, token: str) -> dict[str, Any]:
-        found = self._store.rows(
+        rows = self._store.rows(
             "SELECT * FROM trial WHERE uuid = ? AND participant = ?", [token, self.participant]
         )
-        if not found:
+        if not rows:
             raise InputError("this token belongs to no trial of this participant")
-        return found[0]
+        return rows[0]
 
     def _recorded(self, planned: Row) -> Acknowledgement | None:
-        found = self._store.rows("SELECT * FROM response WHERE trial = ?", [planned["uuid"]])
-        if not found:
+        rows = self._store.rows("SELECT * FROM response WHERE trial = ?", [planned["uuid"]])
+        if not rows:
             return None
-        row = found[0]
+        row = rows[0]
         aside = self._store.rows("SELECT reason FROM set_aside WHERE trial = ?", [planned["uuid"]])
         return Acknowledgement(
             number=planned["number"],

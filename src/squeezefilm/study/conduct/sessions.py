@@ -188,14 +188,14 @@ def next_planned(store: StudyStore, participant: str) -> Row | None:
 
     Trials come as `PLACED` says.
     """
-    found = store.rows(
+    rows = store.rows(
         f"WITH mine AS ({PLACED} WHERE participant = ?) "
         "SELECT t.*, (SELECT count(*) FROM presentation p WHERE p.trial = t.uuid) AS presentations "
         "FROM mine t LEFT JOIN response r ON r.trial = t.uuid "
         f"WHERE r.trial IS NULL AND {COUNTED} ORDER BY t.begun, t.number LIMIT 1",
         [participant],
     )
-    return found[0] if found else None
+    return rows[0] if rows else None
 
 
 def begin_session(

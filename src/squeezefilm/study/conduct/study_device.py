@@ -62,7 +62,7 @@ class DeviceVerification:
         is off."""
         if not self.measurable:
             return ()
-        found = []
+        sentences = []
         for name, quantity, tolerance, unit in (
             ("amplitude", "amplitude", self.amplitude_tolerance, si.Unit("m")),
             ("resonance", "resonance_frequency", self.resonance_tolerance, si.Unit("Hz")),
@@ -70,11 +70,11 @@ class DeviceVerification:
             measured, expected = getattr(self, quantity), getattr(self, f"expected_{quantity}")
             # Written so that a NaN measured is off; one expected is nothing to compare with.
             if not math.isnan(expected) and not abs(measured - expected) <= tolerance * expected:
-                found.append(
+                sentences.append(
                     f"{name} is {si.format_quantity(measured, unit)}; it must be within "
                     f"{100 * tolerance:g} % of {si.format_quantity(expected, unit)}"
                 )
-        return tuple(found)
+        return tuple(sentences)
 
     @property
     def passed(self) -> bool:

@@ -180,9 +180,9 @@ def _attended(store: StudyStore, who: str, display: str) -> str:
     )
     if not found["asked"]:
         return ""
-    one = judged(who, int(found["right"]), found["asked"])
-    said = f"; {one.right} of {one.asked} catch trials right"
-    return said if one.attended else f"{said}: CAUTION, fewer than of somebody who attends"
+    catches = judged(who, int(found["right"]), found["asked"])
+    said = f"; {catches.right} of {catches.asked} catch trials right"
+    return said if catches.attended else f"{said}: CAUTION, fewer than of somebody who attends"
 
 
 def _sitting(conditions: Path | None, consent: bool) -> SessionConditions:
@@ -228,18 +228,18 @@ def _device(
 
     if drive != "rehearsal":
         require_study_drive(drive)
-    found = load_display(display)
+    loaded = load_display(display)
     duration = expected_duration(store.design) / len(store.design.displays)
-    exposed = exposure(found, duration, progress=tell)
+    exposed = exposure(loaded, duration, progress=tell)
     if drive == "rehearsal":
         tell("the twin's working point")
         if store.design.exploring == "free":
-            return StudyTwin(found, hand=Hand(_free_path(found), begin=0.05, repeats=1)), exposed
-        return StudyTwin(found), exposed
+            return StudyTwin(loaded, hand=Hand(_free_path(loaded), begin=0.05, repeats=1)), exposed
+        return StudyTwin(loaded), exposed
     stroke = EXPLORING
     if drive == "twin" and store.design.exploring == "free":
         folder = closing.enter_context(tempfile.TemporaryDirectory())
-        stroke = str(_written(_free_path(found), Path(folder) / "hand.csv"))
+        stroke = str(_written(_free_path(loaded), Path(folder) / "hand.csv"))
     device = SessionDevice(
         display, drive, store.traces, amplitude_per_pickup=amplitude_per_pickup, stroke=stroke
     )

@@ -41,13 +41,13 @@ class Board:
     @property
     def says(self) -> str:
         """Words for the length that the study calls period."""
-        one = self.grating
+        grating = self.grating
         asked, period = (
-            si.format_quantity(x, si.Unit("m"), 4) for x in (one.spatial_period, one.period)
+            si.format_quantity(x, si.Unit("m"), 4) for x in (grating.spatial_period, grating.period)
         )
-        if one.period_means == "period":
-            return f"'{one.name}': the study's {asked} is the whole period, groove plus ridge"
-        return f"'{one.name}': the study's {asked} is the groove width; the period is {period}"
+        if grating.period_means == "period":
+            return f"'{grating.name}': the study's {asked} is the whole period, groove plus ridge"
+        return f"'{grating.name}': the study's {asked} is the groove width; the period is {period}"
 
 
 def board_of(grating: Grating) -> Board:

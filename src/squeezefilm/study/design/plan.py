@@ -53,8 +53,8 @@ class StudyPlan(Result):
     @property
     def assumed(self) -> tuple[str, ...]:
         """Keys of the file whose values it says are assumed."""
-        found = self.design.provenance.items()
-        return tuple(key for key, one in found if one.evidence == "assumed")
+        sources = self.design.provenance.items()
+        return tuple(key for key, one in sources if one.evidence == "assumed")
 
     def summary(self) -> dict[str, Any]:
         """The JSON of ``--json``; keys carry units."""

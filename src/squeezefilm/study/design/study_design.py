@@ -383,12 +383,12 @@ def load_design(name_or_path: str | Path) -> StudyDesign:
     from squeezefilm.core import config, presets
 
     path = presets.resolve_study(name_or_path)
-    found = config.load(StudyDesign, path)
+    design = config.load(StudyDesign, path)
     try:
-        stimuli = with_images(found.stimuli, path.parent)
+        stimuli = with_images(design.stimuli, path.parent)
     except InputError as error:
         raise ConfigError(str(error), file=path, key=error.quantity or "file") from error
-    return found if stimuli is found.stimuli else dataclasses.replace(found, stimuli=stimuli)
+    return design if stimuli is design.stimuli else dataclasses.replace(design, stimuli=stimuli)
 
 
 NamedDesign = Annotated[StudyDesign, ReadBy(load_design)]

@@ -123,14 +123,14 @@ def orders(
         random = _random(seed, _ORDERS, participant_number)
         return tuple(tuple(random.permutation(count).tolist()) for _ in range(repetitions))
     square = williams_square(count) if order == "williams" else latin_square(count)
-    found = []
+    planned_orders = []
     for repetition in range(repetitions):
         cycle, place = divmod(repetition, len(square))
         random = _random(seed, _ORDERS, cycle)
         relabelled, rows = random.permutation(count), random.permutation(len(square))
         row = square[rows[(participant_number + place) % len(square)]]
-        found.append(tuple(int(relabelled[label]) for label in row))
-    return tuple(found)
+        planned_orders.append(tuple(int(relabelled[label]) for label in row))
+    return tuple(planned_orders)
 
 
 def conditions(design: StudyDesign) -> tuple[Condition, ...]:
@@ -258,7 +258,7 @@ def _blocks(
     spread = _random(seed, _SPREAD, participant, place)
     catches = [trial for trial in design.catch for _ in range(trial.count)]
     where = spread.integers(0, design.blocks, len(catches))
-    found = []
+    blocks = []
     for block in range(design.blocks):
         mine = rows[block * design.repetitions : (block + 1) * design.repetitions]
         queue: list[tuple[Phase, Condition, str]] = [
@@ -268,8 +268,8 @@ def _blocks(
             # Never the first trial of a block: people are still settling.
             at = int(spread.integers(1, len(queue) + 1))
             queue.insert(at, ("catch", design.catch_condition(trial), trial.answer))
-        found.append(queue)
-    return found
+        blocks.append(queue)
+    return blocks
 
 
 def _adaptive_trials(

@@ -158,11 +158,11 @@ def touches(
     """The paths (s, m) of a trace between lifts: a step longer than `longest_step` (s) is a lift.
     A touch without any motion is left out."""
     cuts = np.flatnonzero(np.diff(time) > longest_step) + 1
-    touches_of_trace = []
+    runs = []
     for rows in np.split(np.arange(time.size), cuts):
         if rows.size > 1 and (np.any(np.diff(x[rows])) or np.any(np.diff(y[rows]))):
-            touches_of_trace.append(FingerPath(time[rows], x[rows], y[rows]))
-    return tuple(touches_of_trace)
+            runs.append(FingerPath(time[rows], x[rows], y[rows]))
+    return tuple(runs)
 
 
 @si.checked_numbers

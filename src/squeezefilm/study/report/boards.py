@@ -102,7 +102,7 @@ HEAD = ("Board", "Period", "Ridge", "Groove", "Ridges", "Ridge height", "Board s
 """Head of `board_rows`."""
 
 
-def board_rows(boards_of_design: tuple[Board, ...], tolerance: si.Metre) -> list[tuple[str, ...]]:
+def board_rows(all_boards: tuple[Board, ...], tolerance: si.Metre) -> list[tuple[str, ...]]:
     """Rows of what is to be made, as texts."""
     within = f"± {shown(tolerance, M, 2)}"
     return [
@@ -116,7 +116,7 @@ def board_rows(boards_of_design: tuple[Board, ...], tolerance: si.Metre) -> list
             f"{shown(board.grating.length, M, 4)} × {shown(board.grating.width, M, 4)}",
             board.grating.material,
         )
-        for board in boards_of_design
+        for board in all_boards
     ]
 
 

@@ -222,12 +222,12 @@ def screening(search: DesignSearch) -> Figure:
 def _screening_axes(
     axes: Axes, search: DesignSearch, name: str, pairs: Sequence[tuple[Evaluated, Evaluated]]
 ) -> None:
-    one = criterion_of(name)
-    values = np.array([[e.numbers.get(one.key, math.nan) for e in pair] for pair in pairs])
+    criterion = criterion_of(name)
+    values = np.array([[e.numbers.get(criterion.key, math.nan) for e in pair] for pair in pairs])
     shape = np.array([pair[0].design.shape for pair in pairs])
     good = np.isfinite(values).all(axis=1)
     values, shape = values[good], shape[good]
-    factor, symbol = scaled(values.ravel(), one.unit)
+    factor, symbol = scaled(values.ravel(), criterion.unit)
     for number, space in enumerate(search.requirements.spaces):
         here = factor * values[shape == number]
         look: dict[str, Any] = {
@@ -243,9 +243,9 @@ def _screening_axes(
         axes.plot(ends, ends, **style.REFERENCE)
     axes.set(xlabel=labelled("screened", symbol), ylabel=labelled("solved", symbol))
     axes.locator_params(axis="x", nbins=4)
-    known = [c for c in search.corrections if c is not None and one.key in c.raw]
-    off = f"\noff by {si.percent(max(c.raw[one.key] for c in known), 1)}" if known else ""
-    axes.set_title(f"{one.said}{off}")
+    known = [c for c in search.corrections if c is not None and criterion.key in c.raw]
+    off = f"\noff by {si.percent(max(c.raw[criterion.key] for c in known), 1)}" if known else ""
+    axes.set_title(f"{criterion.said}{off}")
 
 
 @style.drawn

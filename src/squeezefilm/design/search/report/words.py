@@ -278,10 +278,10 @@ def _effect(objective: str, value: float | None) -> str:
         return "not known"
     if value == 0:
         return "none"
-    one = criterion_of(objective)
-    if one.unit.symbol == "1" and abs(value) < _LEAST:
+    criterion = criterion_of(objective)
+    if criterion.unit.symbol == "1" and abs(value) < _LEAST:
         return f"less than {_LEAST:g}"
-    return signed(value, one.unit, 2)
+    return signed(value, criterion.unit, 2)
 
 
 def reference_sentences(search: DesignSearch) -> list[str]:

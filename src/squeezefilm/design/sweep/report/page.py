@@ -54,7 +54,7 @@ def wishes(
     """
     asked = [(name, unit) for name, unit in asked if name.partition(".")[0] != FOLLOWED]
     by_name = {key: name for name, unit in asked for key in (name, name.removesuffix(unit.suffix))}
-    found: dict[str, int] = {}
+    directions: dict[str, int] = {}
     for option, texts, sign in (("less", less, 1), ("more", more, -1)):
         for name in (part.strip() for text in texts for part in text.split(",")):
             if name.partition(".")[0] == FOLLOWED:
@@ -70,10 +70,10 @@ def wishes(
                     f"are: {', '.join(name for name, _ in asked)}",
                     quantity=option,
                 )
-            if by_name[name] in found:
+            if by_name[name] in directions:
                 raise InputError(f"{name} is wished for twice; say it once, as less or as more")
-            found[by_name[name]] = sign
-    return tuple(found.items())
+            directions[by_name[name]] = sign
+    return tuple(directions.items())
 
 
 def sweep_page(

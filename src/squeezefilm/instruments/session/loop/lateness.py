@@ -107,14 +107,14 @@ class Lateness:
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values: the fields, and the figures that people ask for."""
-        found: dict[str, Any] = to_json(self)
+        values: dict[str, Any] = to_json(self)
         figures: dict[str, float] = {
             "share_made": self.share_made,
             "p50_s": self.p50,
             "p99_s": self.p99,
             "p99_9_s": self.p99_9,
         }
-        return {**found, **to_json(figures)}
+        return {**values, **to_json(figures)}
 
     @classmethod
     def from_json(cls, values: Mapping[str, Any]) -> Lateness:

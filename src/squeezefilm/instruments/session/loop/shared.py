@@ -64,9 +64,9 @@ def shared_views(memory: mmap.mmap | bytearray) -> Shared:
 
     def part(kind: Any, *shape: int) -> si.Array:
         nonlocal place
-        found = np.frombuffer(memory, kind, int(np.prod(shape)), place).reshape(shape)
-        place += -(-found.nbytes // 64) * 64
-        return found
+        array = np.frombuffer(memory, kind, int(np.prod(shape)), place).reshape(shape)
+        place += -(-array.nbytes // 64) * 64
+        return array
 
     control = part(np.int64, CONTROL_SIZE)
     histogram = part(np.int64, lateness.CLASSES)

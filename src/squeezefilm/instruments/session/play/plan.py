@@ -139,14 +139,14 @@ def _amplitudes(program: Program, places: si.FloatArray, speed: si.MetrePerSecon
     """The texture's amplitudes at places along x (µm) for a speed (m/s), each by itself."""
     # Divided, not multiplied by 1e-6: so a whole number of µm is the same float as in a texture.
     x = places / 1e6
-    found = render(program, x, 0.0, speed, np.arange(x.size, dtype=float))
-    met = found.counters
+    amplitudes = render(program, x, 0.0, speed, np.arange(x.size, dtype=float))
+    met = amplitudes.counters
     if met.unreachable or met.faults:
         raise UnreachableError(
             f"at {met.unreachable + met.faults} of {x.size} places on the tile the texture wants "
             "what the display cannot reach; change its ends or the tile's place"
         )
-    return found.amplitude
+    return amplitudes.amplitude
 
 
 PlayMode = Literal["stream", "tile"]

@@ -96,15 +96,15 @@ def blocks(
     at = HEADER_SIZE if header_version(data) is not None else 0
     lost_from = at
     while True:
-        found = _marker(data, at, looked_at)
-        if found < 0:
+        marker = _marker(data, at, looked_at)
+        if marker < 0:
             break
-        block = _block_at(data, found)
+        block = _block_at(data, marker)
         if block is None:
-            at = found + 1
+            at = marker + 1
             continue
-        if found > lost_from:
-            yield Gap(lost_from, found)
+        if marker > lost_from:
+            yield Gap(lost_from, marker)
         yield block
         at = lost_from = block.start + block.length + _CRC.size
     if len(data) > lost_from:
@@ -116,9 +116,9 @@ def _marker(data: bytes | mmap, at: int, looked_at: Callable[[int], object]) -> 
     heard: a file may have any length without one."""
     while at < len(data):
         looked_at(at)
-        found = data.find(MARKER, at, at + _PIECE + len(MARKER) - 1)
-        if found >= 0:
-            return found
+        place = data.find(MARKER, at, at + _PIECE + len(MARKER) - 1)
+        if place >= 0:
+            return place
         at += _PIECE
     return -1
 

@@ -102,7 +102,7 @@ def _blocks(path: Path) -> list[_Block]:
             file=path,
             line=marks[-1],
         )
-    found = []
+    blocks = []
     reader = pyuff.UFF(str(path))
     for number, (line, place) in enumerate(zip(marks[::2], places[::2], strict=True)):
         kind = data[place : place + 200].decode("latin-1").partition("\n")[2][:6].strip()
@@ -122,9 +122,9 @@ def _blocks(path: Path) -> list[_Block]:
                 file=path,
                 line=line,
             ) from error
-        found.append(_Block(int(kind), line, content))
-        _require_whole(found[-1], path)
-    return found
+        blocks.append(_Block(int(kind), line, content))
+        _require_whole(blocks[-1], path)
+    return blocks
 
 
 def _require_whole(block: _Block, path: Path) -> None:

@@ -57,8 +57,8 @@ def d_prime_of_three(correct: si.Dimensionless) -> si.Dimensionless:
     short = float(correct_of_three(_LARGEST_D_PRIME))
     if correct >= short:
         return _LARGEST_D_PRIME
-    found = brentq(lambda d: float(correct_of_three(d)) - correct, 0.0, _LARGEST_D_PRIME)
-    return float(found)
+    d_prime = brentq(lambda d: float(correct_of_three(d)) - correct, 0.0, _LARGEST_D_PRIME)
+    return float(d_prime)
 
 
 def _conditions(reference: str, others: Sequence[str]) -> tuple[Condition, ...]:
