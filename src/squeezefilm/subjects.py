@@ -1,4 +1,4 @@
-"""Whatever came out, drawn and written: which figures and which report a result has, by its type.
+"""Figures and reports by the type of a result.
 
 `plot` and `write_report` are the front door's; each draws and writes by what the folders beside
 this file have.

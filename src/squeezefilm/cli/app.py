@@ -32,7 +32,7 @@ app = typer.Typer(
 
 @dataclass(frozen=True)
 class In:
-    """Beside the type of an option: the unit in which its text is read."""
+    """Unit in which an option's text is read, to stand beside its type."""
 
     unit: str
 

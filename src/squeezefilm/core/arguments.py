@@ -20,7 +20,7 @@ _TEXTUAL = (str, list, tuple, PurePath)
 
 @dataclass(frozen=True)
 class ReadBy:
-    """Beside a type in its annotation: the function that reads such a value from text or a path."""
+    """Function that reads such a value from text or a path, to stand beside its type."""
 
     read: Callable[[Any], Any]
 

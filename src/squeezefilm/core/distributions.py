@@ -46,7 +46,7 @@ class Normal:
 @si.checked_numbers
 @dataclass(frozen=True)
 class Uniform:
-    """Anywhere between two values alike. Raises `InputError` unless low < high."""
+    """Distribution between two values, all alike. Raises `InputError` unless low < high."""
 
     low: float
     high: float

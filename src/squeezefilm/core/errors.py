@@ -66,7 +66,7 @@ class MissingPackageError(InputError):
 
 @contextlib.contextmanager
 def optional(extra: str, what: str) -> Iterator[None]:
-    """Within it an import that fails says what needs the package and which extra installs it.
+    """Let a failing import say what needs the package and which extra installs it.
 
     Raises `MissingPackageError`, also for a package whose own library cannot be loaded.
     """

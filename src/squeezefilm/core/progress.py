@@ -7,13 +7,13 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 SayProgress = Callable[[str], None]
-"""Told in words what is being done."""
+"""Function that is told in words what is being done."""
 
 CountProgress = Callable[[int, int], None]
-"""Told how many of how many are done."""
+"""Function that is told how many of how many are done."""
 
 ShareProgress = Callable[[str, float], None]
-"""Told in words what is being done, and which share of it is done, from 0 to 1."""
+"""Function that is told in words what is being done, and which share of it is done (0 to 1)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class Pace:
         return None if self.budget is None else Deadline(self.clock() + self.budget, self.clock)
 
     def share(self, first: float, last: float) -> ShareProgress | None:
-        """Whom a part of the work tells, which goes from one fraction of the whole to another."""
+        """Function that a part of the work tells, from one fraction of the whole to another."""
         return None if self.tell is None else within(self.tell, first, last)
 
 

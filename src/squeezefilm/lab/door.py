@@ -61,7 +61,7 @@ class Connection(socket.socket):
 
 
 class Door:
-    """Accepts what comes to a listener, within its limits; `protocol` serves a connection.
+    """Door for what comes to a listener, within its limits; `protocol` serves a connection.
 
     Args:
         most: connections at once; a third of them may be strangers.

@@ -39,7 +39,7 @@ _SPAWN = multiprocessing.get_context("spawn")
 
 
 Told = Callable[[str, float], None]
-"""Hears how far a piece of work is: a text and the share that is done (0 to 1)."""
+"""Function that hears how far a piece of work is: a text and the share that is done (0 to 1)."""
 _TELL_EVERY: si.Second = 0.1
 
 

@@ -259,7 +259,7 @@ def analyze_motor(
 
 
 def _tuned(motor: AssembledMotor, voltage: si.Volt) -> tuple[AveragedMotor, ...]:
-    """About the resonance, as far as the drive moves the plate under the slider."""
+    """Motors about the resonance, as far as the drive moves the plate under the slider."""
     found = []
     for share in np.linspace(1 - _DETUNED, 1 + _DETUNED, _POINTS).tolist():
         working = Working(voltage=voltage, frequency=share * motor.resonance_frequency)

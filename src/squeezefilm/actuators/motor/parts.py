@@ -11,10 +11,10 @@ from squeezefilm.core.compiled import compiled
 
 @si.checked_numbers
 class Stator(NamedTuple):
-    """Per mode: modal mass (kg), stiffness (N/m), damping (N·s/m), amplitude of the drive's force
-    (N), angular frequency (rad/s), phase (rad), and the amplitude (m) at which it is held where
-    `held` is 1. `bend` (1/m), `cube` (1/m²) and `rise` (1/m) are what the freely vibrating plate
-    adds: see `spring_at` and `damping_at`."""
+    """Modes of a stator, of each: modal mass (kg), stiffness (N/m), damping (N·s/m), amplitude of
+    the drive's force (N), angular frequency (rad/s), phase (rad), and the amplitude (m) at which it
+    is held where `held` is 1. `bend` (1/m), `cube` (1/m²) and `rise` (1/m) are what the freely
+    vibrating plate adds: see `spring_at` and `damping_at`."""
 
     mass: si.FloatArray
     stiffness: si.FloatArray
@@ -31,8 +31,8 @@ class Stator(NamedTuple):
 
 @si.checked_numbers
 class Feet(NamedTuple):
-    """Per foot and mode the motion across and along the face for 1 m of the mode, (feet, modes);
-    per foot the stiffnesses (N/m), χ (s/m) and µ."""
+    """Feet, of each and each mode the motion across and along the face for 1 m of the mode, (feet,
+    modes); per foot the stiffnesses (N/m), χ (s/m) and µ."""
 
     across: si.FloatArray
     along: si.FloatArray

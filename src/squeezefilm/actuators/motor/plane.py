@@ -51,12 +51,12 @@ class PlaneMotion:
 
     @property
     def thrust(self) -> si.NewtonArray:
-        """Along and sideways, mean over the periods of the second half (N)."""
+        """Thrust along and sideways, mean over the periods of the second half (N)."""
         return np.asarray(np.mean(self.period_thrust[self.period_thrust.shape[0] // 2 :], axis=0))
 
     @property
     def final_velocity(self) -> si.MetrePerSecondArray:
-        """Along and sideways, mean over the last tenth of the periods (m/s)."""
+        """Velocity along and sideways, mean over the last tenth of the periods (m/s)."""
         return np.asarray(
             np.mean(self.period_velocity[-max(1, len(self.period_velocity) // 10) :], 0)
         )

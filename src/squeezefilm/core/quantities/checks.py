@@ -44,8 +44,8 @@ _WITHIN: ContextVar[bool] = ContextVar("within a call that was checked", default
 
 @contextlib.contextmanager
 def outermost_checked() -> Iterator[None]:
-    """Within it, of functions that call each other only the outermost looks at its numbers: for
-    calls made hundreds of thousands of times, a third of whose time went into such looks.
+    """Check only the outermost of functions that call each other: for calls made hundreds of
+    thousands of times, a third of whose time went into such looks.
 
     The outermost answers for all within it that what comes of them is finite, and what a dataclass
     takes is checked as ever; what a function within another refuses by its annotations alone is not

@@ -67,7 +67,8 @@ class EarExposure:
 
     @property
     def standing(self) -> str:
-        """Beside the limit for the public: "below", "above", "open", or "" where there is none."""
+        """Standing by the limit for the public: "below", "above", "open", or "" where there is
+        none."""
         return next(
             (limit.standing for limit in self.limits if limit.guidance.audience == "public"), ""
         )

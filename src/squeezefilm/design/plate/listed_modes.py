@@ -1,4 +1,4 @@
-"""Driven modes as they are listed: beside their neighbours, with what to write to choose one."""
+"""List of driven modes: beside their neighbours, with what to write to choose one."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from squeezefilm.physics.plate.working_mode import CROWDED, WorkingMode
 _HZ, _PER_VOLT = si.Unit("Hz"), si.Unit("m/V")
 
 HEARING: si.Hertz = 20e3
-"""Below it people hear a plate; the young and animals somewhat above it too."""
+"""Frequency below which people hear a plate; the young and animals somewhat above it too."""
 
 SAME_LABEL: si.Dimensionless = 0.1
 """Two modes of one label are worth telling apart if the weaker has this share of the stronger."""

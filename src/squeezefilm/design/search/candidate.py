@@ -204,7 +204,7 @@ def screened(requirements: Requirements, display: Display, design: Design) -> di
 
 
 def rough_frequency(requirements: Requirements, design: Design) -> si.Hertz:
-    """About the resonance (Hz) of a plate of strips: between the waves in the bare plate and in one
+    """Rough resonance (Hz) of a plate of strips: between the waves in the bare plate and in one
     that ceramics cover, a fiftieth of the time of screening it. NaN for another shape, and for what
     cannot be built."""
     if requirements.shapes[design.shape].type != "strips":

@@ -23,7 +23,7 @@ from squeezefilm.design.sweep.swept import Column, Sweep
 _DEGREES = range(1, 7)
 _REDRAWN = 100
 _FEWEST = 8
-"""Fewer points than this tell nothing of shares."""
+"""Smallest number of points that tell of shares."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,8 +27,8 @@ from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.solid.solve import solve_modes
 
 LOST = 0.4
-"""Less alike than this (modal assurance criterion) to itself at the nearest point and where the
-following began, a mode counts as lost."""
+"""Likeness (modal assurance criterion) to itself at the nearest point and where the following
+began, below which a mode counts as lost."""
 REACH = 0.12
 """Share of the working mode's frequency: the modes around it that are followed, without a band."""
 _GRID = (33, 21)

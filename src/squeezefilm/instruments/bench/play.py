@@ -287,7 +287,7 @@ def _eyes(sensor: str) -> SensorModel:
 
 
 def _replay(sensor: str) -> Callable[[Callable[[], si.Second]], ReplaySensor] | None:
-    """Makes the sensor that plays a recorded motion by the loop's clock, at 1 kHz."""
+    """Make the sensor that plays a recorded motion by the loop's clock, at 1 kHz."""
     if not sensor.startswith("replay:"):
         return None
     path = read_trajectory(sensor.removeprefix("replay:"))

@@ -30,7 +30,7 @@ from squeezefilm.physics.plausibility.checks import require_plausible
 from squeezefilm.physics.uncertainty.uncertainty import friction_band
 
 STRETCHED = "stretch the ceramics"
-"""Asked for in place of a value."""
+"""Word in place of a value."""
 QUALITIES = ("screening", "solved")
 _BEAM: si.Dimensionless = 0.13
 _POINTS = 49

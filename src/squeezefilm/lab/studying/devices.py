@@ -44,7 +44,7 @@ class LabDevice(StudyDevice, Protocol):
 
 
 Maker = Callable[[str, str, Path], LabDevice]
-"""Makes the device of a display, a kind ("twin", "serial:PORT") and a folder for raw traces."""
+"""Function from a display, a kind ("twin", "serial:PORT") and a folder for traces to a device."""
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ TOLERATED_SOMEWHERE: si.Dimensionless = 0.06
 """... and so much of the largest, at five neighbouring points (assumed, as the next)."""
 
 ROUGH: si.Dimensionless = 0.03
-"""Up to this misfit a model that is not adequate still gives its numbers roughly."""
+"""Misfit up to which a model that is not adequate still gives its numbers roughly."""
 
 _NEAR = 5
 _HOPELESS = 0.5

@@ -330,7 +330,7 @@ class PadLaw:
 
     @contextlib.contextmanager
     def _named_force(self) -> Iterator[None]:
-        """Within it what is out of range says under which force."""
+        """Name the force in what is refused as out of range."""
         try:
             yield
         except OutOfRangeError as error:

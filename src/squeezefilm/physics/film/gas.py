@@ -50,15 +50,16 @@ def slip_law(slip: str, knudsen_number: float) -> int:
 
 
 LEAST_SQUEEZE_NUMBER: si.Dimensionless = 1e-10
-"""Below, the over-pressure, which goes with σ², drowns in rounding and a solver would refine for
-ever; `film.linear` has it in closed form. (A strip at ε = 0.2 is solved at 1e-10, not at 1e-12.)"""
+"""Smallest squeeze number: below, the over-pressure, which goes with σ², drowns in rounding and a
+solver would refine for ever; `film.linear` has it in closed form. (A strip at ε = 0.2 is solved at
+1e-10, not at 1e-12.)"""
 
 MOST_SQUEEZE_NUMBER: si.Dimensionless = 1e9
-"""Above, the layer at the edge is thinner than 1e-4 of the film and a solve takes minutes, or for
-ever; the load there is that of an infinite squeeze number to four digits."""
+"""Largest squeeze number: above, the edge's layer is thinner than 1e-4 of the film and a solve
+takes minutes, or for ever; the load there is that of an infinite squeeze number to four digits."""
 
 MOST_KNUDSEN: si.Dimensionless = 1e6
-"""Above, a gap far narrower than any surface is flat: molecules fly freely from about 10."""
+"""Largest Knudsen number, of a gap narrower than surfaces are flat: molecules fly from about 10."""
 
 
 def require_film(

@@ -93,7 +93,7 @@ class FoamSupport:
 
     @property
     def stiffness_per_area(self) -> tuple[float, float, float]:
-        """Along x, y and z (Pa/m)."""
+        """Stiffness along x, y and z (Pa/m)."""
         shear = self.young_modulus / 3 if self.shear_modulus is None else self.shear_modulus
         along = shear / self.thickness
         return along, along, self.young_modulus / self.thickness

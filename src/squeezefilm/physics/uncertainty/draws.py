@@ -52,8 +52,8 @@ Input = Parameter | Choice
 
 @contextlib.contextmanager
 def as_drawn() -> Iterator[None]:
-    """Within it a draw beyond the range of its law counts as it is, without a warning for each, and
-    what is made of a draw is checked once."""
+    """Let a draw beyond the range of its law count as it is, without a warning for each, and check
+    once what is made of a draw."""
     with warnings.catch_warnings(), si.outermost_checked():
         warnings.simplefilter("ignore", OutOfRangeWarning)
         yield

@@ -247,7 +247,7 @@ def _device(
 
 
 Mark = Callable[[str, si.Second | None], None]
-"""Is told what happened and when (s, the run's clock; now, without a moment)."""
+"""Function that is told what happened and when (s, the run's clock; now, without a moment)."""
 
 
 class Examiner(Protocol):

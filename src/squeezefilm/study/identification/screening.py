@@ -99,7 +99,7 @@ def rule_of(design: StudyDesign) -> ExclusionRule:
 
 
 def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement, ...], str]:
-    """Everybody who answered main trials on a display (number in the design's order), judged by
+    """Judgements of all who answered main trials on a display (number in the design's order), by
     the design's rule, and what must be said of all of them; empty for nothing.
 
     Somebody is at chance whose z is below what the rule asks, or below half of the median over

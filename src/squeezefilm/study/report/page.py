@@ -213,7 +213,7 @@ def _identification(analysis: Any) -> str:
 
 
 def _screening(analysis: StudyAnalysis) -> str:
-    """Everybody judged by the design's rule."""
+    """Section with everybody judged by the design's rule."""
     if analysis.screening is None:
         return ""
     caption = (

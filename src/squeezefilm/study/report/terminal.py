@@ -155,7 +155,7 @@ def show_merge(done: Merge, other: str) -> None:
 
 
 class TerminalExaminer:
-    """Asks at the terminal: a key and Enter. `read` and `write` are for tests."""
+    """Examiner at the terminal: a key and Enter. `read` and `write` are for tests."""
 
     def __init__(
         self,

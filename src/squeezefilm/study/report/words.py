@@ -121,7 +121,7 @@ SCREENING_HEAD = ("Participant", "z", "Judged")
 
 
 def screening_rows(screening: Screening, named: bool = False) -> list[tuple[str, ...]]:
-    """Everybody, judged; or those only who do not do the task."""
+    """Rows of everybody, judged; or those only who do not do the task."""
     return [
         (
             person.person,
@@ -171,7 +171,7 @@ def _course_first(course: Course) -> list[str]:
 
 
 def estimate_words(estimate: Estimate, scale: float = 1.0, unit: str = "") -> str:
-    """Like "0.12 (0.1 to 0.15 at 95 %)"."""
+    """Words like "0.12 (0.1 to 0.15 at 95 %)"."""
     value = f"{scale * estimate.value:.3g}{unit}"
     if math.isnan(estimate.low):
         return f"{value} (no interval)"

@@ -259,7 +259,7 @@ _OWN_SCALE, _OWN_MIDDLE = 0.5, 10.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SimulatedPeople:
-    """Up to sixty people and all their noise; arrays begin with the person."""
+    """Simulated people, up to sixty, and all their noise; arrays begin with the person."""
 
     finger: si.IntArray
     spread: si.DimensionlessArray
@@ -283,7 +283,7 @@ class SimulatedPeople:
         directions: tuple[int, ...],
         surfaces: int = 2,
     ) -> SimulatedPeople:
-        """Whoever is in a chunk; nobody depends on how many there are."""
+        """People of a chunk; nobody depends on how many there are."""
         random = _random(seed, chunk)
         normal, among = random.standard_normal, random.random
         clear = percept_deviation(observer.period_weber_fraction)

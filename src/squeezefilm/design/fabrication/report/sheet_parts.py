@@ -99,7 +99,7 @@ class Sheet:
         return (x - self.origin[0]) * self.unit, (y - self.origin[1]) * self.unit
 
     def add(self, *items: Item) -> None:
-        """More items, over those that are there."""
+        """Add more items over those that are there."""
         self.items += items
 
     def write(

@@ -106,7 +106,7 @@ def friction_map(result: FrictionAnalysis) -> Figure:
 
 @style.drawn
 def uncertainty(result: FrictionAnalysis) -> Figure:
-    """Left: how µ′/µ is distributed. Right: which parameter makes it so."""
+    """Figure of the distribution of µ′/µ (left), and of the parameters that make it so (right)."""
     unsure = result.uncertainty
     assert unsure is not None, "asked without samples"
     low, high = unsure.interval

@@ -29,9 +29,9 @@ if TYPE_CHECKING:
     from squeezefilm.design.search.found import DesignSearch
 
 MARKED = "plate-"
-"""Begins the id of the mark of a plate of the front, which its name ends."""
+"""Beginning of the id of the mark of a plate of the front, which its name ends."""
 ROW = "#row-"
-"""Begins the link from that mark to the plate's row in the table."""
+"""Beginning of the link from that mark to the plate's row in the table."""
 # More points than these are a grey area and a large file.
 _MOST_POINTS = 1500
 _SOLVED = "three-dimensional solves of plates as drawn, quality factor assumed"

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 MOST_PANELS = 6
 _SAID = {"followed": "the solved plate, modes followed by their shapes"}
 MOST_LINES = 8
-"""More steps than this on the second axis are drawn as a map."""
+"""Largest number of steps on the second axis that are not drawn as a map."""
 
 
 @style.drawn

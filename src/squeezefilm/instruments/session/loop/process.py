@@ -267,7 +267,7 @@ class LoopProcess:
 
     @property
     def time(self) -> si.Second:
-        """Now, on the loop's clock: seconds after tick 0 was due. 0 before `start`."""
+        """Time now on the loop's clock: seconds after tick 0 was due. 0 before `start`."""
         return (time.monotonic_ns() - self._epoch) * 1e-9 if self._epoch else 0.0
 
     @property

@@ -31,7 +31,7 @@ SYNC_PERIOD: si.Second = 1.0
 
 
 class TraceWriter:
-    """Writes a trace. Not thread-safe; one writer a file.
+    """Writer of a trace. Not thread-safe; one writer a file.
 
     Args:
         path: the file, which must not exist (a record is never written over).

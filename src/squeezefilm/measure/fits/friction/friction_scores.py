@@ -54,7 +54,7 @@ class ModelScore:
 
     @property
     def rank(self) -> tuple[bool, float]:
-        """Sorts the least difference first, and models that refuse an amplitude last."""
+        """Key that sorts the least difference first, and models that refuse an amplitude last."""
         return self.answered < self.friction.size, self.difference or 0.0
 
 

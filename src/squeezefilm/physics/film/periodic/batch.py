@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from squeezefilm.physics.film.periodic.uniform import Films
 
 MAX_EXCURSION = 0.99
-"""Above this excursion the gap all but closes, and the error is no longer measured."""
+"""Largest excursion: above, the gap all but closes, and the error is no longer measured."""
 
 MOST_NEWTON = 60
 ROUNDS = 12

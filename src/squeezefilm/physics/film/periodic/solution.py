@@ -134,7 +134,7 @@ class Field(NamedTuple):
     over: si.FloatArray
 
     def later(self) -> Field:
-        """Half a period later."""
+        """Field half a period later."""
         turned = (np.roll(rows, -len(self.time) // 2, axis=1) for rows in (self.gap, self.over))
         return Field(self.position, self.time, *turned)
 

@@ -77,7 +77,7 @@ class _Lines:
 
     @property
     def weight(self) -> si.FloatArray:
-        """Per row, what multiplies 1/Δv in the conductance of a face within it."""
+        """Factor of 1/Δv in the conductance of a face, for each row."""
         return self.across_columns(self.u[1::2]) * np.diff(self.u[::2])
 
 

@@ -45,7 +45,7 @@ volume)."""
 FIELD_SHARE = 1 / 3
 """Share of the coercive field from which a drive is warned of (assumed)."""
 KNOWN_RISE: si.Kelvin = 60.0
-"""Up to it coefficients are taken to stay what they are (assumed)."""
+"""Largest warmth up to which coefficients are taken to stay what they are (assumed)."""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ _AT_REST = 1e-4
 _FLAT = 1e-12
 
 LOWEST_SPEED: si.MetrePerSecond = 5e-3
-"""Below this speed a friction law is inverted as at it (m/s). A finger that creeps this slowly
+"""Speed below which a friction law is inverted as at it (m/s). A finger that creeps this slowly
 sticks and slips rather than slides, the law falls to its value at rest, where any amplitude makes
 the same friction, and what an estimator says is noise (its own at rest is of this order)."""
 

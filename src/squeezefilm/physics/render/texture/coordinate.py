@@ -1,4 +1,4 @@
-"""Along what a one-dimensional pattern runs: x, y, any direction, or the distance from a point."""
+"""Coordinate of a one-dimensional pattern: x, y, any direction, or the distance from a point."""
 
 from __future__ import annotations
 
