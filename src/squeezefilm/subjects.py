@@ -78,7 +78,7 @@ class _Subject:
 
 
 def _by_key(figures: Iterable[FigureOf]) -> dict[str, _Draw]:
-    return {one.key: one.draw for one in figures}
+    return {figure.key: figure.draw for figure in figures}
 
 
 def _of_session(draw: _Draw) -> _Draw:
@@ -88,7 +88,7 @@ def _of_session(draw: _Draw) -> _Draw:
 _ANALYSIS, _PLAYED = _by_key(FIGURES), _by_key(played.FIGURES)
 
 SUBJECTS: Mapping[type, _Subject] = {
-    Prediction: _Subject({"friction": lambda one: friction.predictions([one])}),
+    Prediction: _Subject({"friction": lambda prediction: friction.predictions([prediction])}),
     Analysis: _Subject({"band": _ANALYSIS["band"], **_ANALYSIS}, write_analysis),
     FrictionAnalysis: _Subject(_by_key(friction.FIGURES), friction.write_friction),
     FilmAnswer: _Subject({"pressure": film_map.film_pressure}),
@@ -99,19 +99,19 @@ SUBJECTS: Mapping[type, _Subject] = {
     Sweep: _Subject({"sweep": sweep_figure}, write_sweep),
     DesignSearch: _Subject(_by_key(FIGURES_OF_DESIGN), write_design),
     TextureFile: _Subject({"texture": textures.picture}),
-    Composable: _Subject({"texture": lambda one: textures.picture(TextureFile.of(one))}),
+    Composable: _Subject({"texture": lambda texture: textures.picture(TextureFile.of(texture))}),
     RenderAnalysis: _Subject(_by_key(textures.FIGURES), write_render),
     PlayedSession: _Subject(_PLAYED),
     PlayResult: _Subject({key: _of_session(draw) for key, draw in _PLAYED.items()}, write_play),
     Fabrication: _Subject(
-        {"drawing": lambda one: sheet_figure(drawing_sheet(one))}, write_fabrication
+        {"drawing": lambda made: sheet_figure(drawing_sheet(made))}, write_fabrication
     ),
     FolderCalibration: _Subject(_by_key(calibration_figures.FIGURES), write_calibration),
     IdentificationAnalysis: _Subject(_by_key(FIGURES_OF_STUDY), write_study),
     TaskAnalysis: _Subject(_by_key(TASK_FIGURES), write_study),
     SimulatedStudy: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
     FeltPath: _Subject({"path": felt_path}),
-    PlannedPower: _Subject({"power": lambda one: time_figures.power(one.curve)}),
+    PlannedPower: _Subject({"power": lambda planned: time_figures.power(planned.curve)}),
     PlannedPrecision: _Subject({"precision": time_figures.precision}),
     PsychometricFit: _Subject({"function": time_figures.psychometric_function}),
 }

@@ -114,5 +114,5 @@ def score(
     if as_json:
         print_json({"scores": to_json(found), "left_out": list(left_out)})
         return
-    for line in (*(one.sentence for one in found), *(f"left out: {one}" for one in left_out)):
+    for line in (*(left.sentence for left in found), *(f"left out: {why}" for why in left_out)):
         typer.echo(line)

@@ -134,8 +134,8 @@ def presets(as_json: AsJson = False) -> None:
     if as_json:
         print_json(listing)
     else:
-        for one in listing:
-            typer.echo(f"{one['name']}: {one['title']}")
+        for entry in listing:
+            typer.echo(f"{entry['name']}: {entry['title']}")
 
 
 def drawing_by_two(out: Path | None) -> AbstractContextManager[object]:

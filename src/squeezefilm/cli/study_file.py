@@ -97,7 +97,7 @@ def felt(asked: FeltOptions) -> None:
             write_whole(name, png(plot(one)))
             written.append(name)
     if asked.as_json:
-        print_json([one.summary() for one in paths])
+        print_json([path.summary() for path in paths])
         return
     show_all(paths)
     for name in written:

@@ -105,7 +105,7 @@ def sweep(asked: SweepOptions) -> None:
         raise InputError("sweep needs a display: squeezefilm sweep biet2008-plate --vary ... --ask")
     require_kind(asked.table)
     if asked.less or asked.more:
-        wanted = [(one.column, one.unit) for one in asked_for(asked.ask or ())]
+        wanted = [(number.column, number.unit) for number in asked_for(asked.ask or ())]
         wishes(wanted, asked.less or (), asked.more or ())
     with working(asked.as_json) as step:
         request = SweepRequest(

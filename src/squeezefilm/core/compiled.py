@@ -61,7 +61,7 @@ def _cache_type() -> Any:
                 self.disable()  # type: ignore[no-untyped-call]
 
         def _index_key(self, sig: Any, codegen: Any) -> Any:
-            records = [_fields(one) for one in getattr(sig, "args", sig)]
+            records = [_fields(argument) for argument in getattr(sig, "args", sig)]
             return *super()._index_key(sig, codegen), repr(records)  # type: ignore[no-untyped-call]
 
         def load_overload(self, sig: Any, target_context: Any) -> Any:
@@ -106,7 +106,7 @@ def _fields(kind: Any) -> Any:
     """The names of a record's fields, of those in it too, by the numba type of an argument."""
     inner = kind.types if hasattr(kind, "types") else [getattr(kind, "dtype", None)]
     names = getattr(kind, "fields", None) if hasattr(kind, "instance_class") else None
-    return names, [_fields(one) for one in inner if hasattr(one, "instance_class")]
+    return names, [_fields(member) for member in inner if hasattr(member, "instance_class")]
 
 
 @lru_cache(maxsize=16)

@@ -73,7 +73,7 @@ class Keys:
         try:
             rows = read_json(self.file, OWN_BYTES, "the lab's keys")
             kept = [Session(**row) for row in rows]
-            self._sessions = {one.secret: one for one in kept if one.until > self.clock()}
+            self._sessions = {key.secret: key for key in kept if key.until > self.clock()}
         except (ValueError, TypeError) as error:
             raise InputError(
                 f"{self.file} is not readable as the lab's keys ({error}); delete it and open the "

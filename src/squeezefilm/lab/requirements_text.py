@@ -72,7 +72,7 @@ def asked_of(text: str, folder: Path) -> dict[str, Any]:
         ],
         "limits": [one.limit_said(bound) for one, bound in bounded(asked.limits)],
         "shapes": [
-            {"name": space.shape, "chosen": [one.name.replace("_", " ") for one in space.free]}
+            {"name": space.shape, "chosen": [free.name.replace("_", " ") for free in space.free]}
             for space in asked.spaces
         ],
         "start_from": Path(asked.start_from).stem,

@@ -221,7 +221,7 @@ def _(model: str) -> ClaimValue:
 def _gain(model: str, name: str, texts: tuple[str, str], values: tuple[float, float]) -> ClaimValue:
     """The fall of friction from the first to the second value of a parameter."""
     changed = (replace(FROZEN, **{name: value}) for value in values)  # type: ignore[arg-type]
-    low, high = (one.relative_friction(model) for one in changed)
+    low, high = (pad.relative_friction(model) for pad in changed)
     return ClaimValue((low - high,), note=f"µ′/µ {low:.3f} at {texts[0]}, {high:.3f} at {texts[1]}")
 
 

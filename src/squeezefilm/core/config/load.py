@@ -208,8 +208,8 @@ def _all_errors(cls: type[Any], error: ValidationError, source: _Source) -> Conf
     if count == 1:
         return problems[0]
     lines = "\n".join(
-        f"  {one.key}: {one.message}" + ("" if one.line is None else f" (line {one.line})")
-        for one in problems
+        f"  {slip.key}: {slip.message}" + ("" if slip.line is None else f" (line {slip.line})")
+        for slip in problems
     )
     more = f"\n  and {count - len(problems)} more" if count > len(problems) else ""
     return ConfigError(f"{count} things are not right:\n{lines}{more}", file=source.file)

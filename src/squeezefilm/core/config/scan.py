@@ -48,7 +48,7 @@ def require_quick_toml(text: str, file: str | Path | None = None) -> None:
             "read: leave some out",
             file=file,
         )
-    if (longest := 1 + max(one.count(".") for one in _BETWEEN_KEYS.split(bare))) > DEEPEST:
+    if (longest := 1 + max(key.count(".") for key in _BETWEEN_KEYS.split(bare))) > DEEPEST:
         raise ConfigError(
             f"is nested {longest} deep by one key; at most {DEEPEST} are read", file=file
         )

@@ -109,7 +109,7 @@ def _of_characters(line: _Line) -> str | None:
     if found := next((character for character in bare if character in _BLANKS), None):
         column = line.text.index(found) + 1
         return f"{_BLANKS[found]} stands in column {column}; write an ordinary blank there"
-    if found := next((one for one in bare if ord(one) < 32 and one != "\t"), None):
+    if found := next((mark for mark in bare if ord(mark) < 32 and mark != "\t"), None):
         return f"the line holds the control character {found!r}; delete it"
     return None
 

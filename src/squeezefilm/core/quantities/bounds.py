@@ -51,7 +51,7 @@ class Limit(Protocol):
 def bounds_of(hint: Any) -> tuple[dict[str, Any], tuple[Limit, ...]]:
     """The bounds in an annotation, as `require` takes them, and its other limits."""
     parts = list(_beside(hint))
-    bounds = {_WORDS[type(one)]: float(one.value) for one in parts if isinstance(one, _Bound)}
+    bounds = {_WORDS[type(part)]: float(part.value) for part in parts if isinstance(part, _Bound)}
     return bounds, tuple(bound for bound in parts if hasattr(bound, "refuse_outside"))
 
 

@@ -173,4 +173,4 @@ def missed_by(model: str) -> tuple[Claim, ...] | None:
     asked = [claim for claim in read_claims().all_claims if claim.model and claim.model == model]
     if not asked:
         return None
-    return tuple(one for one in asked if one.says and one.verdict == "does not hold")
+    return tuple(claim for claim in asked if claim.says and claim.verdict == "does not hold")

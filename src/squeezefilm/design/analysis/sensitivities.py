@@ -168,9 +168,9 @@ def display_sensitivities(
 
 def _every(display: Display, mixture: Mixture) -> Iterator[_Changed]:
     """Ranges that the interval draws, and usual tolerances of the plate where there are none."""
-    for one in mixture.inputs:
-        if isinstance(one, Parameter):
-            yield _Changed(one, functools.partial(_with, path=one.path))
+    for drawn in mixture.inputs:
+        if isinstance(drawn, Parameter):
+            yield _Changed(drawn, functools.partial(_with, path=drawn.path))
     if mixture.prediction.voltage is None:
         return
     # Of a calibrated plate, whose amplitude is drawn as a whole, what its own values may be.

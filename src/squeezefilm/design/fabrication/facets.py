@@ -102,8 +102,8 @@ def _wall(points: si.FloatArray, closed: bool, bottom: si.Metre, top: si.Metre) 
     after = np.roll(points, -1, axis=0) if closed else points[1:]
     before = points if closed else points[:-1]
     z = (np.full((len(before), 1), bottom), np.full((len(before), 1), top))
-    low, high = (np.hstack([before, one]) for one in z)
-    low_after, high_after = (np.hstack([after, one]) for one in z)
+    low, high = (np.hstack([before, height]) for height in z)
+    low_after, high_after = (np.hstack([after, height]) for height in z)
     return np.concatenate(
         [np.stack([low, low_after, high_after], axis=1), np.stack([low, high_after, high], axis=1)]
     )

@@ -233,7 +233,7 @@ def _missed(model: str) -> list[dict[str, str]] | None:
     directions = missed_by(model)
     if directions is None:
         return None
-    return [{"says": one.says, "where": one.where, "why": one.why} for one in directions]
+    return [{"says": item.says, "where": item.where, "why": item.why} for item in directions]
 
 
 def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:

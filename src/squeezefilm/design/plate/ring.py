@@ -192,7 +192,7 @@ def analyze_ring(
         display=display,
         body=body,
         modes=modes,
-        rows=tuple(mode_row(body, one, capacitance) for one in modes),
+        rows=tuple(mode_row(body, listed, capacitance) for listed in modes),
         mode=ring_working_mode(actuator, body, working),
         annular=working,
         working=mode_row(body, working, capacitance),

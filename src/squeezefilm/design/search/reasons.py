@@ -88,7 +88,7 @@ def empty_corners(
             for candidate in here:
                 parts.setdefault(_part(variable, candidate.design.settings), []).append(candidate)
             for where, inside in parts.items():
-                if len(inside) < _LEAST_DESIGNS or any(one.is_feasible for one in inside):
+                if len(inside) < _LEAST_DESIGNS or any(design.is_feasible for design in inside):
                     continue
                 corners.append(_corner(space, where, inside))
     return tuple(sorted(corners, key=lambda corner: -corner.designs))

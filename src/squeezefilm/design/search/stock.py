@@ -186,8 +186,8 @@ class Shape:
 
     def cost_class(self, values: Mapping[str, Setting]) -> int:
         """The highest class of cost of what a design is built from."""
-        sheet = next(one for one in self.sheets if one.material == values["substrate"])
-        ceramic = next(one for one in self.ceramics if one.material == values["ceramic"])
+        sheet = next(piece for piece in self.sheets if piece.material == values["substrate"])
+        ceramic = next(piece for piece in self.ceramics if piece.material == values["ceramic"])
         return max(sheet.cost_class, ceramic.cost_class)
 
 

@@ -68,7 +68,7 @@ def made_of(
     keys = [key for key in solved.numbers if key in CORRECTED]
     intervals = {}
     for key in keys:
-        values = np.array([one.get(key, np.nan) for one in made])
+        values = np.array([row.get(key, np.nan) for row in made])
         values = values[np.isfinite(values)]
         if values.size:
             low, high = np.quantile(values, (0.05, 0.95))

@@ -181,9 +181,9 @@ def _spelled_out(wanted: str, keys: Sequence[str]) -> list[str]:
 
 
 def _unknown(name: str, verbs: Sequence[str], wanted: str) -> InputError:
-    plain = {verb: [without_units(one) for one in catalogue()[verb]] for verb in verbs}
+    plain = {verb: [without_units(known_key) for known_key in catalogue()[verb]] for verb in verbs}
     every = [one for verb in verbs for one in plain[verb]]
-    inside = [one for one in every if wanted.lower() in one.lower()]
+    inside = [known_key for known_key in every if wanted.lower() in known_key.lower()]
     near = f" Did you mean {', '.join(dict.fromkeys(inside[:5]))}?" if inside else ""
     told: dict[str, str] = {}
     for verb in verbs:

@@ -152,7 +152,7 @@ class Cluster:
         """Take in workers that came. Raises `WorkersError` for what they are to be like."""
         if not new:
             return
-        crowded = [one for one in new if threads[one] > 1]
+        crowded = [address for address in new if threads[address] > 1]
         if crowded:
             raise WorkersError(
                 f"the worker at {crowded[0]} has {threads[crowded[0]]} threads, which would wait "
@@ -202,7 +202,7 @@ class _Asking(Generic[K, A]):
         spent = (time.monotonic() - self._began) * len(workers)
         quick = spent < _QUICK * self._answered
         for most in range(1, (_AHEAD_OF_QUICK if quick else _AHEAD) + 1):
-            for worker in (one for one in workers if busy[one] < most):
+            for worker in (address for address in workers if busy[address] < most):
                 key = shares.next(worker)
                 if key is None:
                     return
@@ -270,7 +270,7 @@ class _Asking(Generic[K, A]):
             pure=False,
         )
         self._futures[number] = future
-        future.add_done_callback(lambda one: self._came.put((number, one)))
+        future.add_done_callback(lambda answer: self._came.put((number, answer)))
         if number in self._there:
             self._forget(number)
 

@@ -157,7 +157,7 @@ def plan_of(
 
     Raises `InputError` for what cannot be asked."""
     given = [display] if isinstance(display, Display) else display
-    displays = [one if isinstance(one, Display) else load_display(one) for one in given]
+    displays = [item if isinstance(item, Display) else load_display(item) for item in given]
     if not displays:
         raise InputError("there is no display to sweep; name at least one")
     asked = asked_for([ask] if isinstance(ask, str) else ask)

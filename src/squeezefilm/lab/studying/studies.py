@@ -118,11 +118,11 @@ class Studies:
             ],
             "sittings": [
                 {
-                    **shown_sitting(one),
-                    "begun_again": why_begun_again(store, one.session) if one.session else "",
-                    **self.by_hand.status(one.id),
+                    **shown_sitting(held),
+                    "begun_again": why_begun_again(store, held.session) if held.session else "",
+                    **self.by_hand.status(held.id),
                 }
-                for one in self.sittings.of_study(study)
+                for held in self.sittings.of_study(study)
             ],
             "confusion": confusion_counts(store),
             "origin": origin_of(store),

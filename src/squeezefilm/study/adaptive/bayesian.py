@@ -77,7 +77,7 @@ class AdaptiveDesign:
                 quantity="cells",
             )
         places = on_axis(np.array(self.stimuli), self.axis)
-        low, high = (float(one) for one in on_axis(np.array(self.prior.threshold), self.axis))
+        low, high = (float(value) for value in on_axis(np.array(self.prior.threshold), self.axis))
         widest = self.prior.width[1]
         if places.max() + widest < low or places.min() - widest > high:
             raise InputError(
@@ -208,8 +208,8 @@ def _probabilities(design: AdaptiveDesign, places: si.FloatArray) -> si.FloatArr
     m, w, lapse = _nodes(design)
     rise = np.stack(
         [
-            kernel.probabilities(code, np.array([one, width, 0.0, 0.0]), places)
-            for one in m
+            kernel.probabilities(code, np.array([mean, width, 0.0, 0.0]), places)
+            for mean in m
             for width in w
         ]
     )

@@ -78,7 +78,7 @@ def _differencing(lowest: float, highest: float) -> PlacementModel:
     parameters = {"Weber fraction": fractions, "criterion": criteria, "lapse rate": _LAPSES}
     # Every combination, the last running fastest.
     grid = np.meshgrid(*parameters.values(), indexing="ij")
-    weber, criterion, lapse = (one.reshape(-1, 1) for one in grid)
+    weber, criterion, lapse = (axis.reshape(-1, 1) for axis in grid)
     model = SAME_DIFFERENT.model
     assert model is not None
     rise = model.rate(differences * D_PRIME_OF_75 / np.log1p(weber), criterion)

@@ -310,7 +310,7 @@ def _path(trace: Trace) -> Table:
     rows = rows[there]
     number = np.floor(rows[:, column.TIME] / PATH_PERIOD)
     first = np.r_[True, np.diff(number) > 0][: len(rows)]
-    columns = {one: rows[first, trace.columns.index(one)] for one in _PATH}
+    columns = {name: rows[first, trace.columns.index(name)] for name in _PATH}
     about = {key: value for key, value in trace.metadata.items() if key != "columns"}
     return Table(columns, about)
 

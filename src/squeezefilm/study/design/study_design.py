@@ -249,7 +249,7 @@ class StudyDesign:
         if not self.compares:
             return (name,)
         for order in self.described.conditions(name, [here]):
-            if self.answer_to(*(self.stimulus(one) for one in order)) == catch.answer:
+            if self.answer_to(*(self.stimulus(other) for other in order)) == catch.answer:
                 return order
         raise InputError(
             f"the answer '{catch.answer}' of the catch trial '{name}' is never right beside the "
@@ -278,7 +278,7 @@ class StudyDesign:
                 f"'same-different'; '{self.task}' does not",
                 quantity="adaptive",
             )
-        stairs = [one.name for one in self.adaptive if one.method not in methods]
+        stairs = [item.name for item in self.adaptive if item.method not in methods]
         if stairs:
             raise InputError(
                 f"series '{stairs[0]}' is a staircase, which would settle where a person's "

@@ -72,7 +72,7 @@ def course_of(answers: Answers, display: int) -> Course:
     if np.isfinite(times).any():
         drifts.append(drift(main, np.log(np.where(times > 0, times, np.nan)), "ln response time"))
     caught = answers.take((answers.display == display) & (answers.phase == "catch"))
-    return Course(tuple(one for one in drifts if one is not None), attention(caught))
+    return Course(tuple(value for value in drifts if value is not None), attention(caught))
 
 
 def drift(

@@ -251,8 +251,8 @@ def _changed(mine: Answers, models: _Models) -> list[str]:
             np.concatenate([np.zeros((1, model.shape[1])), model.cumsum(axis=0)])
             for model in models
         ]
-        before = [one[at].max(axis=1) for one in sums]
-        after = [(one[-1] - one[at]).max(axis=1) for one in sums]
+        before = [values[at].max(axis=1) for values in sums]
+        after = [(values[-1] - values[at]).max(axis=1) for values in sums]
         gains = {
             words.format(part): gain - one_for_all
             for kind, words in (

@@ -71,7 +71,7 @@ def problems(rows: Rows, design: Callable[[], StudyDesign]) -> Iterator[str]:
     yield from _row_problems("study", wanted["study"], studies, _CHECKS)
     checks = _CHECKS | {
         "display": lambda display: display in design().displays,
-        "adaptive": lambda one: not one or one in [series.name for series in design().adaptive],
+        "adaptive": lambda text: not text or text in [series.name for series in design().adaptive],
     }
     for table in TABLES:
         yield from _row_problems(table, wanted[table], rows(f"SELECT * FROM {table}"), checks)

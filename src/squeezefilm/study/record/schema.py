@@ -127,5 +127,5 @@ TABLES = (
 )
 """Tables that merge from other stations, each table after those it refers to. Keys come first."""
 
-UPGRADE_1 = next(one for one in SCHEMA.split(";") if "CREATE TABLE set_aside" in one)
+UPGRADE_1 = next(part for part in SCHEMA.split(";") if "CREATE TABLE set_aside" in part)
 """Statement that gives a file of version 1 what it lacks."""

@@ -140,7 +140,7 @@ class SimulatedStudy(Result):
         """A row a trial, with units in the names."""
         a = self.answers
         names = [surface.name for surface in a.surfaces]
-        answers, series = a.design.answers, [one.name for one in a.design.adaptive]
+        answers, series = a.design.answers, [item.name for item in a.design.adaptive]
         return [
             {
                 "participant": int(a.participant[at]),

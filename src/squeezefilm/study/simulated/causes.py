@@ -56,7 +56,7 @@ def median_causes(of_fingers: tuple[Causes, ...]) -> Causes:
     """The medians over several fingers."""
     return Causes(
         **{
-            field.name: float(np.median([getattr(one, field.name) for one in of_fingers]))
+            field.name: float(np.median([getattr(finger, field.name) for finger in of_fingers]))
             for field in dataclasses.fields(Causes)
         }
     )

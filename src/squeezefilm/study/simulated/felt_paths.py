@@ -279,9 +279,9 @@ def _explored(paths: tuple[FingerPath, ...], face: tuple[si.Metre, si.Metre] | N
 def _perceived(felt: PathPercept, observer: Observer) -> Perceived:
     """Percept in each direction without noise; nothing where there is no run."""
     both = [felt.along, felt.across]
-    strength = np.array([0.0 if one is None else one.clearest_d_prime for one in both])
-    period = [math.nan if one is None else one.clearest_period for one in both]
-    period = [1.0 if math.isnan(one) else one for one in period]
+    strength = np.array([0.0 if percept is None else percept.clearest_d_prime for percept in both])
+    period = [math.nan if percept is None else percept.clearest_period for percept in both]
+    period = [1.0 if math.isnan(value) else value for value in period]
     return Perceived(np.log(period), strength, strength > observer.detection_criterion)
 
 
@@ -296,8 +296,8 @@ def _to_gratings(
 ) -> list[Likeness]:
     """The real gratings by the period of the clearest rhythm in either direction, as simulated
     answers go; infinitely far where nothing was felt."""
-    both = [one for one in (felt.along, felt.across) if one is not None]
-    best = max(both, key=lambda one: one.clearest_d_prime)
+    both = [percept for percept in (felt.along, felt.across) if percept is not None]
+    best = max(both, key=lambda percept: percept.clearest_d_prime)
     spread = percept_deviation(observer.period_weber_fraction)
     likenesses = []
     for alternative in design.alternatives:

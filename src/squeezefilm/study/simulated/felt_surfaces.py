@@ -76,7 +76,7 @@ def _felt_of(
 
 def felt_surfaces(asked: list[Asked], tell: SayProgress) -> list[list[FeltSurface]]:
     """Percepts of each finger; two processes compute what is not known yet."""
-    found = [one.known() for one in asked]
+    found = [request.known() for request in asked]
     lacking = [at for at, known in enumerate(found) if known is None]
     with contextlib.ExitStack() as stack:
         # One that is started when nothing lacks would still be loading when all is done.
@@ -95,7 +95,7 @@ def felt_surfaces(asked: list[Asked], tell: SayProgress) -> list[list[FeltSurfac
             for at, felt in zip(now, values(*pieces), strict=True):
                 found[at] = felt
                 asked[at].remember(felt)
-    return [one for one in found if one is not None]
+    return [known for known in found if known is not None]
 
 
 def _load() -> None:
@@ -105,7 +105,7 @@ def _load() -> None:
 
 def _name(feel: Callable[..., FeltSurface], surface: Stimulus | Grating, rest: Any) -> str:
     """Text of a request: how, the surface, and all else that decides what is felt of it."""
-    parts = " ".join(_hash(one) for one in rest)
+    parts = " ".join(_hash(part) for part in rest)
     if isinstance(surface, Grating):
         return f"{feel.__name__} {parts} {config_hash(surface)}"
     # Two kinds of texture may have the same numbers, and the text of an image leaves out pixels.

@@ -269,9 +269,9 @@ def _decided(
     """Answers as the task's record decides; of who lapses, or has nothing to decide by, guesses."""
     decides = room.design.described.decides
     assert decides is not None
-    felt = [_in_clearest_direction(one) for one in felt]
-    judged = [_judged(room, people, one, skill) for one in felt]
-    known = np.array([one.felt for one in felt])
+    felt = [_in_clearest_direction(surface) for surface in felt]
+    judged = [_judged(room, people, surface, skill) for surface in felt]
+    known = np.array([surface.felt for surface in felt])
     if room.design.judged == "friction_depth":
         # How strong a surface is can be said of one that is hardly felt.
         known = np.ones_like(known)
@@ -352,16 +352,16 @@ def _together(design: StudyDesign, participants: int, room: _Room, parts: list[_
         people=tuple(f"simulated-{person + 1}" for person in range(participants)),
         surfaces=tuple(room.surfaces),
         participant=np.repeat(np.arange(participants), asked),
-        number=whole([one.number for one in rows]),
-        phase=np.array([one.phase for one in rows], dtype=np.str_),
-        display=whole([room.display[one.display] for one in rows]),
-        series=whole([series.get(one.adaptive, -1) for one in rows]),
+        number=whole([row.number for row in rows]),
+        phase=np.array([row.phase for row in rows], dtype=np.str_),
+        display=whole([room.display[row.display] for row in rows]),
+        series=whole([series.get(row.adaptive, -1) for row in rows]),
         first=shown[0],
         second=shown[1] if len(shown) > 1 else none,
         third=shown[2] if len(shown) > 2 else None,
         intensity=joined("intensity"),
         choice=joined("choice").astype(np.int64),
-        right=whole([names.get(one.answer, -1) for one in rows]),
+        right=whole([names.get(row.answer, -1) for row in rows]),
         estimate=joined("estimate"),
         response_time=joined("time"),
     )

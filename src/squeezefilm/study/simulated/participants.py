@@ -145,7 +145,7 @@ def right_answers(design: StudyDesign) -> si.IntArray:
     """Number of the right alternative of each stimulus, −1 where none is right."""
     names = design.answers
     right = [design.answer_to(stimulus) for stimulus in design.stimuli]
-    return np.array([names.index(one) if one else -1 for one in right], dtype=np.int64)
+    return np.array([names.index(name) if name else -1 for name in right], dtype=np.int64)
 
 
 def _orders(

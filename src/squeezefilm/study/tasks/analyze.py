@@ -138,7 +138,7 @@ def _screened(answers: Answers, how: _How) -> StudyAnalysis:
         chosen = analysis(answers, how)
         results["everybody"] = chosen.main_number
     else:
-        numbers = [answers.people.index(one) for one in out]
+        numbers = [answers.people.index(name) for name in out]
         rest = answers.take(~np.isin(answers.participant, numbers))
         excludes = rule.action == "exclude"
         chosen = analysis(rest if excludes else answers, how)
@@ -240,7 +240,7 @@ def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
         task=design.task,
         judged=design.judged,
         measure=found.measure,
-        people=tuple(main.people[one] for one in np.unique(main.participant)),
+        people=tuple(main.people[person] for person in np.unique(main.participant)),
         trials=main.trials,
         standard=here,
         persons=tuple(found.persons),
@@ -269,7 +269,7 @@ def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
     # By value, as they are read, and not in the order in which somebody met them first.
     order = np.argsort(main.values, kind="stable")
     place = np.argsort(order, kind="stable")
-    names = tuple(main.surfaces[one].name for one in order)
+    names = tuple(main.surfaces[surface].name for surface in order)
     if main.design.compares:
         here = names.index(main.design.reference) if main.design.reference in names else -1
         shown = place[main.presented]

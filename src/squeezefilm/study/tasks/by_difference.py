@@ -114,16 +114,16 @@ def difference_conditions(
     if design.adaptive:
         return _eighths(main, distance, here, level)
     findings = []
-    for one in np.unique(distance):
-        mine = distance == one
+    for step in np.unique(distance):
+        mine = distance == step
         others = {
             main.surfaces[k].name
             for k in np.unique(main.presented[:, mine])
             if main.values[k] != here
         }
-        name = "the same" if one == 0.0 else " / ".join(sorted(others))
-        d = None if one == 0.0 else _mean_d_prime(main, distance, float(one), level, seed)
-        value = here * math.exp(float(one))
+        name = "the same" if step == 0.0 else " / ".join(sorted(others))
+        d = None if step == 0.0 else _mean_d_prime(main, distance, float(step), level, seed)
+        value = here * math.exp(float(step))
         findings.append(condition_finding(main, name, value, mine, hit, level, d))
     return tuple(findings)
 
@@ -167,7 +167,7 @@ def _mean_of_right(main: Answers, here: NDArray[np.bool_], level: float) -> Esti
         bounds = proportion_interval(hits, trials, level, "Jeffreys")
         share = Estimate(hits / trials, bounds.low, bounds.high, level, "Jeffreys, over trials")
         return through(share, d_prime)
-    shares = [corrected_proportion(int(one.sum()), one.size) for one in mine]
+    shares = [corrected_proportion(int(answers.sum()), answers.size) for answers in mine]
     return t_interval(np.array([d_prime(one) for one in shares]), level)
 
 
@@ -192,8 +192,8 @@ def false_alarms(main: Answers, level: si.Dimensionless) -> dict[str, Estimate]:
     """
     alike = main.first == main.second
     shares = [
-        np.mean(main.choice[alike & (main.participant == one)] == 1)
-        for one in np.unique(main.participant[alike])
+        np.mean(main.choice[alike & (main.participant == person)] == 1)
+        for person in np.unique(main.participant[alike])
     ]
     if not shares:
         return {}
@@ -213,12 +213,12 @@ def unlike_conditions(
     """Each pair: how often it was called different, and its d′; the first is the same twice."""
     alike, other = _pairs(main)
     findings = []
-    for one in (-1, *np.unique(other[~alike]).tolist()):
-        mine = alike if one < 0 else ~alike & (other == one)
+    for pair in (-1, *np.unique(other[~alike]).tolist()):
+        mine = alike if pair < 0 else ~alike & (other == pair)
         if not mine.any():
             continue
-        name = "the same" if one < 0 else main.surfaces[one].name
-        counts = [] if one < 0 else _counts(main, mine, alike)
+        name = "the same" if pair < 0 else main.surfaces[pair].name
+        counts = [] if pair < 0 else _counts(main, mine, alike)
         d = mean_sensitivity(counts, _MODEL, differencing_sensitivity, level, seed)
         findings.append(condition_finding(main, name, math.nan, mine, main.choice == 1, level, d))
     return tuple(findings)

@@ -184,7 +184,7 @@ class TaskAnalysis(Result):
 
 def through(estimate: Estimate, rising: Callable[[float], float]) -> Estimate:
     """An estimate on another scale, by a rising function of it."""
-    value, low, high = (rising(one) for one in (estimate.value, estimate.low, estimate.high))
+    value, low, high = (rising(end) for end in (estimate.value, estimate.low, estimate.high))
     return Estimate(value, low, high, estimate.level, estimate.method)
 
 

@@ -71,8 +71,8 @@ def magnitude_conditions(
         )
     logs = logs - own + float(np.mean([own[main.participant == one][0] for one in people]))
     findings = []
-    for one in sorted(np.unique(main.first), key=lambda s: main.values[s]):
-        here = main.first == one
+    for stimulus in sorted(np.unique(main.first), key=lambda s: main.values[s]):
+        here = main.first == stimulus
         means = np.array(
             [
                 logs[here & (main.participant == person)].mean()
@@ -81,8 +81,8 @@ def magnitude_conditions(
         )
         findings.append(
             ConditionFinding(
-                main.surfaces[one].name,
-                float(main.values[one]),
+                main.surfaces[stimulus].name,
+                float(main.values[stimulus]),
                 int(here.sum()),
                 means.size,
                 magnitude=through(t_interval(means, level), math.exp),

@@ -94,7 +94,7 @@ def _of_fractions(
     if len(persons) > 1:
         population = people.population
         pooled, spread = of_population(population.estimate(level), _POPULATION)
-        low, middle, high = (math.exp(one) for one in population.robust(level))
+        low, middle, high = (math.exp(end) for end in population.robust(level))
         robust = Estimate(middle, low, high, level, "posterior, some do not do the task")
         # Answers at random go into a criterion where there is one.
         notes += [note for note in [population.lapse_note] if note and not criterion]

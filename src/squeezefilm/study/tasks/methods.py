@@ -71,10 +71,10 @@ def _stimuli(design: StudyDesign) -> str:
     ]
     simple = all(one.kind in ("square grating", "sine grating", "constant") for one in every)
     listed = []
-    for one in every:
-        period, depth = si.format_quantity(one.period, si.Unit("m")), _depth(one)
-        listed.append(f"{period} ({depth})" if simple else _surface(one))
-    shapes = " and ".join(sorted({one.waveform for one in every}))
+    for stimulus in every:
+        period, depth = si.format_quantity(stimulus.period, si.Unit("m")), _depth(stimulus)
+        listed.append(f"{period} ({depth})" if simple else _surface(stimulus))
+    shapes = " and ".join(sorted({stimulus.waveform for stimulus in every}))
     if design.adaptive:
         kind = f"a {shapes} grating of friction with the period" if simple else "the surface"
         return f"The reference was {kind} {', '.join(listed)}.{free}"

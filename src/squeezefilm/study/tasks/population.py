@@ -123,7 +123,7 @@ class Population:
         """ln of the likelihoods of people on one grid under each μ, τ and h, shape (people, means,
         spreads, lapses)."""
         x, width = alike[0].x, alike[0].width
-        weights = np.array([one.likelihood * width for one in alike])
+        weights = np.array([person.likelihood * width for person in alike])
         weights /= weights.max(axis=(1, 2), keepdims=True)
         logs = np.empty((len(alike), self._means.size, self._spreads.size, len(MEAN_LAPSES)))
         away = (x[None, :] - self._means[:, None]) ** 2
@@ -178,7 +178,7 @@ class Population:
         _, spread, _ = _quantiles(self._edges, weight, (0.0, 0.5, 1.0))
         lapses = np.einsum("msl,s->l", np.exp(total - total.max()), self._widths)
         chosen = range(self.size) if people is None else people
-        moments = np.array([_moments(self._people[one], lapses) for one in chosen])
+        moments = np.array([_moments(self._people[person], lapses) for person in chosen])
         least, most = scatter_interval(moments[:, 0], moments[:, 1], level)
         if logs.shape[0] == 1:
             spread = least = most = float("nan")

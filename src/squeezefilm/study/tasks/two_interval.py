@@ -193,10 +193,10 @@ def two_interval_conditions(
     """Each comparison: how often it was said to have more, and its d′ from the reference."""
     surface, more = comparisons(main)
     findings = []
-    for one in sorted(np.unique(surface), key=lambda s: main.values[s]):
-        here = surface == one
+    for stimulus in sorted(np.unique(surface), key=lambda s: main.values[s]):
+        here = surface == stimulus
         d = _mean_d_prime(main, here, level, seed)
-        name, value = main.surfaces[one].name, float(main.values[one])
+        name, value = main.surfaces[stimulus].name, float(main.values[stimulus])
         findings.append(condition_finding(main, name, value, here, more, level, d))
     return tuple(findings)
 
@@ -286,14 +286,14 @@ def t_interval(values: si.FloatArray, level: si.Dimensionless) -> Estimate:
 def two_interval_numbers(main: Answers, level: si.Dimensionless) -> dict[str, Estimate]:
     """The bias for the first interval, and of staircases the mean of their reversals."""
     people = np.unique(main.participant)
-    first = np.array([np.mean(main.choice[main.participant == one] == 0) for one in people])
-    due = np.array([np.mean(main.right[main.participant == one] == 0) for one in people])
+    first = np.array([np.mean(main.choice[main.participant == person] == 0) for person in people])
+    due = np.array([np.mean(main.right[main.participant == person] == 0) for person in people])
     numbers = {"bias for the first interval": t_interval(first - due, level)}
     for number, series in enumerate(main.design.adaptive):
         if series.method != "staircase":
             continue
         ends_of = [_reversals(main, person, number) for person in people]
-        logs = np.log([one for one in ends_of if one])
+        logs = np.log([ends for ends in ends_of if ends])
         if logs.size:
             target = 0.5 ** (1.0 / series.down)
             name = f"reversals of '{series.name}' ({100 * target:.1f} % right)"

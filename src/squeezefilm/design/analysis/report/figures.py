@@ -230,7 +230,7 @@ def _places(axes: Axes, area: ActiveArea) -> None:
         (area.best_place, "best place", "o"),
         (area.worst_place, "worst place", "X"),
     ):
-        x, y = (1e3 * one for one in place)
+        x, y = (1e3 * value for value in place)
         said = printable(f"{name}, {place_words(place)}")
         axes.plot([x], [y], look, **_PLACE, label=said)
     side = 1e3 * area.contact_side

@@ -79,7 +79,7 @@ def _sentence(analysis: Analysis) -> str:
 def _numbers(analysis: Analysis) -> list[Row]:
     """The numbers with their intervals."""
     p, unsure, area = analysis.prediction, analysis.uncertainty, analysis.active_area
-    known = {one.quantity: one for one in analysis.measured}
+    known = {item.quantity: item for item in analysis.measured}
     frequency = known.get("Resonance frequency")
     measured = "" if frequency is None else f"measured {shown(frequency.measured, HZ)}"
     swing = None if unsure is None else unsure.amplitude_interval

@@ -42,8 +42,8 @@ def missed_directions(model: str, *, why: bool = False) -> list[str]:
     if not missed:
         return ["None of those on record; `squeezefilm reproduce` lists them."]
     return [
-        f"{one.says} ({cited(one.where)})." + (f" In the model: {one.why}." if why else "")
-        for one in missed
+        f"{claim.says} ({cited(claim.where)})." + (f" In the model: {claim.why}." if why else "")
+        for claim in missed
     ]
 
 

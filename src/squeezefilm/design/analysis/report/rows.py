@@ -184,7 +184,7 @@ def sound_rows_at_ear(ears: EarExposure | None) -> list[Row]:
     if ears is None:
         said = "no face was solved here; squeezefilm plate solves plates, discs and stators"
         return [("Sound", "not known", said)]
-    levels = " and ".join(f"{one.guidance.level_dB:.0f} dB" for one in ears.limits)
+    levels = " and ".join(f"{ear_limit.guidance.level_dB:.0f} dB" for ear_limit in ears.limits)
     limit = f"guidance {levels}" if levels else "no guidance"
     range_of = f"{ears.low_dB:.0f} to {ears.high_dB:.0f} dB, loudest direction; {limit}"
     return [(f"Sound at {ears.distance:g} m", f"{ears.level_dB:.0f} dB", range_of)]

@@ -116,8 +116,8 @@ def _alone(svg: str) -> str:
 def _bodies(made: Fabrication) -> dict[str, bytes]:
     """The assembly as one STL, and its parts of each kind as one."""
     by: dict[str, list[si.FloatArray]] = {}
-    for one in made.parts:
-        by.setdefault(one.kind, []).append(triangles_of(one))
+    for body in made.parts:
+        by.setdefault(body.kind, []).append(triangles_of(body))
     names = {"substrate": "substrate.stl", "ceramic": "ceramics.stl", "glue": "glue.stl"}
     title = made.display.name
     files = {
@@ -244,7 +244,7 @@ def _assumed(made: Fabrication) -> str:
 
 
 def _files_said(made: Fabrication) -> str:
-    missed = max(volume_error(one) for one in made.parts)
+    missed = max(volume_error(body) for body in made.parts)
     said = "STL files are in millimetres, every body closed by itself."
     if missed:
         said += (

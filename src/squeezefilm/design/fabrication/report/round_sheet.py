@@ -163,7 +163,7 @@ def _diameters(actuator: DiscPlate | AnnularStator) -> list[tuple[float, str, st
         (actuator.ceramic_outer_diameter, "actuator.ceramic_outer_diameter", "ceramic ⌀"),
         (actuator.diameter, "actuator.diameter", "⌀"),
     ]
-    return sorted((one for one in diameters if one[0] > 0), key=lambda one: one[0])
+    return sorted((row for row in diameters if row[0] > 0), key=lambda row: row[0])
 
 
 def _keys_of_thickness(actuator: DiscPlate | AnnularStator) -> dict[int, str]:
@@ -184,7 +184,7 @@ def _said(made: Fabrication) -> Iterable[str]:
         count = len(teeth_of(actuator))
         if count:
             pitch, slot = (
-                millimetres(one or 0.0) for one in (actuator.tooth_pitch, actuator.slot_width)
+                millimetres(length or 0.0) for length in (actuator.tooth_pitch, actuator.slot_width)
             )
             yield (
                 f"{count} teeth on the upper face, a pitch of {pitch} mm on the mean diameter, "

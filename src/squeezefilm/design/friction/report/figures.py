@@ -188,7 +188,7 @@ FIGURES = (
     FigureOf("models", "Friction by every model", models),
     FigureOf("map", "Friction over amplitude and force", friction_map),
     FigureOf("uncertainty", "How sure it is", uncertainty, has=lambda one: one.uncertainty),
-    FigureOf("ripple", "The standing wave", ripple, has=lambda one: one.ripple),
+    FigureOf("ripple", "The standing wave", ripple, has=lambda friction: friction.ripple),
 )
 
 

@@ -81,7 +81,7 @@ def _show_front(console: Console, search: DesignSearch) -> None:
     members = search.front[:_FRONT]
     if len(members) > 1:
         heading(console, "The front: what each plate does")
-        head = [in_lines(one) for one in ("name", *front_head(requirements))]
+        head = [in_lines(name) for name in ("name", *front_head(requirements))]
         rows = [[member.name, *front_row(requirements, member)] for member in members]
         if search.reference is not None and not search.reference.reason:
             rows.append(["to compare", *row_of(requirements, search.reference), ""])
@@ -99,7 +99,7 @@ def _show_front(console: Console, search: DesignSearch) -> None:
     assert search.chosen is not None, "there is a front"
     if effects := effect_rows(requirements, search.chosen):
         heading(console, "What one standard deviation more of each tolerance does to it")
-        head = [in_lines(one) for one in ("", *effect_head(requirements))]
+        head = [in_lines(name) for name in ("", *effect_head(requirements))]
         table(console, head, effects)
 
 

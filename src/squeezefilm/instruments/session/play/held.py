@@ -82,7 +82,7 @@ def held_columns(state: HeldState | None, rows: int) -> si.FloatArray:
     """`HELD_COLUMNS` for so many rows, shape (rows, 6)."""
     if state is None:
         return np.full((rows, len(HELD_COLUMNS)), math.nan)
-    numbers = [getattr(state, one.name) for one in fields(state)[1:]]
+    numbers = [getattr(state, field.name) for field in fields(state)[1:]]
     return np.tile(np.array([float(state.locked), *numbers]), (rows, 1))
 
 

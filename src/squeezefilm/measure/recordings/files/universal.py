@@ -56,7 +56,7 @@ def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
     """Format, names of the columns and notes, and the columns' values (read in the child)."""
     path = Path(file)
     blocks = _blocks(path)
-    functions = [one for one in blocks if one.type == 58]
+    functions = [part for part in blocks if part.type == 58]
     nodes: dict[int, list[float]] = {}
     for block in (candidate for candidate in blocks if candidate.type == 15):
         c = block.content
