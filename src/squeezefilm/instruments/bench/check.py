@@ -223,8 +223,8 @@ def stop_check(talk: Conversation, frequency: si.Hertz) -> CheckResult:
     def stops(where: State) -> None:
         # An old number on purpose: stop must never depend on one.
         number = talk.send(m.Stop(), (talk.sequence - 7) & 0xFFFF)
-        found = talk.answer(number)
-        if found is None or found.reason != Reason.ACCEPTED:
+        status = talk.answer(number)
+        if status is None or status.reason != Reason.ACCEPTED:
             refused.append(where.name)
 
     stops(State.OFF)
@@ -284,8 +284,8 @@ def watchdog_checks(talk: Conversation, frequency: si.Hertz) -> list[CheckResult
         ("start", m.Start(round(frequency * 1e3)), Reason.STATE),
         ("clearing another fault", m.ClearFault(Fault.HEAT), Reason.VALUE),
     ):
-        found = talk.ask(message)
-        if found is None or found.reason != reason or found.state != State.FAULT:
+        status = talk.ask(message)
+        if status is None or status.reason != reason or status.state != State.FAULT:
             wrong.append(name)
     named = talk.ask(m.KeepAlive())
     fault = Fault.NONE if named is None else Fault(named.fault)
@@ -310,14 +310,14 @@ def _begin(talk: Conversation, limits: Limits) -> None:
             "the device does not answer; check that it is switched on, that the port is its own, "
             "and that it runs the squeezefilm firmware"
         )
-    found = talk.ask(m.Hello(0xC0FFEE))
-    if found is not None and found.state == State.FAULT:
+    status = talk.ask(m.Hello(0xC0FFEE))
+    if status is not None and status.state == State.FAULT:
         _clear(talk)
     talk.ask(m.Report(0))
     talk.listen_for(STOP_TIME)
-    found = talk.ask(m.limits_message(limits))
-    if found is None or found.reason != Reason.ACCEPTED:
-        word = "did not answer" if found is None else f"said {Reason(found.reason).name.lower()}"
+    status = talk.ask(m.limits_message(limits))
+    if status is None or status.reason != Reason.ACCEPTED:
+        word = "did not answer" if status is None else f"said {Reason(status.reason).name.lower()}"
         raise DeviceError(
             f"the device {word} to the test's limits of {TEST_VOLTAGE:g} V; its own limits must "
             "allow them and the display's frequency"
@@ -335,18 +335,18 @@ def _make_quiet(talk: Conversation) -> None:
 
 
 def _clear(talk: Conversation) -> bool:
-    found = talk.ask(m.KeepAlive())
-    if found is None:
+    status = talk.ask(m.KeepAlive())
+    if status is None:
         return False
-    found = talk.ask(m.ClearFault(found.fault))
-    return found is not None and found.reason == Reason.ACCEPTED and found.state == State.OFF
+    status = talk.ask(m.ClearFault(status.fault))
+    return status is not None and status.reason == Reason.ACCEPTED and status.state == State.OFF
 
 
 def _arm(talk: Conversation) -> None:
     talk.listen_for(STOP_TIME)
-    found = talk.ask(m.KeepAlive())
-    if found is not None:
-        talk.ask(m.Arm(found.token))
+    status = talk.ask(m.KeepAlive())
+    if status is not None:
+        talk.ask(m.Arm(status.token))
 
 
 def _start(talk: Conversation, frequency: si.Hertz) -> None:
@@ -367,15 +367,15 @@ def _refusal(
     sequence: int | None = None,
 ) -> CheckResult:
     """Check that a payload of a kind is refused for a reason, and the output stays at zero."""
-    found = talk.answer(talk.send_raw(kind, payload, sequence))
+    status = talk.answer(talk.send_raw(kind, payload, sequence))
     # Time for an output that should not be there to show.
     talk.listen_for(3e-3)
     after = talk.ask(m.KeepAlive())
     level = 0 if after is None else after.level
-    said = "no answer" if found is None else Reason(found.reason).name.lower()
+    said = "no answer" if status is None else Reason(status.reason).name.lower()
     return _result(
         f"refused: {name}",
-        found is not None and found.reason == reason and after is not None and level == 0,
+        status is not None and status.reason == reason and after is not None and level == 0,
         f"{said}; output {level * 1e-6:g} V",
         f"{reason.name.lower()}; output 0 V",
         "do not use this firmware: it must refuse this frame whole",

@@ -25,15 +25,15 @@ def doubts_of(design: StudyDesign, observer: Observer, reach: bool = False) -> t
     With `reach` each display is solved, and stimuli are named that ask for less friction than it
     makes at its largest amplitude. Raises what `load_display` and `predict` raise.
     """
-    found = [*_of_range(design, observer)]
+    sentences = [*_of_range(design, observer)]
     if design.answers and not design.catch:
-        found.append(
+        sentences.append(
             "there are no catch trials: who does not attend is told by the answers alone; add "
             "[[catch]] with a surface that everybody tells"
         )
     if reach:
-        found += [said for name in design.displays for said in _of_display(design, name)]
-    return tuple(found)
+        sentences += [said for name in design.displays for said in _of_display(design, name)]
+    return tuple(sentences)
 
 
 def _of_range(design: StudyDesign, observer: Observer) -> list[str]:

@@ -193,9 +193,9 @@ class Player:
 
     def judge(self) -> Usability:
         """Verdict on whether what was played can be used; it goes into the record."""
-        found = self._ticks.judged(self.late_commands)
-        self._note("usability", found.to_json())
-        return found
+        usability = self._ticks.judged(self.late_commands)
+        self._note("usability", usability.to_json())
+        return usability
 
     @property
     def _held(self) -> HeldState | None:
