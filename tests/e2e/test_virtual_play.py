@@ -67,6 +67,7 @@ def played(
     return outcome, judge_session(setup, read_trace(outcome.trace), folder / "truth.csv")
 
 
+@pytest.mark.slow
 def test_loops_hold_what_is_played_and_the_record_says_how(
     display: Display, point: WorkingPoint, tmp_path: Path
 ) -> None:

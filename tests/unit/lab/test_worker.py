@@ -161,6 +161,7 @@ def test_newest_wins_and_cancel_ends_what_runs(
     play(work())
 
 
+@pytest.mark.slow
 def test_work_ends_with_its_page_unless_it_writes(tmp_path: Path) -> None:
     async def work() -> None:
         busy = Busy(LONG)

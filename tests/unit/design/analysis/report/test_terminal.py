@@ -59,6 +59,7 @@ def test_no_number_of_the_first_screen_is_said_again(plate_analysis: Analysis) -
     assert not first & set(behind)
 
 
+@pytest.mark.slow
 def test_all_of_it_is_printed_where_it_is_asked_for(
     analysis_of: Callable[[str], Analysis], printed: Callable[[], str]
 ) -> None:
