@@ -33,7 +33,7 @@ _FINEST_PITCH: si.Metre = 1e-6
 _SEARCHED, _SEARCH_SHARE = 8.0, 0.1
 """Half-bandwidths above the resonance from which a search comes; of the voltage in it."""
 _PICKUP_NOISE: si.Volt = 1e-3
-"""Of each quadrature in a tick (assumed); the loops learn less at amplitudes near it."""
+"""Noise of each quadrature in a tick (assumed); the loops learn less at amplitudes near it."""
 _LONGEST_TILE_WAY: si.Metre = 0.1
 
 

@@ -1,4 +1,5 @@
-"""What a session says of the loops that hold its plate: in its view, and in the record's rows."""
+"""Words and columns of a session for the loops that hold its plate: in its view, and in the
+record's rows."""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ reported, NaN before, and where not known. See `HeldState`."""
 
 @dataclass(frozen=True, slots=True)
 class HeldState:
-    """How a device's loops are.
+    """State of a device's loops.
 
     Args:
         mode: in words: searching, probing, locked, not found, wrong sign.
@@ -47,7 +48,7 @@ class HeldState:
 
     @classmethod
     def of(cls, said: m.Loops) -> HeldState:
-        """What a device's answer says, in SI."""
+        """State by a device's answer, in SI."""
         known = said.flags & m.TEMPERATURE_KNOWN
         return cls(
             mode=_MODES[said.mode] if said.mode < len(_MODES) else str(said.mode),

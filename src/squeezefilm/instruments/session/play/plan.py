@@ -210,7 +210,8 @@ class PlayPlan:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Of the record: the loop's, and those of a device's loops where these shall hold."""
+        """Columns of the record: the loop's, and those of a device's loops where these shall
+        hold."""
         return COLUMNS if self.hold is None else COLUMNS + HELD_COLUMNS
 
 

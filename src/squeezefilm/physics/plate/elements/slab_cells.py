@@ -26,10 +26,10 @@ Matrix = NDArray[Any]
 
 
 class SliceMatrices(NamedTuple):
-    """What an element of order p and any length is made of: its slice's matrices (`P0` with the
-    shift in it, as `cross_section` names them) and the integrals along x as `line_matrices` gives
-    them; `signs` is −1 for the slice's u and 1 for all else. `groups` has for each of several
-    elements along y the unknowns inside it, and those on its two sides."""
+    """Matrices of an element of order p and any length: its slice's matrices (`P0` with the shift
+    in it, as `cross_section` names them) and the integrals along x as `line_matrices` gives them;
+    `signs` is −1 for the slice's u and 1 for all else. `groups` has for each of several elements
+    along y the unknowns inside it, and those on its two sides."""
 
     P2: Matrix
     P1: Matrix
@@ -168,7 +168,7 @@ def _rows(numbers: si.IntArray) -> Rows:
 
 
 def _part(place: _Place, wanted: Matrix) -> _Place:
-    """Of a place the unknowns that are wanted (a truth value for each of the slice)."""
+    """Place with those unknowns of it that are wanted (a truth value for each of the slice)."""
     a, unknowns, rows = place
     return a, unknowns[wanted[unknowns]], rows[wanted[unknowns]]
 
@@ -195,7 +195,7 @@ def _matrix(made: SliceMatrices, sign: int, places: list[_Place], filled: int) -
 def _block(
     made: SliceMatrices, own: tuple[int, si.IntArray], other: tuple[int, si.IntArray], sign: int
 ) -> Matrix:
-    """What unknowns of a slice have of others of slice b and of b's image, with u turned in it."""
+    """Block of unknowns of a slice with others of slice b and of b's image, with u turned in it."""
     (a, some), (b, others) = own, other
     image = made.mass.shape[0] - 1 - b
     turned = sign * made.signs[others]

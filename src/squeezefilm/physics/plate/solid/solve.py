@@ -87,7 +87,7 @@ def energy_shares_of(slabs: Slabs, vectors: si.FloatArray) -> tuple[si.FloatArra
 
 
 class _Columns(NamedTuple):
-    """What `PlateModes` has of each mode, here of those of one class."""
+    """Columns of `PlateModes` for the modes of one class."""
 
     frequencies: si.HertzArray
     errors: si.HertzArray
