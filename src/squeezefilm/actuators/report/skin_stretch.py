@@ -266,13 +266,14 @@ def _strain_map(figure: Figure, axes: Axes, wave: ShownWave, frame: int) -> None
 
 @style.drawn
 def crosstalk_figure(found: SkinStretchAnalysis) -> Figure:
-    """How far the skin moves with distance from the one contactor that pulls."""
+    """Displacement of the skin with distance from the contactor that moves a neighbour most."""
     array = found.array
     x, y = array.cradle.places
-    middle = int(np.argmin(np.hypot(x, y)))
-    moved = array.influence @ array.force_per_volt[:, middle]
-    share = 100 * np.abs(moved / moved[middle])
-    apart = 1e3 * np.hypot(x - x[middle], y - y[middle])
+    moved = np.abs(array.influence @ array.force_per_volt)
+    shares = 100 * moved / np.diag(moved)
+    others_most = np.where(np.eye(len(shares), dtype=bool), 0.0, shares).max(axis=0)
+    pulls = int(np.argmax(others_most))
+    share, apart = shares[:, pulls], 1e3 * np.hypot(x - x[pulls], y - y[pulls])
     others = apart > 0
     figure = style.new_figure(
         f"Crosstalk: a neighbour's skin moves by at most {100 * array.crosstalk:.3g} %",
@@ -280,7 +281,7 @@ def crosstalk_figure(found: SkinStretchAnalysis) -> Figure:
         4.0,
     )
     left, right = figure.subplots(1, 2)
-    along = np.abs(y - y[middle]) < 1e-9
+    along = np.abs(y - y[pulls]) < 1e-9
     left.plot(apart[others & along], share[others & along], "o", ms=4, label="along the pull")
     left.plot(
         apart[others & ~along], share[others & ~along], "s", ms=4, mfc="none", label="elsewhere"
