@@ -347,7 +347,7 @@ PLAYING = [{"key": "device", "text": "a texture on twin", "plays": True}]
 VIEW = {
     "state": "PLAYING", "fault": "NONE", "time_s": 1.2, "x_m": -0.004, "speed_m_per_s": 0.06,
     "relative_friction": 0.7, "amplitude_m": 1e-6, "wanted_m": 1e-6, "level_V": 8.08,
-    "lag_m": 1e-4, "lateness_s": 1e-5, "flags": [],
+    "lag_m": 1e-4, "lateness_s": 1e-5, "flags": [], "held": None, "loops": "",
 }  # fmt: skip
 
 
@@ -422,7 +422,7 @@ def test_a_device_that_is_gone_is_not_shown_playing(seen: Watched) -> None:
         seen.told("playing", now=[])
         shown.filter(has_text=ended["message"]).wait_for()
         values = page.locator(".numbers .number b").all_inner_texts()
-        assert values == [state, "–", "–", "–", "–", "–", "–", fault]
+        assert values == [state, "–", "–", "–", "–", "–", "–", fault, "–"]
         assert ended["message"] in page.locator("#stopbar").inner_text()
 
 
