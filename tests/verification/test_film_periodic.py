@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from tests.verification.trapped_film import trapped_load
 
+from squeezefilm.core.errors import ConvergenceError
 from squeezefilm.physics.film.gas import Aim, Gas
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
@@ -253,15 +254,23 @@ def random_cases(count, seed=20240806):
     return sigma, eps, n, kn
 
 
+def as_far_as_it_goes(sigma, eps, tolerance, **inputs):
+    """Films to a tolerance, or as far as they come."""
+    try:
+        return solve_films(sigma, eps, tolerance=tolerance, **inputs)
+    except ConvergenceError as error:
+        return error.partial
+
+
 def honesty(count, tolerances, seed=20240806):
     """For strips and discs: tolerance, share of cases within the estimate, median estimate/true."""
     sigma, eps, n, kn = random_cases(count, seed)
     rows = []
     for shape in ("strip", "disc"):
-        inputs = {"shape": shape, "polytropic_exponent": n, "knudsen_number": kn, "strict": False}
-        fine = solve_films(sigma, eps, tolerance=min(tolerances) / 100.0, **inputs).over_pressure
+        inputs = {"shape": shape, "polytropic_exponent": n, "knudsen_number": kn}
+        fine = as_far_as_it_goes(sigma, eps, min(tolerances) / 100.0, **inputs).over_pressure
         for tolerance in tolerances:
-            batch = solve_films(sigma, eps, tolerance=tolerance, **inputs)
+            batch = as_far_as_it_goes(sigma, eps, tolerance, **inputs)
             true = np.abs(batch.over_pressure - fine)
             within = np.mean(true <= batch.over_pressure_error)
             met = np.mean(batch.over_pressure_error <= tolerance * batch.over_pressure)
