@@ -5,7 +5,7 @@ import pytest
 from tests.made_bench.duffing import SofteningResonance
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
+from squeezefilm.measure.fits.vibration.ring_down import _strongest_line, fit_ring_down
 from squeezefilm.measure.recordings.kinds import RingDown
 
 T = np.arange(1500) / 500e3
@@ -73,3 +73,12 @@ def test_what_is_no_decay_is_refused(t, w, words: str) -> None:
 def test_three_modes_are_not_offered() -> None:
     with pytest.raises(InputError, match="modes"):
         fit_ring_down(RingDown(T, decay()), modes=3)
+
+
+@pytest.mark.parametrize("between", [0.0, 0.3, 0.5, 0.8])
+def test_the_first_guess_lies_between_the_lines_of_the_spectrum(between: float) -> None:
+    t = np.arange(2000) / 1e5
+    spacing = 1 / 20e-3
+    frequency = (40 + between) * spacing
+    found = _strongest_line(t, np.sin(2 * np.pi * frequency * t))
+    assert found == pytest.approx(frequency, abs=0.05 * spacing)

@@ -125,6 +125,13 @@ def test_columns_may_be_called_otherwise_and_what_is_right_follows(given: Given)
     assert set(found.phase) == {"main"}
 
 
+def test_the_head_says_what_stands_between_columns(given: Given) -> None:
+    answers = read_answers(
+        given(f"{HEAD},remark\na,30 %,42 %,second,one;two;three;four;five\n"), DESIGN
+    )
+    assert answers.trials == 1
+
+
 def test_a_row_may_stand_for_many_trials(given: Given) -> None:
     found = read_answers(
         given(f"{HEAD},count\na,30 %,42 %,second,17\na,30 %,42 %,first,3\na,30 %,18 %,first,0\n"),

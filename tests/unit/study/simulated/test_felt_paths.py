@@ -6,6 +6,7 @@ import dataclasses
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.study.conduct.rehearsal import rehearse
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.report.felt_path import felt_path, show_all
+from squeezefilm.study.simulated import felt_trials
 from squeezefilm.study.simulated.felt_paths import felt_on_path
 from squeezefilm.study.simulated.felt_trials import felt_in_trial
 from squeezefilm.subjects import plot
@@ -119,6 +121,13 @@ def test_a_rehearsed_answer_is_felt_along_its_own_path(tmp_path: Path) -> None:
             path.unlink()
         with pytest.raises(InputError, match="has 0 paths"):
             felt_in_trial(store, who, first, observer)
+
+
+def test_a_trial_of_a_series_has_no_stimulus_to_feel(monkeypatch: pytest.MonkeyPatch) -> None:
+    row = {"participant_id": "p", "trial": 4, "phase": "main", "adaptive_series": "stairs"}
+    monkeypatch.setattr(felt_trials, "trial_table", lambda _: [row])
+    with pytest.raises(InputError, match="the series 'stairs' chose, which is no stimulus"):
+        felt_in_trial(SimpleNamespace(), "p", 4)  # type: ignore[arg-type]
 
 
 def test_two_touches_are_two_paths() -> None:
