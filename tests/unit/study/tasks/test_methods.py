@@ -1,0 +1,33 @@
+"""Sentences of the methods section say what was presented."""
+
+import dataclasses
+
+import pytest
+
+from squeezefilm.core.errors import InputError
+from squeezefilm.study.design.study_design import load_design
+from squeezefilm.study.simulated.answers import SimulatedStudy
+from squeezefilm.study.tasks.methods import _stimuli
+
+
+def test_a_series_has_its_reference_and_fixed_stimuli_have_all() -> None:
+    series = load_design("period-jnd")
+    assert _stimuli(series).startswith("The reference was a square grating of friction")
+    assert _stimuli(series).count(" mm (") == 1
+    # Others of a series are for practice.
+    more = dataclasses.replace(series.stimuli[0], name="2 mm", spatial_period=2e-3)
+    practised = dataclasses.replace(series, stimuli=(*series.stimuli, more))
+    assert _stimuli(practised) == _stimuli(series)
+    fixed = load_design("friction-jnd")
+    assert _stimuli(fixed).startswith("Stimuli were square gratings of friction")
+    assert _stimuli(fixed).count(" mm (") == len(fixed.stimuli)
+
+
+def test_a_simulated_study_of_another_task_has_no_confusions() -> None:
+    study = object.__new__(SimulatedStudy)
+    tables = dataclasses.make_dataclass("Tables", ["design"])(load_design("friction-jnd"))
+    object.__setattr__(study, "matches", None)
+    object.__setattr__(study, "tables", tables)
+    for ask in (study.confusion, study.proportion_correct):
+        with pytest.raises(InputError, match="'two-interval' has no confusions"):
+            ask()
