@@ -269,10 +269,8 @@ def crosstalk_figure(found: SkinStretchAnalysis) -> Figure:
     """Displacement of the skin with distance from the contactor that moves a neighbour most."""
     array = found.array
     x, y = array.cradle.places
-    moved = np.abs(array.influence @ array.force_per_volt)
-    shares = 100 * moved / np.diag(moved)
-    others_most = np.where(np.eye(len(shares), dtype=bool), 0.0, shares).max(axis=0)
-    pulls = int(np.argmax(others_most))
+    shares = 100 * array.crosstalk_shares
+    pulls = int(np.argmax(shares.max(axis=0)))
     share, apart = shares[:, pulls], 1e3 * np.hypot(x - x[pulls], y - y[pulls])
     others = apart > 0
     figure = style.new_figure(

@@ -207,14 +207,18 @@ class SkinStretchArray:
         return budget(self.actuator, self.cradle.count, self.cradle.active_area)
 
     @property
-    def crosstalk(self) -> si.Dimensionless:
-        """The largest displacement that one actuator driven alone gives another contactor's skin,
-        over its own, with all others holding still as the springs they are."""
+    def crosstalk_shares(self) -> si.DimensionlessArray:
+        """Displacements that an actuator driven alone (column) gives the skin of the others (row),
+        over its own, which stands as 0, with all others holding still as the springs they are."""
         moved = self.influence @ self.force_per_volt
-        own = np.diag(moved)
-        shares = np.abs(moved / own[None, :])
+        shares = np.abs(moved / np.diag(moved))
         np.fill_diagonal(shares, 0.0)
-        return float(shares.max(initial=0.0))
+        return shares
+
+    @property
+    def crosstalk(self) -> si.Dimensionless:
+        """Largest of the `crosstalk_shares`."""
+        return float(self.crosstalk_shares.max(initial=0.0))
 
 
 @si.checked_numbers

@@ -10,25 +10,7 @@ from pathlib import Path
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError
-from squeezefilm.core.presets import materials
-
-__all__ = [
-    "actuator_names",
-    "claims_path",
-    "display_names",
-    "friction_folder",
-    "materials",
-    "path",
-    "requirement_names",
-    "resolve",
-    "resolve_actuator",
-    "resolve_observer",
-    "resolve_requirements",
-    "resolve_study",
-    "resolve_texture",
-    "study_names",
-    "texture_names",
-]
+from squeezefilm.core.presets import materials as materials
 
 _FOLDER = Path(__file__).parent
 _NOT_DISPLAYS = {"claims", "materials"}
@@ -73,6 +55,13 @@ def path(name: str) -> Path:
     if name not in display_names():
         raise _unknown(f"there is no preset '{name}'", name, "preset", display_names())
     return _FOLDER / f"{name}.toml"
+
+
+def study_path(name: str) -> Path:
+    """The TOML file of a preset study. Raises `ConfigError` for a name that is not known."""
+    if name not in study_names():
+        raise _unknown(f"there is no study '{name}'", name, "study", study_names())
+    return _FOLDER / "studies" / f"{name}.toml"
 
 
 def claims_path() -> Path:

@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 import secrets
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -118,7 +118,7 @@ class DeviceHost:
                 )
             self.clear()
         self.info = None
-        self._ask(m.AskInfo())
+        self._ask(m.AskInfo(), lambda: self.info)
         if self.info is None:
             raise DeviceError(
                 "the device answers and does not say what it is (info); its firmware is older than "
@@ -140,7 +140,7 @@ class DeviceHost:
         """
         self.capabilities = None
         try:
-            self._ask(m.Negotiate(m.REVISION))
+            self._ask(m.Negotiate(m.REVISION), lambda: self.capabilities)
         except DeviceError:
             _, status = self.link.refusals[-1] if self.link.refusals else ("", None)
             if status is None or status.reason != Reason.TYPE:
@@ -332,16 +332,15 @@ class DeviceHost:
         highest = 1e6 if limits is None else limits.highest_frequency
         return round(1e3 * number("frequency", frequency, si.Unit("Hz"), lowest, highest))
 
-    def _ask(self, question: m.AskInfo | m.Negotiate) -> None:
-        """Ask what the device is or can, and wait for what follows the status."""
-        which = "info" if isinstance(question, m.AskInfo) else "capabilities"
+    def _ask(self, question: m.Message, answer: Callable[[], m.Answer | None]) -> None:
+        """Ask what the device is or can, and wait for the `answer` that follows the status."""
         for _ in range(3):
             self.link.request(question)
             end = self.link.clock() + _ZERO_LIMIT
-            while getattr(self, which) is None and self.link.clock() < end:
+            while answer() is None and self.link.clock() < end:
                 self._hear()
                 self.link.wait(1e-3)
-            if getattr(self, which) is not None:
+            if answer() is not None:
                 return
 
     def _set_limits(self, limits: Limits, info: m.Info) -> None:

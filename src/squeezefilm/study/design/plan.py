@@ -13,7 +13,6 @@ from typing import Any, ClassVar
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
-from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import PLANNED_TRIALS, require_within
 from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import Result, write_named
@@ -57,7 +56,7 @@ class StudyPlan(Result):
         return tuple(key for key, one in sources if one.evidence == "assumed")
 
     def summary(self) -> dict[str, Any]:
-        """The JSON of ``--json``; keys carry units."""
+        """Numbers as plain JSON values; keys carry units."""
         design = self.design
         return {
             "name": design.name,
@@ -188,18 +187,12 @@ def new_study_file(
     """Write a commented TOML file that starts from a preset study, named for the file, on other
     `displays` (preset names or paths) where any are given.
 
-    Raises `InputError` if the file exists and is not to be replaced or for a display that cannot
-    be found, `ConfigError` for a preset that is not known.
+    Raises `InputError` if the file exists and is not to be replaced, `ConfigError` for a preset or
+    a display that is not known.
     """
     from squeezefilm.core import config, presets
 
-    if preset not in presets.study_names():
-        raise InputError(
-            f"there is no preset study '{preset}'.{si.did_you_mean(preset, presets.study_names())} "
-            f"There are {', '.join(presets.study_names())}",
-            quantity="preset",
-        )
-    text = read_toml_text(presets.resolve_study(preset))
+    text = read_toml_text(presets.study_path(preset))
     if displays:
         for display in displays:
             presets.resolve(display)
