@@ -35,7 +35,7 @@ Read = tuple[Any, list[si.FloatArray]]
 """Result of a function in the child: facts (anything that JSON holds), and arrays."""
 
 _PATIENCE: si.Second = 4 * READING_TIME.most
-"""Longest time for one file by the clock on the wall."""
+"""Longest wall-clock time for one file."""
 _LEAVE: si.Second = 2.0
 _FLOATS = np.dtype("<f8")
 _LONGEST_HEAD = 16_000_000
@@ -47,7 +47,7 @@ class IsolatedReader:
     Args:
         memory: what the child may use (bytes of address space).
         processor_time: what it may use for one file.
-        patience: how long one file may take by the clock on the wall.
+        patience: longest wall-clock time for one file.
     """
 
     def __init__(

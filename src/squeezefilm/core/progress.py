@@ -66,7 +66,7 @@ def within(tell: ShareProgress, first: float, last: float) -> ShareProgress:
 
 
 NO_HURRY = Pace()
-"""Pace of work that takes as long as it takes, told to nobody."""
+"""Pace of work without a budget, whose progress nobody is told."""
 
 
 def said_with_time_left(

@@ -80,7 +80,7 @@ class Result:
     """Common abilities of results: a short `repr`, a table for notebooks, and ways out of Python.
 
     `_shown` names, between blanks, what a person looks for first (dotted: inside of it), and
-    `summary` is what the command line's ``--json`` prints, where there is such a verb.
+    `summary` is the result as plain JSON values.
     """
 
     __slots__ = ()
@@ -92,7 +92,7 @@ class Result:
         return values
 
     def to_dict(self) -> dict[str, Any]:
-        """The numbers as plain JSON values, with units in the keys: what ``--json`` prints."""
+        """Numbers as plain JSON values, with units in the keys."""
         values: dict[str, Any] = to_json(self.summary())
         return values
 

@@ -58,7 +58,7 @@ class Reproduction:
         return tuple(item for item in self.results if item.verdict != item.claim.verdict)
 
     def summary(self) -> dict[str, Any]:
-        """The values that ``--json`` prints: ``claims`` (values in the SI ``unit`` each names),
+        """Values as plain JSON: ``claims`` (values in the SI ``unit`` each names),
         ``errata``."""
         return {
             "claims": [

@@ -140,7 +140,7 @@ class MotorAnalysis(Result):
         return (self.best.thrust - self.motion.thrust) / most
 
     def summary(self) -> dict[str, Any]:
-        """The numbers for ``--json``, with units in the keys."""
+        """Numbers as plain JSON values, with units in the keys."""
         mode = self.motor.modes[0].working
         return {
             "actuator": self.described.name,

@@ -135,7 +135,7 @@ class SkinStretchAnalysis(Result):
         return {way: lines_needed(self.array.cradle.count, way) for way in _WAYS}
 
     def summary(self) -> dict[str, Any]:
-        """The numbers for ``--json``, with units in the keys."""
+        """Numbers as plain JSON values, with units in the keys."""
         array, bender, budget = self.array, self.array.bender, self.array.budget
         heat, driven = self.power
         return {

@@ -225,7 +225,7 @@ class Analysis(Result):
         }
 
     def summary(self) -> dict[str, Any]:
-        """The numbers, with units in the keys: what ``--json`` prints."""
+        """Numbers as plain JSON values, with units in the keys."""
         p, unsure = self.prediction, self.uncertainty
         shifts = self.sensitivities if self.has_sensitivities else None
         return {
@@ -259,7 +259,9 @@ class Analysis(Result):
                 for curve in self.friction_curves
             ],
             "other_models": to_json(self.other_models) if self.whole else None,
-            "measured": [to_json(one) | {"difference": one.difference} for one in self.measured],
+            "measured": [
+                to_json(beside) | {"difference": beside.difference} for beside in self.measured
+            ],
             "drive_electronics": to_json(self.drive_electronics),
             "verdict": as_json(self.findings),
             "provenance": stamp(self.display),
@@ -267,7 +269,7 @@ class Analysis(Result):
 
 
 def _intervals(unsure: UncertainFriction | None) -> dict[str, Any]:
-    """Intervals of what the drive does, for ``--json``."""
+    """Intervals of what the drive does, as plain JSON values."""
     if unsure is None:
         return {}
     values = unsure.summary()

@@ -76,7 +76,7 @@ class FeltGratings:
         return next(speed for speed in self.at if speed.speed == self.speed)
 
     def summary(self) -> dict[str, Any]:
-        """The numbers for ``--json``, with units in the keys: those at the prediction's speed,
+        """Numbers as plain JSON values, with units in the keys: those at the prediction's speed,
         then at each."""
         return {
             **_row(self.here),

@@ -118,7 +118,7 @@ class DisplaySensitivities:
     plate_model: str
 
     def summary(self) -> dict[str, Any]:
-        """The numbers for ``--json``."""
+        """Numbers as plain JSON values."""
         return {
             "relative_friction": self.relative_friction,
             "effort": self.effort,

@@ -106,7 +106,7 @@ def verdict(
 
 
 def as_json(findings: Iterable[Finding]) -> list[dict[str, str]]:
-    """Findings for ``--json``: kind and text."""
+    """Findings as plain JSON values: kind and text."""
     return [{"kind": finding.kind, "text": finding.text} for finding in findings]
 
 

@@ -71,7 +71,7 @@ class VoltageInterval:
         return said
 
     def summary(self) -> dict[str, Any]:
-        """The numbers for ``--json``."""
+        """Numbers as plain JSON values."""
         return {
             "voltage_interval_V": list(self.interval),
             "voltage_median_V": self.median,
@@ -111,7 +111,7 @@ class Wanted:
         return f"{said}; no interval: {self.why_no_interval}" if self.why_no_interval else said
 
     def summary(self) -> dict[str, Any]:
-        """The numbers for ``--json``."""
+        """Numbers as plain JSON values."""
         unsure = self.uncertain
         return {
             "relative_friction": self.relative_friction,

@@ -72,7 +72,7 @@ class FilmAnswer(Result):
     )
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``--json`` prints."""
+        """Mapping of plain JSON values."""
         values = {
             field.name: to_json(getattr(self, field.name))
             for field in dataclasses.fields(self)
@@ -103,7 +103,7 @@ class FilmMap:
     model: str
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``--json`` prints."""
+        """Mapping of plain JSON values."""
         return {**to_json(self), "provenance": stamp(self.request)}
 
 

@@ -74,7 +74,7 @@ class FrictionAnalysis(Result):
     )
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``--json`` prints; keys carry units."""
+        """Mapping of plain JSON values; keys carry units."""
         p = self.prediction
         lifted = p.law.kind.friction == "lift"
         sharing = None if lifted else p.touch.sharing

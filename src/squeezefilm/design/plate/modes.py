@@ -75,7 +75,7 @@ class ModeList(Result):
         return chosen(self.modes, self.working, near)
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``--json`` prints; keys carry units."""
+        """Mapping of plain JSON values; keys carry units."""
         return {
             "display": self.display.name,
             "band_Hz": list(self.band),

@@ -131,7 +131,7 @@ class SolvedBody(Result):
         return warming(source, self.display.actuator, thermal)
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``--json`` prints; keys carry units."""
+        """Mapping of plain JSON values; keys carry units."""
         volts, load = self.display.drive.voltage, self.load
         levels = zip(self.sound.distances, self.sound.sound_pressure_level_dB, strict=True)
         return {

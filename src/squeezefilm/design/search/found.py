@@ -185,7 +185,7 @@ class DesignSearch(Result):
         return sourced_display_of(self.requirements, member.evaluated.design)
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``--json`` prints; keys carry units."""
+        """Mapping of plain JSON values; keys carry units."""
         chosen = self.chosen
         return {
             "requirements": self.requirements.name,

@@ -154,7 +154,7 @@ class Sweep(Result):
         )
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``--json`` prints."""
+        """Mapping of plain JSON values."""
         table = self.table()
         return {
             "title": self.title,

@@ -64,7 +64,7 @@ class PlayResult(Result):
     )
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``--json`` prints and summary.json holds."""
+        """Mapping of plain JSON values, which summary.json holds."""
         outcome = self.outcome
         return {
             "ended_because": outcome.ending.value,

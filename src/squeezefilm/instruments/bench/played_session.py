@@ -102,7 +102,7 @@ class PlayedSession(Result):
         return _last(self.trace, kind)
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``--json`` prints and summary.json holds; keys carry units."""
+        """Mapping of plain JSON values, which summary.json holds; keys carry units."""
         p, plan = self.setup.prediction, self.setup.plan
         return {
             "texture": self.setup.name,

@@ -140,7 +140,7 @@ class Calibration:
         return np.asarray(self.joint.answers[:, self.joint.asked.index(asked)])
 
     def summary(self) -> dict[str, Any]:
-        """The numbers for ``--json``."""
+        """Numbers as plain JSON values."""
         return {
             "display": self.display.name,
             "observations": to_json(self.observations),

@@ -63,7 +63,7 @@ class FolderCalibration(Result):
         return calibrated_display(self.calibration, self.recordings)
 
     def summary(self) -> dict[str, Any]:
-        """The numbers for ``--json``."""
+        """Numbers as plain JSON values."""
         return {
             **self.calibration.summary(),
             "file": None if self.file is None else str(self.file),

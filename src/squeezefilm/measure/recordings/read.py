@@ -112,7 +112,7 @@ class RecordingCheck(Result):
     _shown: ClassVar[str] = "kind file points"
 
     def summary(self) -> dict[str, Any]:
-        """Numbers for ``--json``: how the file was read, and not its numbers."""
+        """Numbers as plain JSON values: how the file was read, and not its numbers."""
         return {
             "kind": self.kind,
             "file": str(self.file),
@@ -140,7 +140,7 @@ class FolderCheck:
     refused: tuple[Refused, ...]
 
     def summary(self) -> dict[str, Any]:
-        """Numbers for ``--json``."""
+        """Numbers as plain JSON values."""
         return {
             "recordings": [check.summary() for check in self.checks],
             "refused": [{"file": str(check.file), "why": check.why} for check in self.refused],

@@ -199,7 +199,7 @@ def write_fit(check: RecordingCheck, fit: Fit, folder: Path, response: Fit | Non
 
 
 def fit_summary(check: RecordingCheck, fit: Fit, response: Fit | None = None) -> dict[str, Any]:
-    """Numbers for ``measure fit --json``: estimates in the unit that each names, adequacy,
+    """Numbers as plain JSON values: estimates in the unit that each names, adequacy,
     observations for a calibration, and how the recording was read."""
     summary: dict[str, Any] = {"recording": check.summary(), **_numbers(fit)}
     if response is not None:

@@ -148,7 +148,7 @@ class RenderAnalysis(Result):
     _table = columns
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``--json`` prints and fidelity.json holds; keys carry units."""
+        """Mapping of plain JSON values, which fidelity.json holds; keys carry units."""
         p, stroke, force = self.prediction, self.stroke, self.force
         judged = self.fidelity
         return {

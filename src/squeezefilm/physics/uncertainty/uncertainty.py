@@ -103,7 +103,7 @@ class UncertainFriction:
         return float(np.count_nonzero(self.samples <= relative_friction) / self.draws)
 
     def summary(self) -> dict[str, Any]:
-        """The numbers for ``--json``, with units in the keys where there are any."""
+        """Numbers as plain JSON values, with units in the keys where there are any."""
         return {
             "relative_friction": self.nominal,
             "relative_friction_median": self.median,

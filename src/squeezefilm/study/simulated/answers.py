@@ -86,7 +86,7 @@ class SimulatedStudy(Result):
         return self.matches
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``squeezefilm study simulate --json`` prints; keys carry units."""
+        """Mapping of plain JSON values; keys carry units."""
         tables, design = self.tables, self.tables.design
         return {
             "study": design.name,

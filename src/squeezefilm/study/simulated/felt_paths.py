@@ -100,7 +100,7 @@ class FeltPath(Result):
         return {name: one for name, one in both.items() if one is not None}
 
     def summary(self) -> dict[str, Any]:
-        """Mapping that ``--json`` prints; keys carry units."""
+        """Mapping of plain JSON values; keys carry units."""
         found = {}
         for name, direction in self.directions.items():
             rhythms = direction.percept.candidates

@@ -105,7 +105,7 @@ class Planned:
     origin: str
 
     def summary(self) -> dict[str, Any]:
-        """The numbers that ``--json`` prints."""
+        """Numbers as plain JSON values."""
         return {**to_json(self), "provenance": stamp((self.design, self.observer), self.seed)}
 
 

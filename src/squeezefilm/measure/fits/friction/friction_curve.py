@@ -118,7 +118,7 @@ class CurveComparison(FitResult):
         )
 
     def summary(self) -> dict[str, Any]:
-        """Numbers for ``--json``; keys carry units."""
+        """Numbers as plain JSON values; keys carry units."""
         c = self.curve
         return {
             "recording": to_json(c.told),

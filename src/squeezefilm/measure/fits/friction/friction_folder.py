@@ -76,7 +76,7 @@ class FolderComparison:
         return counts
 
     def summary(self) -> dict[str, Any]:
-        """Numbers for ``--json``; keys carry units."""
+        """Numbers as plain JSON values; keys carry units."""
         within, units, ends = self.units_covered
         return {
             "curves": [compared.summary() for compared in self.curves],

@@ -60,7 +60,7 @@ class PopulationComparison:
         return float(np.mean(self.measured < value))
 
     def summary(self) -> dict[str, Any]:
-        """Numbers for ``--json``, in SI units."""
+        """Numbers as plain JSON values, in SI units."""
         low, median, high = np.quantile(self.measured, [0.05, 0.5, 0.95])
         return {
             "recording": to_json(self.told),
@@ -175,7 +175,7 @@ class DetectionComparison:
         return self.measured.told
 
     def summary(self) -> dict[str, Any]:
-        """Numbers for ``--json``; keys carry units."""
+        """Numbers as plain JSON values; keys carry units."""
         return {
             "recording": to_json(self.told),
             "people": self.measured.people,
