@@ -11,6 +11,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing.connection import Connection
 from typing import Any, ClassVar
 
@@ -69,7 +70,9 @@ class ToldProcess:
         """Ask it to end, as Ctrl-C does. Returns at once."""
         if self.running:
             self._stopped = True
-            os.kill(self._process.pid, signal.SIGINT)
+            # It may have ended since, or the reader's thread have seen it end.
+            with suppress(ProcessLookupError):
+                os.kill(self._process.pid, signal.SIGINT)
 
     def kill(self) -> None:
         """End it as it is, with what it told until now."""

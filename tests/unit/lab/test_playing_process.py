@@ -287,3 +287,16 @@ def test_a_session_is_stopped_by_ctrl_c_and_killed_where_it_does_not_end(
         assert process.done == [("join", 5.0)] + ([] if obeys else ["kill"])
     assert killed == [(4242, signal.SIGINT)] * 2
     assert session._stopped
+
+
+def test_a_session_that_ended_just_before_it_is_stopped_is_no_fault(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def is_gone(*_: object) -> None:
+        raise ProcessLookupError
+
+    monkeypatch.setattr(os, "kill", is_gone)
+    session = DeviceSession(lambda _: None)
+    process = session._process = Process(obeys=True)
+    session.close()
+    assert process.done == [("join", 5.0)]
