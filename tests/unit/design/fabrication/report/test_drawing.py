@@ -19,7 +19,9 @@ from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.distributions import Normal, Uniform
 from squeezefilm.core.formats.drawing import Dimension, Drawing, Ordinate, Polyline, Text
 from squeezefilm.core.formats.dxf import APPLICATION, dxf_text
+from squeezefilm.core.kit.sheet import sheet_figure
 from squeezefilm.design.fabrication.fabricate import Fabrication
+from squeezefilm.design.fabrication.report import sheet_parts
 from squeezefilm.design.fabrication.report.page import drawing_sheet
 from squeezefilm.design.fabrication.report.rectangular_sheet import electrode_rows
 from squeezefilm.design.fabrication.report.round_sheet import sector_rows
@@ -109,6 +111,19 @@ def test_every_preset_has_a_sound_drawing_of_its_own_sizes(preset: Preset, name:
         "annular_stator": {"actuator.mean_diameter", "actuator.radial_width"},
     }[made.display.actuator.type]
     assert wanted <= set(found)
+
+
+@pytest.mark.parametrize("name", ["biet2008-plate", "winfield2007-tpad"])
+def test_a_sheet_is_as_described(
+    preset: Preset, name: str, figures_as_described: None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    origin = {
+        "squeezefilm_version": "1.2.3",
+        "config_sha256": "0123456789abcdef" * 4,
+        "created_utc": "2026-01-02T03:04:05+00:00",
+    }
+    monkeypatch.setattr(sheet_parts, "stamp", lambda _: origin)
+    sheet_figure(drawing_sheet(preset(name)))
 
 
 @st.composite
