@@ -1,7 +1,9 @@
 """Where a module's source can be mutated, and into what.
 
 Docstrings, annotations, decorators, messages of errors, logging, the looks of figures, and what
-only type checkers read are left alone.
+only type checkers read are left alone. A comparison of whole numbers is made to hold at equality,
+or not to. One of others, which are hardly ever equal, is turned round; what it says of equality is
+a mutant of its own kind, a tie.
 """
 
 from __future__ import annotations
@@ -11,7 +13,7 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-KINDS = ("body", "arithmetic", "comparison", "constant", "condition", "index", "statement")
+KINDS = ("body", "arithmetic", "comparison", "constant", "condition", "index", "statement", "tie")
 
 _ARITHMETIC: dict[type[ast.operator], tuple[str, str]] = {
     ast.Add: ("+", "-"),
@@ -38,6 +40,9 @@ _COMPARISONS: dict[type[ast.cmpop], tuple[str, str]] = {
     ast.In: (r"\bin\b", "not in"),
     ast.NotIn: (r"\bnot\s+in\b", "in"),
 }
+_REVERSED: dict[type[ast.cmpop], str] = {ast.Lt: ">", ast.LtE: ">", ast.Gt: "<", ast.GtE: "<"}
+# What is compared with these, or with a whole number, can be equal to it.
+_WHOLE = re.compile(r"\blen\(|\.(size|ndim|shape)\b|\b(count|index|number|[i-n])\b|^-?\d+$")
 _NEUTRAL = {
     "bool": "False",
     "bytes": 'b""',
@@ -303,6 +308,10 @@ class _Collector:
         for operator, right in zip(node.ops, node.comparators, strict=True):
             old, new = _COMPARISONS[type(operator)]
             span = (self._end(left), self._start(right))
+            compared = (self._text(left), self._text(right))
+            if type(operator) in _REVERSED and not any(map(_WHOLE.search, compared)):
+                self._operator("tie", function, span, old, new)
+                new = _REVERSED[type(operator)]
             self._operator("comparison", function, span, old, new)
             left = right
 

@@ -76,7 +76,7 @@ def test_a_run_finds_what_survives_and_leaves_the_source_as_it_was(
     assert found["2", "3"]["noticed"]
     assert found["0", "1"]["noticed"]
     assert not found["+", "-"]["noticed"]  # a + 0 is a - 0
-    assert "noticed: 4 of 5" in capsys.readouterr().out
+    assert "noticed, but for ties: 4 of 5" in capsys.readouterr().out
     assert (work / "tree/src/squeezefilm/gap.py").read_text() == files["src/squeezefilm/gap.py"]
     # A second run has nothing left to ask.
     before = answers.read_text()

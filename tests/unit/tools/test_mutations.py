@@ -29,10 +29,12 @@ def means(
     values: list[float], weight: Annotated[float, 5] | None
 ) -> tuple[float, list[float]]:
     """Docstring: 1 + 1."""
-    if not values or weight is None:  # a comment with < and or
+    if not values or weight is None or weight > 1.5:  # a comment with < and or
         raise ValueError(f"{len(values) + 7} values are fewer than {_LIMIT - 1}")
     total = 0.0
     for i in range(len(values)):
+        if i >= 9:
+            break
         total += (
             values[i]
             * weight  # µ, then more
@@ -69,14 +71,15 @@ def test_each_kind_yields_valid_code_that_differs_and_keeps_its_lines(kind: str)
 
 def test_what_is_changed_and_into_what() -> None:
     assert _changes("arithmetic") == {("+=", "-="), ("*", "/"), ("/", "*"), ("+", "-"), ("-", "+")}
-    assert _changes("comparison") == {("is", "is not")}
+    # Only whole numbers are often equal.
+    assert _changes("comparison") == {("is", "is not"), (">", "<"), (">=", ">")}
+    assert _changes("tie") == {(">", ">=")}
     assert ("or", "and") in _changes("condition")
-    test = "not values or weight is None"
+    test = "not values or weight is None or weight > 1.5"
     assert (test, f"not ({test})") in _changes("condition")
     # A seeded constant, a default; neither an annotation nor a message nor a decorator's argument.
-    assert {("4", "5"), ("2.0", "4.0"), ("0.0", "1.0"), ("1", "2"), ("0", "1")} == _changes(
-        "constant"
-    )
+    constants = {("4", "5"), ("2.0", "4.0"), ("0.0", "1.0"), ("1.5", "3.0"), ("1", "2"), ("0", "1")}
+    assert _changes("constant") == constants | {("9", "10")}
     assert {("i", "i + 1"), ("0", "1"), ("1", "2"), ("count", "(count) - 1")} <= _changes("index")
     bodies = {mutant.site.function: mutant.site.after for mutant in _mutants("body")}
     assert bodies == {
@@ -92,7 +95,13 @@ def test_messages_logging_and_annotations_are_left_alone() -> None:
             line = SOURCE.splitlines()[mutant.line - 1]
             assert not any(word in line for word in ("_log", "fewer", "Annotated[", "alone"))
     deleted = {before.split("(")[0].strip() for before, _ in _changes("statement")}
-    assert deleted == {"raise ValueError", "total +=", "values[0] = -total", "yield from range"}
+    assert deleted == {
+        "raise ValueError",
+        "break",
+        "total +=",
+        "values[0] = -total",
+        "yield from range",
+    }
 
 
 def test_a_body_that_does_nothing_is_no_mutant() -> None:
