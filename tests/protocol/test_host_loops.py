@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from squeezefilm.core.errors import DeviceError, OutOfRangeError
+from squeezefilm.core.errors import DeviceError, OutOfRangeError, RefusedError
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
 from squeezefilm.instruments.control.plate_loop import LOCKED, NOT_FOUND, SEARCHING
 from squeezefilm.instruments.device.host import DeviceHost
@@ -147,6 +147,26 @@ def test_an_older_device_refuses_politely_and_plays_without() -> None:
     playing(host, 12.0)
     pumped(wire, host, 0.05)
     assert (machine.state, machine.level, host.loops) == (State.PLAYING, 12_000_000, None)
+
+
+class Forgetful(Machine):
+    """A device that never answers what it is asked about revisions."""
+
+    def _answer(self, frame: Frame) -> None:
+        if frame.type != m.Negotiate.TYPE:
+            super()._answer(frame)
+
+
+def test_a_device_that_is_silent_is_not_taken_for_an_older_one() -> None:
+    """Whatever it refused before."""
+    wire, host = hosted(Forgetful())
+    host.open(LIMITS)
+    with pytest.raises(RefusedError) as refused:
+        host.link.request(m.SwitchLoops(1))
+    assert refused.value.reason == Reason.TYPE
+    with pytest.raises(DeviceError, match="did not answer Negotiate"):
+        host.hold(PLATE, AIMS)
+    assert wire.machine.state is State.OFF
 
 
 def test_a_device_without_a_phase_plays_without() -> None:

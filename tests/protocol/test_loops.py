@@ -72,7 +72,8 @@ def some_gains(pick: np.random.Generator) -> LoopGains:
     quality = float(np.exp(pick.uniform(math.log(5), math.log(1e4))))
     frequency = pick.uniform(2e4, 8e4)
     ratio = float(np.exp(pick.uniform(math.log(4e-5), math.log(4))))
-    plate = IdentifiedPlate(frequency, quality, ratio, pick.uniform(-9, 9), pick.uniform(0, 2e-3))
+    phase, delay = pick.uniform(-9, 9), pick.uniform(0, 1.95e-3)
+    plate = IdentifiedPlate(frequency, quality, ratio, phase, delay)
     aims = LoopAims(
         frequency - pick.uniform(10, 1e4),
         frequency + pick.uniform(10, 5e3),

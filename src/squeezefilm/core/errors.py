@@ -124,6 +124,14 @@ class DeviceError(SqueezefilmError):
     """A device that refused, went silent or vanished; says which command, why and what to do."""
 
 
+class RefusedError(DeviceError):
+    """A command that a device refused; `reason` is the number of its reason on the wire."""
+
+    def __init__(self, message: str, *, reason: int | None = None) -> None:
+        super().__init__(message)
+        self.reason = reason
+
+
 class RecordError(SqueezefilmError):
     """A record that cannot be written: a full disk, a file that exists, a folder that refuses."""
 

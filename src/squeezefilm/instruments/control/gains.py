@@ -41,7 +41,7 @@ class IdentifiedPlate:
     quality_factor: Annotated[si.Dimensionless, si.AtLeast(5.0), si.AtMost(1e4)]
     ratio: Annotated[si.Dimensionless, si.AtLeast(4e-5), si.AtMost(4.0)]
     phase: si.Radian = 0.0
-    delay: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(2e-3)] = 0.0
+    delay: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(1.95e-3)] = 0.0
 
     @property
     def time_constant(self) -> si.Second:
@@ -146,8 +146,8 @@ def loop_gains(plate: IdentifiedPlate, aims: LoopAims) -> LoopGains:
     """The loops' settings for a plate, rounded to the integers that they count in.
 
     The amplitude gets a pole e^{−interval/amplitude_time} by κ = (a − pole)/(1 − a); the frequency
-    two equal poles. Raises `OutOfRangeError` where a loop would be faster than its steps, or the
-    resonance lies outside the allowed frequencies.
+    two equal poles. Raises `OutOfRangeError` where a loop would be faster than its steps, the
+    resonance lies outside the allowed frequencies, or a device would refuse what comes of them.
     """
     step = aims.interval
     for name, pace in (
@@ -170,7 +170,7 @@ def loop_gains(plate: IdentifiedPlate, aims: LoopAims) -> LoopGains:
     track = 1 - math.exp(-2 * math.pi * aims.tracking_bandwidth * step)
     load = 1 - math.exp(-2 * math.pi * aims.load_bandwidth * step)
     sweep = min(plate.half_bandwidth / (_SWEEP_STEPS * plate.time_constant), _FASTEST_SWEEP)
-    return LoopGains(
+    gains = LoopGains(
         keep=round(keep * _SHARE),
         take=_SHARE - round(keep * _SHARE),
         turnover=round(ONE / (1 - keep)),
@@ -195,9 +195,25 @@ def loop_gains(plate: IdentifiedPlate, aims: LoopAims) -> LoopGains:
         heaviest=round(aims.heaviest_load * ONE),
         patience=50 + math.ceil(3 * plate.time_constant / step),
     )
+    for name, value in gains._asdict().items():
+        low, high = _BOUNDS[name]
+        # A level below 0 is for amplifiers that turn the phase, which no device has.
+        if name != "lowest_level" and not low <= value <= high:
+            scale, unit, remedy = _MENDED.get(name, (1.0, "", "change plate or aims"))
+            raise OutOfRangeError(
+                f"{name} = {value / scale:g}{unit} is not what a device counts in its loops, which "
+                f"is {low / scale:g} to {high / scale:g}{unit}; {remedy}"
+            )
+    return gains
 
 
 _ANY = (1 << 31) - 1
+_MENDED = {
+    "half_bandwidth": (1e3, " Hz", "it is frequency/(2 quality_factor): take a plate that rings"),
+    "highest_frequency": (1e3, " Hz", "lower it"),
+    "search_level": (1e6, " V", "raise search_voltage"),
+}
+"""Gains that can leave their bounds: counts in a unit, the unit, what to do."""
 _BOUNDS = {
     "keep": (0, _SHARE),
     "take": (1, _SHARE),

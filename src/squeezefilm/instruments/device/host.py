@@ -20,7 +20,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE, Limits
-from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.core.errors import DeviceError, InputError, RefusedError
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
 from squeezefilm.instruments.device.device_clock import DeviceClock
 from squeezefilm.instruments.device.machine.limits import level_of
@@ -141,9 +141,8 @@ class DeviceHost:
         self.capabilities = None
         try:
             self._ask(m.Negotiate(m.REVISION), lambda: self.capabilities)
-        except DeviceError:
-            _, status = self.link.refusals[-1] if self.link.refusals else ("", None)
-            if status is None or status.reason != Reason.TYPE:
+        except RefusedError as error:
+            if error.reason != Reason.TYPE:
                 raise
         if self.capabilities is None:
             return (

@@ -16,6 +16,7 @@ from squeezefilm.instruments.control.gains import (
     hold_phase,
     loop_gains,
     tracking_bandwidth,
+    within_bounds,
 )
 
 from .simulated_plate import (
@@ -273,3 +274,18 @@ def test_what_cannot_be_held_is_refused() -> None:
     with pytest.raises(InputError, match="search_voltage"):
         replace(AIMS, search_voltage=200.0)
     assert tracking_bandwidth(loop_gains(identified(100), AIMS), STEP) == pytest.approx(700)
+
+
+def test_what_a_device_would_refuse_is_refused_with_what_it_allows() -> None:
+    aims = LoopAims(100e3, 300e3, 100.0, 20.0)
+    edge = IdentifiedPlate(2 * 5.0 * 16_777.0, 5.0, RATIO)
+    assert within_bounds(loop_gains(edge, aims), 100_000_000, 300_000_000, 100_000_000)
+    for plate, said, says in (
+        (replace(edge, frequency=170e3), aims, "half_bandwidth = 17000 Hz .* to 16777.2 Hz; it is"),
+        (edge, replace(aims, highest_frequency=3e6), "highest_frequency = 3e.06 Hz .* lower it"),
+        (edge, replace(aims, search_voltage=1e-7), "search_level = 0 V .* raise search_voltage"),
+        (replace(edge, frequency=1.0, quality_factor=1e4), replace(aims, lowest_frequency=0.5),
+         "change plate or aims"),
+    ):  # fmt: skip
+        with pytest.raises(OutOfRangeError, match=says):
+            loop_gains(plate, said)

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import DeviceError
+from squeezefilm.core.errors import DeviceError, RefusedError
 from squeezefilm.instruments.device.device_clock import DeviceClock
 from squeezefilm.instruments.device.machine.playing import until
 from squeezefilm.instruments.device.wire import messages as m
@@ -173,8 +173,8 @@ class Link:
         meanwhile waits for `poll`.
 
         Raises:
-            DeviceError: the device refused it, or did not answer in time; the message says which
-                command and why.
+            RefusedError: the device refused it; carries its reason.
+            DeviceError: it did not answer in time; the message says which command and why.
             InputError: a message that its layout cannot carry.
         """
         name = type(message).__name__
@@ -288,7 +288,7 @@ class Link:
         return True
 
 
-def refusal(name: str, status: m.Status) -> DeviceError:
+def refusal(name: str, status: m.Status) -> RefusedError:
     """The error of a refused command: which one, why, and the device's state."""
     try:
         why = WORDS[Reason(status.reason)]
@@ -297,4 +297,5 @@ def refusal(name: str, status: m.Status) -> DeviceError:
     state = State(status.state).name if status.state <= State.FAULT else str(status.state)
     if status.state == State.FAULT and status.fault <= Fault.TRIPPED:
         state += f" ({Fault(status.fault).name.lower().replace('_', ' ')})"
-    return DeviceError(f"the device refused {name} in state {state}: {why}")
+    told = f"the device refused {name} in state {state}: {why}"
+    return RefusedError(told, reason=status.reason)
