@@ -5,7 +5,7 @@ A plate as the glass touch pad's (Q 411, 6.5 g), whose resonance drifts by its h
 Wiertlewski, IEEE ToH 11 (2018) 579, read off a figure; on a crest; |Z| with the force to the 0.3).
 Friction is the model's for the amplitude that there is: how each finger's own friction differs is
 not in it. Without loops the carrier stays at the resonance of the cold plate, and the level is what
-the free plate needs, as a device without a pickup plays.
+the free plate needs, as a device without a pickup plays. The loops are those in the device's tick.
 """
 
 from __future__ import annotations
@@ -18,10 +18,12 @@ import pytest
 from tests.shared import shared
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.drive_limits import Limits
 from squeezefilm.instruments.control.gains import LoopAims, loop_gains
+from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import Hand
-from squeezefilm.instruments.twin.held import identified
-from squeezefilm.instruments.twin.plant import Plant
+from squeezefilm.instruments.twin.pickup import identified
 from squeezefilm.instruments.twin.plant_kernel import COLUMNS
 from squeezefilm.instruments.twin.settings import PickupModel, PlateDrift, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
@@ -83,35 +85,39 @@ def played(point: WorkingPoint, controlled: bool) -> Felt:
         noise=NOISE,
         heaviest_load=25.0,
     )
-    gains = loop_gains(identified(point, settings), aims) if controlled else None
     hand = Hand(motion_from(f"120 mm in {STROKE:g} s"), begin=0.5, lift=AIR, repeats=LANDINGS)
-    plant = Plant(point, settings, hand, loops=gains)
-    load = plant._rest[1].load
-    carrier = round(whole * 1e3)
+    device = TwinDevice(load_display("touchpad-glass"), settings, hand=hand, point=point)
+    wide = Limits(60.0, 1e6, 60.0, 1e6, whole - 900, whole + 900, insulation="the glass")
+    words: list[m.Message] = [m.Hello(1), m.limits_message(wide)]
+    if controlled:
+        gains = m.SetLoops(loop_gains(identified(point, settings), aims))
+        words += [m.Negotiate(m.REVISION), gains, m.SwitchLoops(1)]
+    words += [m.Arm(device.machine.token), m.Start(round(whole * 1e3))]
+    for number, message in enumerate(words, start=1):
+        device.receive(message.frame(number).encoded(), 0)
+    assert device.machine.refused == 0
+    load = device.plant._rest[1].load
     mean, contrast = [], []
-    now = 0
-    for number in range(LANDINGS):
-        damping, mass = FINGERS[number]
+    now, number = 0, len(words)
+    for landing in range(LANDINGS):
+        damping, mass = FINGERS[landing]
         load[:] = finger_load(point, damping, mass * 1e-3)
-        end = round((0.5 + (number + 1) * (STROKE + AIR)) * 1e6)
+        end = round((0.5 + (landing + 1) * (STROKE + AIR)) * 1e6)
         while now < end:
-            now += 1000
-            x, _, _ = plant.sensed()
+            x, _, _ = device.plant.sensed()
             wave = 0.5 * (1 - math.cos(2 * math.pi * x * 1e-6 / PERIOD))
-            plant.advance(now, round(LEVEL * 1e6 * wave), carrier)
-        rows = plant.truth
-        plant.drain()
+            number += 1
+            level = m.Envelope(1000, (LEVEL * wave,))
+            device.receive(level.frame(number & 0xFFFF).encoded(), now)
+            now += 1000
+            device.advance(now)
         count = round((STROKE + AIR) * 1e3)
-        one_mean, one_contrast = _of_stroke(rows.rows[-count:])
+        one_mean, one_contrast = _of_stroke(device.truth.rows[-count:])
         mean.append(one_mean)
         contrast.append(one_contrast)
-    state = plant.loop_state if controlled else None
-    return Felt(
-        np.array(mean),
-        np.array(contrast),
-        0 if state is None else state.held,
-        0 if state is None else state.lost + state.false,
-    )
+    assert device.machine.refused == 0
+    state = device.machine.loops.state
+    return Felt(np.array(mean), np.array(contrast), state.held, state.lost + state.false)
 
 
 def _of_stroke(rows: si.FloatArray) -> tuple[float, float]:

@@ -18,16 +18,10 @@ from numpy.typing import NDArray
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import InputError
-from squeezefilm.instruments.control.plate_loop import (
-    LoopCommand,
-    LoopGains,
-    LoopState,
-    first_state,
-)
 from squeezefilm.instruments.twin import plant_kernel as k
 from squeezefilm.instruments.twin.envelope_step import Fingers, FrictionTables
 from squeezefilm.instruments.twin.hand import Hand
-from squeezefilm.instruments.twin.held import Loops, advance_held, heard, hearing
+from squeezefilm.instruments.twin.pickup import heard, hearing
 from squeezefilm.instruments.twin.settings import TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
@@ -117,10 +111,6 @@ class Plant:
     """Plate and finger. Not thread-safe. Advance it to a time; read what it does there.
 
     `hand` None leaves the plate alone. The truth is appended to `truth_file` where one is named.
-    Under `loops` (`control.gains.loop_gains`, for steps of the settings' tick) a level is the one
-    that a free plate would need, and level and carrier on the plate are theirs.
-
-    Raises `InputError` for loops without a pickup.
     """
 
     def __init__(
@@ -129,19 +119,9 @@ class Plant:
         settings: TwinSettings,
         hand: Hand | None = None,
         truth_file: Path | None = None,
-        loops: LoopGains | None = None,
     ) -> None:
         self.point, self.settings, self.hand = point, settings, hand
-        if loops is not None and (loops.lowest_level < 0 or settings.pickup.kind == "none"):
-            raise InputError(
-                "the twin's loops need a pickup, and its amplifier turns no phase: give the "
-                "settings a pickup and the loops a lowest_voltage of 0"
-            )
         self._ear = hearing(settings.pickup)
-        self._loops: Loops | None = None
-        if loops is not None:
-            self._loops = Loops(loops, settings.tick_us, self._ear)
-            self._held = first_state(loops), LoopCommand(0, loops.highest_frequency, 0)
         self.truth = TruthRecord(settings.truth_rows, truth_file)
         friction = _friction(point)
         self._c = _constants(point, settings, hand, friction)
@@ -173,8 +153,7 @@ class Plant:
         return int(self._n[k.NOW])
 
     def advance(self, until: int, level: int, carrier: int) -> None:
-        """Advance to a time (µs) at an amplitude (µV) and a carrier frequency (mHz), which loops
-        choose themselves.
+        """Advance to a time (µs) at an amplitude (µV) and a carrier frequency (mHz).
 
         Raises `InputError` for a time that has passed.
         """
@@ -182,21 +161,9 @@ class Plant:
             raise InputError(f"the plant is at {self.now} us and was asked to go to {until} us")
         reached = self.now
         while reached < until:
-            if self._loops is None:
-                reached = k.advance(until, level, carrier, *self._rest)
-            else:
-                reached, self._held = advance_held(
-                    until, level, self._loops, self._held, *self._rest
-                )
+            reached = k.advance(until, level, carrier, *self._rest)
             if reached < until:
                 self.drain()
-
-    @property
-    def loop_state(self) -> LoopState:
-        """What the loops remember. Raises `InputError` for a plant without loops."""
-        if self._loops is None:
-            raise InputError("this plant has no loops; give it some")
-        return self._held[0]
 
     def drain(self) -> None:
         """Hand the rows of truth made so far to `truth`."""

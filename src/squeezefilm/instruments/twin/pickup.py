@@ -1,22 +1,13 @@
-"""The plant under its loops: each tick it hears the pickup and sets level and carrier; compiled."""
+"""What the twin's pickup hears of its plate, and what a sweep would say of it."""
 
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.instruments.control.gains import IdentifiedPlate
-from squeezefilm.instruments.control.plate_loop import (
-    LOCKED,
-    LoopCommand,
-    LoopGains,
-    LoopState,
-    plate_step,
-)
 from squeezefilm.instruments.twin import plant_kernel as k
-from squeezefilm.instruments.twin.envelope_step import Fingers
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint
 
@@ -31,14 +22,6 @@ class Hearing(NamedTuple):
     shunt: float
     feedthrough: float
     noise: float
-
-
-class Loops(NamedTuple):
-    """Gains of the plate's loops, the period of their step (µs), and the pickup they hear."""
-
-    gains: LoopGains
-    tick: int
-    ear: Hearing
 
 
 def hearing(pickup: PickupModel) -> Hearing:
@@ -73,36 +56,3 @@ def heard(plant: k.State, ear: Hearing) -> complex:
     seed, now = int(c[k.C_SEED]), n[k.NOW]
     noise = complex(k.gaussian(seed, _PICKUP_RE, now), k.gaussian(seed, _PICKUP_IM, now))
     return complex(ear.per_metre * z + ear.shunt * current + ear.noise * noise)
-
-
-@compiled()
-def advance_held(
-    until: int,
-    wanted: int,
-    loops: Loops,
-    held: tuple[LoopState, LoopCommand],
-    plant: k.State,
-    fingers: Fingers,
-    path: k.Path,
-    ring: si.Array,
-    truth: si.Array,
-) -> Any:
-    """`plant_kernel.advance` to `until` (µs) with a step of the loops at each of their ticks.
-
-    `wanted` is the level (µV) that a free plate as identified would need; a plate that is not yet
-    locked rests while it is 0. Returns the time reached, and the loops' state and command.
-    """
-    state, command = held
-    gains, tick, ear = loops
-    counts = plant.counts
-    while counts[k.NOW] < until:
-        end = min((counts[k.NOW] // tick + 1) * tick, until)
-        resting = wanted <= 0 and state.mode != LOCKED
-        level = 0 if resting else command.level
-        if k.advance(end, level, command.frequency, plant, fingers, path, ring, truth) < end:
-            break
-        if end % tick == 0 and not resting:
-            signal = heard(plant, ear)
-            pickup = (round(signal.real * 1e6), round(signal.imag * 1e6))
-            state, command = plate_step(gains, state, pickup, wanted, level)
-    return counts[k.NOW], (state, command)
