@@ -30,6 +30,7 @@ def test_help_and_package_load_neither_plots_nor_pydantic_nor_numpy() -> None:
     assert done.stderr.strip() == "loaded: []"
 
 
+@pytest.mark.slow
 def test_analyze_prints_one_object_with_units_in_its_keys() -> None:
     done = run("analyze", "biet2008-stator", "--json", "--samples", "8")
     assert done.returncode == 0

@@ -83,6 +83,7 @@ def powered(image: Path) -> Iterator[Conversation]:
             board.kill()
 
 
+@pytest.mark.slow
 def test_the_board_is_a_program_without_floating_point(image: Path) -> None:
     names = symbols(image)
     assert {"reset", "sf_tick", "sf_loop_step"} <= names.keys()

@@ -27,6 +27,7 @@ def _snippets(part: Part) -> list[tuple[int, bool, str]]:
 
 
 WITH_SNIPPETS = [part for part in parts() if _snippets(part)]
+LONG = ("front-door", "actuators", "a-bench-at-home")
 # Those that play in real time.
 PLAYED = ("front-door", "psychopy", "twin")
 
@@ -41,7 +42,13 @@ def _run(part: Part, folder: Path, monkeypatch: pytest.MonkeyPatch, *, heavy: bo
         exec(compile("\n" * line + code, part.page.name, "exec"), names)
 
 
-@pytest.mark.parametrize("part", WITH_SNIPPETS, ids=lambda part: part.name)
+@pytest.mark.parametrize(
+    "part",
+    [
+        pytest.param(part, id=part.name, marks=[pytest.mark.slow] * (part.name in LONG))
+        for part in WITH_SNIPPETS
+    ],
+)
 def test_the_snippets_of_a_part_run(
     part: Part, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -51,6 +51,7 @@ def gone(pid: int) -> bool:
     return False
 
 
+@pytest.mark.slow
 def test_a_host_may_leave_and_come_back_and_the_truth_is_on_disk(tmp_path: Path) -> None:
     truth = tmp_path / "truth.csv"
     with running_twin(DISPLAY, truth=truth) as name:
@@ -64,6 +65,7 @@ def test_a_host_may_leave_and_come_back_and_the_truth_is_on_disk(tmp_path: Path)
     np.testing.assert_allclose(np.diff(rows[:, 0]), 1e-3, rtol=1e-6)
 
 
+@pytest.mark.slow
 def test_readings_come_by_the_devices_clock() -> None:
     with running_twin(DISPLAY, stroke="none") as name, serial.Serial(name, timeout=0.01) as port:
         assert asked(port, m.Hello(1), 1).reason == 0
@@ -108,6 +110,7 @@ def test_sigterm_ends_it_cleanly_and_takes_the_link_away(tmp_path: Path) -> None
     assert truth.read_text().endswith("\n")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="children are found in Linux's /proc")
 def test_it_dies_with_the_process_that_started_it() -> None:
     script = (

@@ -88,6 +88,7 @@ def test_a_loop_runs_in_its_own_process_and_reports() -> None:
     loop.check()
 
 
+@pytest.mark.slow
 def test_paced_by_python_it_is_the_same_loop_and_says_so() -> None:
     with LoopProcess(PLAN, priority=None, compiled_clock=False) as loop:
         rows = _ticked(loop, 100)
@@ -97,6 +98,7 @@ def test_paced_by_python_it_is_the_same_loop_and_says_so() -> None:
     assert report.spin_share == 0.0
 
 
+@pytest.mark.slow
 def test_muted_and_unheard_it_plays_nothing() -> None:
     with LoopProcess(PLAN, priority=None) as loop:
         _ticked(loop, 50)
@@ -126,6 +128,7 @@ def test_muted_and_unheard_it_plays_nothing() -> None:
         assert loop.report().stale_commands > 0
 
 
+@pytest.mark.slow
 def test_a_stopped_loop_loses_ticks_and_goes_on_without_a_burst() -> None:
     with LoopProcess(PLAN, priority=None) as loop:
         before = _ticked(loop, 100)
@@ -188,6 +191,7 @@ def _alive(process: int) -> bool:
     return state[0] != "Z"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 def test_a_loop_whose_host_was_killed_ends_by_itself() -> None:
     here = str(Path(__file__).parent)
@@ -215,6 +219,7 @@ print(report.real_time_priority, *(str(one.message) for one in caught))
 """
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="takes Linux's capabilities away")
 def test_without_real_time_priority_it_runs_and_warns() -> None:
     here = str(Path(__file__).parent)
@@ -225,6 +230,7 @@ def test_without_real_time_priority_it_runs_and_warns() -> None:
     assert "rtprio limit" in done.stdout
 
 
+@pytest.mark.slow
 def test_where_priority_is_granted_nothing_is_said_and_elsewhere_it_is() -> None:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

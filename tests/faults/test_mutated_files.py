@@ -62,6 +62,7 @@ def _require_held(found: Found, seed: int) -> None:
     assert work.get("steps", 0) <= RENDER_STEPS.most, f"{which}: {work}"
 
 
+@pytest.mark.slow
 def test_a_few_mutated_files_are_refused_or_done(tmp_path: Path) -> None:
     found = [tried(number, SEED, tmp_path) for number in range(45)]
     for one in found:

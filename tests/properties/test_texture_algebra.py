@@ -32,7 +32,7 @@ WHERE = (
 )
 NOTHING, ALL = Constant(0.0), Constant(1.0)
 
-laws = settings(settings.get_profile("properties"))
+laws = settings(settings.get_profile("dear"))
 
 
 def same(a: Pattern | Composable, b: Pattern | Composable) -> bool:

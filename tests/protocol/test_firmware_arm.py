@@ -23,11 +23,8 @@ from .test_device_check import checked, failed
 
 MOST_INSTRUCTIONS = {"cortex-m0plus": 25_000, "cortex-m3": 10_000, "cortex-m4": 10_000}
 """Of one call: at 125 MHz, and up to two cycles for an instruction, within the 1 ms of a tick."""
-# The smallest core has neither division nor wide multiplication; the others run after it, in CI.
-CORES = [
-    pytest.param(core, marks=[pytest.mark.slow] * (core != "cortex-m0plus"))
-    for core in MOST_INSTRUCTIONS
-]
+# The same C on this machine's own processor is what `make test` runs.
+CORES = [pytest.param(core, marks=pytest.mark.slow) for core in MOST_INSTRUCTIONS]
 FLOATING = re.compile(r"__aeabi_(c?[df]\w+|\w+2[dfh])|__\w+[sd]f([23]|[ds]i)?$")
 """What a compiler calls floating point by, where a core has none."""
 

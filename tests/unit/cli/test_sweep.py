@@ -20,6 +20,7 @@ def run(*arguments: str) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 def test_a_sweep_is_shown_and_written_where_asked(tmp_path: Path) -> None:
     shown = run(*ASKED, "--jobs", "1", "--out", str(tmp_path))
     assert "biet2008-stator: 3 points" in shown

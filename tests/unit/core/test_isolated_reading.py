@@ -84,6 +84,7 @@ def saved(**variables: Any) -> bytes:
     return stream.getvalue()
 
 
+@pytest.mark.slow
 def test_one_child_reads_many_files() -> None:
     reader = IsolatedReader()
     facts, (line, square) = reader.read(doubled, 2.0, data=b"abc", file="a")
@@ -206,6 +207,7 @@ def test_time_and_memory_end() -> None:
     reader.end()
 
 
+@pytest.mark.slow
 def test_a_changed_byte_loses_no_other_recording(tmp_path: Path) -> None:
     whole = saved(f=F, h=F)
     damaged = bytearray(whole)

@@ -121,6 +121,7 @@ def test_what_work_raises_keeps_its_type_and_place(busy: Busy) -> None:
     play(work())
 
 
+@pytest.mark.slow
 def test_newest_wins_and_cancel_ends_what_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

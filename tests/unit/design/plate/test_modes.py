@@ -180,6 +180,7 @@ def test_a_disc_without_diameters_has_no_pair() -> None:
     assert found.suggestion.text.startswith("Keep nodal_circles = 1, nodal_diameters = 0")
 
 
+@pytest.mark.slow
 def test_one_channel_carries_no_finger_and_a_split_does_a_little() -> None:
     found = list_modes(with_diameters(), (30e3, 36e3), split=10.0)
     pair = found.pair

@@ -133,6 +133,7 @@ def test_asked_again_it_computes_nothing_and_says_the_same(tmp_path: Path) -> No
     assert again.hypervolume == first.hypervolume
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("by_formula")
 def test_hosts_that_search_in_one_folder_end_with_what_all_have_solved(tmp_path: Path) -> None:
     def solved(member: int) -> set[Design]:

@@ -99,6 +99,7 @@ def require_recipe(folder: Path, seeds: range) -> None:
     assert robust >= least
 
 
+@pytest.mark.slow
 def test_three_bad_people_among_eight_good_ones(tmp_path: Path) -> None:
     require_recipe(tmp_path, range(2))
 

@@ -63,6 +63,7 @@ def test_numbers_and_page_say_what_the_study_calls_period(folder: Path) -> None:
     assert (folder / "boards.png").stat().st_size > 5000
 
 
+@pytest.mark.slow
 def test_the_same_boards_are_the_same_file(folder: Path, tmp_path: Path) -> None:
     again = write_boards(DESIGN, tmp_path / "again").parent
     assert (again / "boards.dxf").read_bytes() == (folder / "boards.dxf").read_bytes()

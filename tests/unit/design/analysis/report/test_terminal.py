@@ -26,8 +26,10 @@ LINES, WORDS, NUMBERS = 30, 120, 6
     "name",
     [
         "biet2008-plate",
-        "biet2008-stator",
-        *(pytest.param(odd, marks=pytest.mark.slow) for odd in ("not-driven", "no-voltage")),
+        *(
+            pytest.param(name, marks=pytest.mark.slow)
+            for name in ("biet2008-stator", "not-driven", "no-voltage")
+        ),
     ],
 )
 def test_what_one_decides_from_is_one_screen(

@@ -80,6 +80,7 @@ def test_each_figure_has_its_message(result: PlateAnalysis) -> None:
         assert words in _words(draw(result))
 
 
+@pytest.mark.slow
 def test_a_name_in_the_page_is_text(result: PlateAnalysis) -> None:
     display = dataclasses.replace(result.display, title="<script>alert(1)</script>")
     figures = {"line-scan": ("Line scan", line_scan(result))}

@@ -21,6 +21,7 @@ def test_words_come_back() -> None:
     assert [load_acquire(words, k) for k in (0, 1, 2, 4)] == [0, 1, 2, 4]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("move", [ring_put, ring_take])
 def test_a_ring_acquires_and_releases_on_arm64_too(move: Any) -> None:
     # Compiled anew, since numba shows nothing of what it took from its cache.

@@ -133,6 +133,7 @@ def made_up(design: StudyDesign, people: int, fraction: float, seed: int) -> Ans
     )
 
 
+@pytest.mark.slow
 def test_a_weber_fraction_comes_back_from_answers_to_its_page(tmp_path: Path) -> None:
     (found,) = analyze_answers(made_up(DESIGN, 10, 0.12, 3), "odd").values()
     pooled = found.main_number
