@@ -1,11 +1,14 @@
 """A scan beside solved shapes: the right one is called by its name, and neighbours are not."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
-from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan, shapes_at
+from squeezefilm.measure.fits.vibration.grid_scan import REST, fit_grid_scan, shapes_at
 from squeezefilm.measure.recordings.kinds import GridScan
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.solid.solve import solve_modes
@@ -96,3 +99,32 @@ def test_a_scan_of_nothing_is_refused() -> None:
     for w, words in ((np.zeros(X.size) + 0j, "zero everywhere"), (np.full(X.size, np.nan), "12")):
         with pytest.raises(InputError, match=words):
             fit_grid_scan(GridScan(X, Y, w, 33e3), SHAPES)
+
+
+def test_solved_shapes_are_told_at_other_places_relative_to_the_lobe() -> None:
+    """Cubics, which splines follow exactly; the second is still at the lobe, so 1 at its most."""
+    x, y = np.linspace(0, 80e-3, 9), np.linspace(0, 40e-3, 7)
+
+    def bent(x, y):
+        return 2 + x / 40e-3 - (y / 40e-3) ** 2
+
+    def still(x, y):
+        return 6 * (x / 80e-3 - 0.5) + 0 * y
+
+    grid = np.meshgrid(x, y, indexing="ij")
+    modes: Any = SimpleNamespace(
+        plate=SimpleNamespace(length=80e-3, width=40e-3),
+        count=2, x=x, y=y, shapes=np.stack([bent(*grid), still(*grid)]),
+        labels=[(8, 0), None], frequencies=np.array([33e3, 34e3]),
+    )  # fmt: skip
+    lobe = (40e-3, 20e-3)
+    driven = DrivenShape(x, y, bent(*grid), -0.5 * still(*grid), lobe, True, 10e-3)
+    places = np.array([0.0, 13e-3, 71e-3]), np.array([40e-3, 3e-3, 22e-3])
+    first, second, rest = shapes_at(modes, *places, driven).items()
+    assert (first[0], second[0], rest[0]) == ("(8,0) at 33 kHz", "in plane at 34 kHz", REST)
+    assert first[1] == pytest.approx(bent(*places) / bent(*lobe))
+    assert second[1] == pytest.approx(still(*places) / 3)
+    assert rest[1] == pytest.approx(-still(*places) / 3)
+    for beside in ((-1e-3, 0.0), (81e-3, 0.0), (0.0, -1e-3), (0.0, 41e-3)):
+        with pytest.raises(InputError, match="x" if beside[0] else "y"):
+            shapes_at(modes, np.array(beside[:1]), np.array(beside[1:]), driven)

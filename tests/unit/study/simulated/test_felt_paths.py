@@ -138,3 +138,32 @@ def test_two_touches_are_two_paths() -> None:
     assert found.explored.passes == 2
     assert found.explored.touched == pytest.approx(1.0)
     assert found.directions["along x"].runs == 2
+
+
+@pytest.mark.parametrize(
+    ("participant", "trial", "says"),
+    [
+        ("q", 4, "'q' has no answer in s.sqlite; enrolled are: p, r"),
+        ("p", 3, "trial 3 of p has no answer; answered are 2 to 5"),
+        # What one got to know before has no number of its own.
+        ("p", 1, "answered are 2 to 5"),
+        ("r", 1, "answered are 0 to 0"),
+    ],
+)
+def test_an_answer_that_is_not_there_says_which_are(
+    participant: str, trial: int, says: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows = [
+        {"participant_id": who, "trial": number, "phase": phase, "adaptive_series": ""}
+        for who, number, phase in (
+            ("p", 1, "familiarisation"),
+            ("p", 5, "main"),
+            ("p", 2, "main"),
+            ("r", 1, "familiarisation"),
+        )
+    ]
+    monkeypatch.setattr(felt_trials, "trial_table", lambda _: rows)
+    people = [{"uuid": "p"}, {"uuid": "r"}]
+    store = SimpleNamespace(participants=lambda: people, path=Path("s.sqlite"))
+    with pytest.raises(InputError, match=says):
+        felt_in_trial(store, participant, trial)  # type: ignore[arg-type]

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from scipy import stats
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.senses import Candidates
@@ -66,3 +68,19 @@ def test_what_cannot_be_contrasted_is_refused() -> None:
         planned_contrast(ALIKE, EXACT, HERE, "nowhere")
     with pytest.raises(InputError, match="people = 5"):
         planned_contrast(ALIKE, EXACT, HERE, THERE, people=5)
+
+
+def test_the_p_is_students_and_of_people_on_both_displays(monkeypatch: pytest.MonkeyPatch) -> None:
+    scores = np.array([0.3, -0.1, 0.4, 0.2, 0.25])
+    assert otherwise_than_0(scores) == pytest.approx(stats.ttest_1samp(scores, 0.0).pvalue)
+    assert otherwise_than_0(-scores) == pytest.approx(stats.ttest_1samp(scores, 0.0).pvalue)
+    values = np.array([0.2, 0.5]), np.array([0.1, 0.8])
+    answers: Any = SimpleNamespace(main=lambda number: number)
+    for measure, said, expected in (
+        ("Weber fraction", "ln Weber fraction", np.log([2.0, 0.625])),
+        ("exponent", "exponent", [0.1, -0.3]),
+    ):
+        monkeypatch.setattr(module, "person_values", lambda n, m=measure: (m, values[n]))
+        name, found = module.within_people(answers)
+        assert name == said
+        assert found == pytest.approx(expected)

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy import stats
 from tests.recovery.task_people import DESIGNS, Person, analysed, answered, somebody
 
 from squeezefilm.core.errors import InputError
@@ -112,9 +113,19 @@ def test_exponents_are_those_of_peoples_own_lines() -> None:
     for one, person in zip(persons, drawn, strict=True):
         mine = main.participant == main.people.index(one.person)
         x, y = np.log(main.values[main.first[mine]]), np.log(main.estimate[mine])
-        assert one.estimate.value == pytest.approx(np.polyfit(x, y, 1)[0])
+        line = stats.linregress(x, y)
+        reach = stats.t.ppf(0.975, x.size - 2) * line.stderr
+        assert one.estimate.value == pytest.approx(line.slope)
+        assert (one.estimate.low, one.estimate.high) == pytest.approx(
+            (line.slope - reach, line.slope + reach)
+        )
         assert abs(one.estimate.value - person.exponent) < 0.3
-    assert pooled.value == pytest.approx(np.mean([one.estimate.value for one in persons]))
+    slopes = [one.estimate.value for one in persons]
+    assert pooled.value == pytest.approx(np.mean(slopes))
+    assert spread.value == pytest.approx(np.std(slopes, ddof=1))
+    # At each end of the interval, so small or large a spread of four degrees of freedom is rare.
+    for end, chance in ((spread.low, 0.975), (spread.high, 0.025)):
+        assert stats.chi2.cdf(4 * (spread.value / end) ** 2, 4) == pytest.approx(chance)
     conditions, notes = magnitude_conditions(main, 0.95)
     numbers = [one.magnitude.value for one in conditions if one.magnitude is not None]
     assert numbers == sorted(numbers)
