@@ -8,6 +8,7 @@ import meshio
 import numpy as np
 import pytest
 
+from squeezefilm.core.errors import InputError
 from squeezefilm.core.formats.stl import stl_bytes
 from squeezefilm.design.fabrication.facets import triangles_of
 from squeezefilm.physics.plate.parts import Part, Sector
@@ -30,6 +31,12 @@ def test_another_program_reads_the_triangles(tmp_path: Path) -> None:
     assert np.einsum("ij,ij->i", stated, found_normals) == pytest.approx(
         np.linalg.norm(found_normals, axis=1), rel=1e-3
     )
+
+
+@pytest.mark.parametrize("shape", [(3, 3), (1, 3, 2), (1, 2, 3), (2, 1, 3, 3), (9,)])
+def test_what_is_no_row_of_triangles_is_refused(shape: tuple[int, ...]) -> None:
+    with pytest.raises(InputError, match="corners by coordinates"):
+        stl_bytes(np.zeros(shape), "a ring")
 
 
 def test_a_name_in_other_letters_fits_the_header() -> None:

@@ -203,6 +203,13 @@ def test_two_modes_in_one_sweep_are_fitted_together() -> None:
     assert both.mode.number == 1
     assert both.adequacy.adequate
     assert both.compliance_11.value == pytest.approx(math.exp(TRUE[0]), rel=0.01)
+    # Of what was fitted: s12 = −σ s11 and k_p² = 2 d31²/(s11 ε33 (1 − σ)).
+    s11, d31 = both.compliance_11.value, both.charge_coefficient_31.value
+    poisson, permittivity = both.poisson_ratio.value, both.free_permittivity_33.value
+    assert both.compliance_12.value == pytest.approx(-poisson * s11)
+    assert both.planar_coupling.value**2 == pytest.approx(
+        2 * d31**2 / (s11 * permittivity * VACUUM_PERMITTIVITY * (1 - poisson))
+    )
     # The ratio of two radial modes tells Poisson's.
     assert both.from_data["-s12/s11"] < 0.2
 

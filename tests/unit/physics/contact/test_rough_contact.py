@@ -147,3 +147,12 @@ def test_what_is_refused() -> None:
 def test_the_largest_pressure_is_that_of_the_least_gap() -> None:
     most = CONTACT.largest_pressure
     assert most == pytest.approx(float(CONTACT.pressure(LEAST_GAP * CONTACT.roughness)), rel=1e-9)
+
+
+def test_the_scale_of_pressure_is_that_of_the_longest_wave() -> None:
+    q0 = 2 * math.pi / CONTACT.longest_wavelength
+    assert CONTACT.pressure_scale == pytest.approx(2e6 * q0 * 1.1e-6)
+    assert CONTACT.least_gap == pytest.approx(LEAST_GAP * 1.1e-6)
+    assert CONTACT.decay_length == pytest.approx(CONTACT.spectrum.decay * 1.1e-6)
+    pressed = CONTACT.pressure(np.array([CONTACT.least_gap]))[0]
+    assert pressed == pytest.approx(CONTACT.largest_pressure, rel=1e-6)

@@ -73,6 +73,10 @@ def test_a_rectangles_weights_make_the_area_and_its_middle_is_the_origin() -> No
     assert found.position.max(axis=0) == pytest.approx([1.5e-3, 1.5e-3])
     assert found.extent == pytest.approx(1.5e-3 * math.sqrt(2))
     assert found.velocity[1] == moving[0, 1]
+    # Each point has its own place: y goes on first.
+    assert found.position[[1, 4, 11]] == pytest.approx(
+        np.array([[-1.5e-3, -0.5e-3], [-0.5e-3, -1.5e-3], [1.5e-3, 1.5e-3]])
+    )
 
 
 @pytest.mark.parametrize("inner", [0.0, 2e-3])

@@ -18,6 +18,7 @@ from squeezefilm.core.presets import display_names
 from squeezefilm.core.quantities import Unit
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.contact.asperities import AsperityLaw
+from squeezefilm.physics.contact.rough_contact import RoughContact
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.working_mode import working_mode
 from squeezefilm.physics.uncertainty import draws, free_amplitude, uncertainty
@@ -184,6 +185,11 @@ def test_a_draw_is_a_display_with_other_values_and_laws(stator: Display, point: 
     assert (finger.plateau_width, finger.moisture) == (200e-6, "moist")
     assert isinstance(finger.asperities, AsperityLaw)
     assert finger.asperities.heights == "gaussian"
+    # Of separate asperities no real contact area is known, so no friction by shear of it.
+    assert finger.shear_strength is None
+    rough = mixture.made({}, {HEIGHT_LAW: "persson"}).display.finger
+    assert isinstance(rough.asperities, RoughContact)
+    assert rough.shear_strength == stator.finger.shear_strength
     # The contact has its described area at the described force, and grows from there.
     assert finger.normal_force == stator.finger.normal_force
     assert (law.normal_force, law.slip, law.surface.roughness) == (0.6, "veijola", 1e-6)

@@ -23,6 +23,21 @@ def test_a_series_has_its_reference_and_fixed_stimuli_have_all() -> None:
     assert _stimuli(fixed).count(" mm (") == len(fixed.stimuli)
 
 
+def test_surfaces_that_are_no_gratings_are_named() -> None:
+    series = load_design("period-jnd")
+    crossed = dataclasses.replace(series.stimuli[0], crossed_period=3e-3)
+    named = dataclasses.replace(series, stimuli=(crossed, *series.stimuli[1:]))
+    said = _stimuli(named)
+    assert said.startswith(f"The reference was the surface “{crossed.name}” (")
+    assert " by 3 mm, " in said
+    assert crossed.surface_sha256[:12] in said
+    fixed = load_design("friction-jnd")
+    other = dataclasses.replace(fixed.stimuli[0], crossed_period=3e-3)
+    several = dataclasses.replace(fixed, stimuli=(other, *fixed.stimuli[1:]))
+    assert _stimuli(several).startswith("Stimuli were surfaces of friction: “")
+    assert _stimuli(several).count("; “") == len(fixed.stimuli) - 1
+
+
 def test_a_simulated_study_of_another_task_has_no_confusions() -> None:
     study = object.__new__(SimulatedStudy)
     tables = dataclasses.make_dataclass("Tables", ["design"])(load_design("friction-jnd"))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -17,10 +19,12 @@ from squeezefilm.physics.plate.ring.elements import (
 from squeezefilm.physics.plate.ring.section import AnnularSection, RingLayer
 
 
+SOLID = isotropic_solid(ElasticMaterial("glass", 70e9, 0.22, 2500.0))
+
+
 @pytest.fixture(scope="module")
 def system() -> HarmonicSystem:
-    glass = isotropic_solid(ElasticMaterial("glass", 70e9, 0.22, 2500.0))
-    section = AnnularSection((RingLayer(0.0, 10e-3, 0.0, 1e-3, glass),))
+    section = AnnularSection((RingLayer(0.0, 10e-3, 0.0, 1e-3, SOLID),))
     return harmonic_system(section, 2, 2, ring_mesh(section, graded=False))
 
 
@@ -75,3 +79,18 @@ def test_a_corner_is_met_within_rounding_only() -> None:
     assert graded_edges([0.0, 1.0], 1.0, [0.5e-9]).size == 3
     assert graded_edges([0.0, 1.0], 1.0, [2e-9]).size == 2
     assert graded_edges([0.0, 1.0], 1.0, [5.0, 1.0]).size == 3
+
+
+def test_a_stepped_section_has_its_own_height_mass_and_surface() -> None:
+    """A web below and beside a ring that stands higher."""
+    web = RingLayer(5e-3, 20e-3, -1e-3, 1e-3, SOLID)
+    ring = RingLayer(20e-3, 30e-3, 0.5e-3, 4e-3, SOLID)
+    section = AnnularSection((web, ring))
+    assert (web.thickness, ring.thickness) == pytest.approx((2e-3, 3.5e-3))
+    assert section.thickness == pytest.approx(5e-3)
+    volume = math.pi * (2e-3 * (20**2 - 5**2) + 3.5e-3 * (30**2 - 20**2)) * 1e-6
+    assert section.mass == pytest.approx(SOLID.density * volume)
+    assert section.surface_radii == (20e-3, 30e-3)
+    assert section.mean_diameter == pytest.approx(50e-3)
+    shear = math.sqrt(SOLID.density / SOLID.stiffness[3, 3])
+    assert section.shear_times == pytest.approx({SOLID.name: 3.5e-3 * shear})
