@@ -150,6 +150,8 @@ def test_a_wave_moves_over_the_contactors_as_the_finger_does(array: SkinStretchA
     blind = cradle.pattern_voltages(SineWave(1.2e-3), array.cradle, times[:1], (0.1, 0.0), 100.0)
     assert np.ptp(blind) < 1e-6
     assert cradle.finest_period(array.cradle) == pytest.approx(2.4e-3)
+    with pytest.raises(InputError, match="pattern"):
+        cradle.pattern_voltages(np.cos, array.cradle, times, (0.1, 0.0), 100.0)  # type: ignore[arg-type]
     with pytest.raises(InputError, match="times is empty"):
         cradle.pattern_voltages(wave, array.cradle, np.zeros(0), (0.1, 0.0), 100.0)
 

@@ -192,8 +192,14 @@ def test_a_pairing_code_works_once_and_cannot_be_guessed():
     entered = keys.use_code(code)
     assert entered is not None
     assert entered[0].role == "participant"
-    assert entered[1] == "/participant"
+    assert (entered[0].station, entered[1]) == ("station 1", "/participant")
     assert keys.use_code(code) is None
+    # After four wrong ones the right one still opens, another station.
+    code = keys.new_code("/tablet")
+    assert [keys.use_code("y") for _ in range(4)] == [None] * 4
+    entered = keys.use_code(code)
+    assert entered is not None
+    assert (entered[0].station, entered[1]) == ("station 2", "/tablet")
     code = keys.new_code()
     wrong = f"{(int(code) + 1) % 10**6:06d}"
     assert [keys.use_code(wrong) for _ in range(5)] == [None] * 5

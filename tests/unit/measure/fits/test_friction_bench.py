@@ -1,13 +1,15 @@
 """A friction bench: strokes found, drift told from amplitude, spread between strokes kept."""
 
 import dataclasses
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from tests.made_bench.strokes import PlannedStrokes, recorded_strokes
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
+from squeezefilm.measure.fits.friction.friction_bench import _Design, _levels, fit_friction_bench
 from squeezefilm.measure.fits.friction.strokes import sliding_strokes
 
 LEVELS = np.array([0.0, 0.5e-6, 1e-6, 2e-6])
@@ -144,3 +146,47 @@ def test_what_is_no_sliding_is_refused() -> None:
         fit_friction_bench(short)
     with pytest.raises(InputError, match="drift"):
         fit_friction_bench(recording, drift=9)
+
+
+def test_levels_are_told_apart_by_a_share_of_the_largest() -> None:
+    levels, number = _levels(np.array([2e-6, 0.0, 1.01e-6, 0.99e-6, 2e-6, 0.01e-6]))
+    assert levels == pytest.approx([0.005e-6, 1e-6, 2e-6])
+    assert number.tolist() == [2, 0, 1, 1, 2, 0]
+    assert _levels(np.zeros(3))[1].tolist() == [0, 0, 0]
+
+
+def test_a_design_has_a_column_for_each_thing_that_varied() -> None:
+    random = np.random.default_rng(3)
+    known = {
+        "amplitude": np.array([0.0, 1e-6, 2e-6, 0.0, 1e-6, 2e-6]),
+        "speed": 0.07 * np.exp(0.2 * random.standard_normal(6)),
+        "force": np.exp(0.3 * random.standard_normal(6)),
+        "time": np.array([1.0, 2.0, 2.5, 4.0, 5.0, 9.0]),
+        "direction": np.array([1.0, -1.0, 1.0, -1.0, 1.0, 1.0]),
+    }
+
+    def design(drift: int, **changes: np.ndarray) -> tuple[_Design, np.ndarray]:
+        strokes: Any = SimpleNamespace(column=(known | changes).__getitem__)
+        found = _Design.of(strokes, drift)
+        return found, found.matrix.T
+
+    whole, columns = design(2)
+    assert whole.levels == pytest.approx([0.0, 1e-6, 2e-6])
+    assert whole.speed == pytest.approx(np.prod(known["speed"]) ** (1 / 6))
+    assert whole.force == pytest.approx(np.prod(known["force"]) ** (1 / 6))
+    assert (whole.speeds_vary, whole.forces_vary, whole.drift_at) == (True, True, 7)
+    share = known["amplitude"] / 2e-6
+    place = (known["time"] - 5) / 4
+    bend = (3 * place**2 - 1) / 2
+    expected = [known["amplitude"] == level for level in (0.0, 1e-6, 2e-6)]
+    for middle, name in ((whole.speed, "speed"), (whole.force, "force")):
+        deviation = np.log(known[name] / middle)
+        expected += [deviation, deviation * share]
+    direction = known["direction"]
+    expected += [place - place.mean(), bend - bend.mean(), direction - direction.mean()]
+    assert columns == pytest.approx(np.array(expected, dtype=float))
+    # What hardly varied has no column, and one level no share of it.
+    even, columns = design(1, speed=np.full(6, 0.07), direction=np.ones(6))
+    assert (even.speeds_vary, even.drift_at, len(columns)) == (False, 5, 6)
+    alone, columns = design(1, amplitude=np.full(6, 1e-6))
+    assert (alone.levels.size, alone.drift_at, len(columns)) == (1, 3, 5)

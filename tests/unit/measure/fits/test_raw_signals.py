@@ -1,11 +1,14 @@
 """Raw signals: the response of a resonance, the scale and delay of an instrument."""
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
-from squeezefilm.measure.fits.vibration.raw_signals import fit_raw_signals
+from squeezefilm.measure.fits.vibration.raw_signals import _coherent, fit_raw_signals
 from squeezefilm.measure.recordings.kinds import RawSignals
 
 RATE = 200e3
@@ -111,3 +114,36 @@ def test_a_segment_longer_than_half_of_the_recording_is_refused() -> None:
     v, x = resonant()
     with pytest.raises(InputError, match="at most half"):
         fit_raw_signals(RawSignals(T, v, x), segment=0.1)
+
+
+@pytest.mark.parametrize(
+    ("share", "within", "adequate", "said"),
+    [
+        (0.85, 9.1, True, []),
+        (0.75, 9.1, False, ["Most of the motion does not come from the drive"]),
+        (0.85, 8.9, False, ["Segments of 20 ms are too short", "band holds 8.9 frequencies"]),
+        (0.75, 8.9, False, ["Most of the motion", "Segments of 20 ms"]),
+    ],
+)
+def test_what_is_adequate_of_a_spectrum(
+    share: float, within: float, adequate: bool, said: list[str]
+) -> None:
+    """Half of the points have a coherence, the others less; the half-power band holds so many."""
+    f, quality = np.linspace(29e3, 31e3, 41), 30e3 / within / 50.0
+    coherence = np.where(np.arange(41) < 30, share, share - 0.1)
+    coherence[7] = 0.3
+    h = 1e-7 / (1 + 1j / quality - (f / 30e3) ** 2)
+    averaged: Any = SimpleNamespace(
+        response=SimpleNamespace(frequency=f, coherence=coherence, displacement_per_volt=h)
+    )
+    found = _coherent(averaged, 20e-3)
+    assert found.adequate is adequate
+    assert found.residual == found.noise == pytest.approx(np.sqrt(1 - coherence.mean()))
+    begin = f"Coherence of motion and drive is {share:.3f} in the middle, least at 29.35 kHz, where"
+    assert found.sentence.startswith(f"{begin} it is 0.300.")
+    assert found.where == "at 29.35 kHz"
+    assert [sentence in found.sentence for sentence in said] == [True] * len(said)
+    assert ("does not come" in found.sentence, "too short" in found.sentence) == (
+        share < 0.8,
+        within < 9,
+    )

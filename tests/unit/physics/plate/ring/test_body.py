@@ -21,12 +21,16 @@ from squeezefilm.physics.plate.ring.body import (
     ring_body,
     stator_assumptions,
 )
+from squeezefilm.physics.plate.ring.elements import harmonic_system, ring_mesh
 from squeezefilm.physics.plate.ring.modes import (
+    _eigenpairs,
+    _mode,
     annular_admittance,
     annular_modes,
     clamped_capacitance,
 )
 from squeezefilm.physics.plate.ring.response import ring_circuit, ring_response
+from squeezefilm.physics.plate.ring.section import bonded_disc
 from squeezefilm.physics.plate.solid.layers import media
 from squeezefilm.physics.plate.working_mode import working_mode
 
@@ -185,3 +189,27 @@ def test_a_band_of_waves_across_a_layer_is_refused(
         annular_modes(body.section, 0, near=7e6)
     with pytest.raises(OutOfRangeError, match=r"an admittance at 7 MHz.* kHz at most"):
         annular_admittance(body.section, body.drive, np.array([30e3, 7e6]), harmonics=(0,))
+
+
+@pytest.mark.parametrize("number", [2, 3])
+def test_a_mode_does_not_depend_on_the_size_of_its_vector(disc: DiscPlate, number: int) -> None:
+    """All but its mass, which is that of a vector of unit modal mass."""
+    section = bonded_disc(disc)
+    system = harmonic_system(section, 0, 2, ring_mesh(section, graded=False))
+    squares, vectors = _eigenpairs(system, 20e3, 4)
+    made = [
+        _mode(section, system, float(squares[number]), scale * vectors[:, number], 50.0)
+        for scale in (1.0, -3.0)
+    ]
+    one, other = made
+    assert other.modal_mass == pytest.approx(one.modal_mass / 9)
+    assert other.modal_force_all_round == pytest.approx(one.modal_force_all_round)
+    assert other.layer_energy == pytest.approx(one.layer_energy)
+    assert other.layer_energy.sum() == pytest.approx(1.0)
+    for name in ("displacement", "surface_shape"):
+        assert getattr(other, name) == pytest.approx(getattr(one, name), abs=1e-9)
+    assert np.abs(one.surface_shape).max() == pytest.approx(1.0)
+    # What a volt does to it as it moves: its mean force through its own motion.
+    moved = one.displacement[system.z == system.z.max(), 2]
+    assert moved == pytest.approx(one.surface_shape)
+    assert np.all(np.diff(one.surface_radius) > 0)

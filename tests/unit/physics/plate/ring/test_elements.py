@@ -18,7 +18,6 @@ from squeezefilm.physics.plate.ring.elements import (
 )
 from squeezefilm.physics.plate.ring.section import AnnularSection, RingLayer
 
-
 SOLID = isotropic_solid(ElasticMaterial("glass", 70e9, 0.22, 2500.0))
 
 
