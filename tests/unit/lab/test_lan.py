@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import hashlib
 import ipaddress
+import re
 import ssl
 import sys
 from collections.abc import Callable
@@ -196,3 +197,23 @@ def test_the_listener_is_asked_for_the_port_and_address(monkeypatch: pytest.Monk
     assert asked == [(8632, "192.168.1.20"), (9000, "169.254.7.7")]
     with pytest.raises(InputError, match=f"lan {'x' * 60} is no IPv4"):
         lan_listener("x" * 61)
+
+
+@pytest.mark.parametrize(
+    ("address", "said"),
+    [
+        ("0.0.0.0", "lan 0.0.0.0 is not allowed"),
+        ("224.0.0.1", "lan 224.0.0.1 is not allowed"),
+        ("8.8.8.8", "lan 8.8.8.8 is not allowed"),
+        ("192.168.1.20", "lan 192.168.1.20 is no address of this computer"),
+    ],
+)
+def test_addresses_of_others_are_not_listened_on(
+    address: str, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def taken(*_: object) -> None:
+        raise OSError("cannot assign")
+
+    monkeypatch.setattr(lan, "listening_socket", taken)
+    with pytest.raises(InputError, match=re.escape(said)):
+        lan_listener(address)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import pickle
 
 import numpy as np
 import pytest
@@ -44,6 +45,10 @@ def test_a_beam_moves_alike_all_across_and_stands_still_at_its_nodes() -> None:
     assert shape.grid(nodes, y) == pytest.approx(0.0, abs=1e-3)
     assert np.ptp(shape.grid(np.linspace(0, 0.083, 50), y), axis=1) == pytest.approx(0.0)
     assert at(shape, *(np.array([one]) for one in shape.lobe)) == pytest.approx(1.0)
+    # Another process has the same surface.
+    x = np.linspace(0, 0.083, 7)
+    known = shape.grid(x, y)
+    assert pickle.loads(pickle.dumps(shape)).grid(x, y) == pytest.approx(known, abs=1e-12)
 
 
 def test_a_beam_with_its_nodal_lines_across_the_width_is_the_turned_one() -> None:
