@@ -48,9 +48,7 @@ def foot(feet: Feet, i: int, depth: float, speed: float, stretch: np.ndarray) ->
 
     def over(share: float) -> float:
         left = (share * force - lean * depth) / feet.k_tt[i]
-        return float(
-            share * np.linalg.norm(force) - limit * (feet.k_nn[i] * depth + lean @ left)
-        )
+        return float(share * np.linalg.norm(force) - limit * (feet.k_nn[i] * depth + lean @ left))
 
     if over(1.0) > 0:
         force = force * brentq(over, 0.0, 1.0, xtol=1e-15, rtol=1e-15)
