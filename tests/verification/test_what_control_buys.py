@@ -23,7 +23,6 @@ from squeezefilm.instruments.control.gains import LoopAims, loop_gains
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import Hand
-from squeezefilm.instruments.twin.pickup import identified
 from squeezefilm.instruments.twin.plant_kernel import COLUMNS
 from squeezefilm.instruments.twin.settings import PickupModel, PlateDrift, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
@@ -90,7 +89,7 @@ def played(point: WorkingPoint, controlled: bool) -> Felt:
     wide = Limits(60.0, 1e6, 60.0, 1e6, whole - 900, whole + 900, insulation="the glass")
     words: list[m.Message] = [m.Hello(1), m.limits_message(wide)]
     if controlled:
-        gains = m.SetLoops(loop_gains(identified(point, settings), aims))
+        gains = m.SetLoops(loop_gains(point.identified(settings), aims))
         words += [m.Negotiate(m.REVISION), gains, m.SwitchLoops(1)]
     words += [m.Arm(device.machine.token), m.Start(round(whole * 1e3))]
     for number, message in enumerate(words, start=1):

@@ -10,25 +10,25 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TextIO
+from typing import NamedTuple, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.compiled import announce
+from squeezefilm.core.compiled import announce, compiled
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.twin import plant_kernel as k
 from squeezefilm.instruments.twin.envelope_step import Fingers, FrictionTables
 from squeezefilm.instruments.twin.hand import Hand
-from squeezefilm.instruments.twin.pickup import heard, hearing
-from squeezefilm.instruments.twin.settings import TwinSettings
+from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.contact.sliding.march import substeps
 from squeezefilm.physics.plate.heat.states import cooling_of, heat_capacity
 from squeezefilm.physics.plate.heat.thermal import driven_thickness, thermal_body
 
+_PICKUP_RE, _PICKUP_IM = 11, 12  # streams of noise
 _BUFFER = 2000  # rows between two visits to Python
 
 
@@ -105,6 +105,38 @@ class TruthRecord:
         if self._file is not None:
             self._file.close()
             self._file = None
+
+
+class Hearing(NamedTuple):
+    """Numbers of a pickup: volts per metre of vibration, ohms for the motional current, the share
+    of the capacitance's current that leaks, and noise (V)."""
+
+    per_metre: float
+    shunt: float
+    feedthrough: float
+    noise: float
+
+
+def hearing(pickup: PickupModel) -> Hearing:
+    """Numbers of a pickup; all 0 without one."""
+    if pickup.kind == "none":
+        return Hearing(0.0, 0.0, 0.0, 0.0)
+    if pickup.kind == "sensing_patch":
+        return Hearing(pickup.sensitivity, 0.0, 0.0, pickup.noise)
+    return Hearing(0.0, pickup.shunt, pickup.feedthrough, pickup.noise)
+
+
+@compiled()
+def heard(plant: k.State, ear: Hearing) -> complex:
+    """The complex amplitude at the pickup's input (V) against the drive, with its noise."""
+    s, n, c, _ = plant
+    z = complex(s[k.Z_RE], s[k.Z_IM])
+    frequency = n[k.CARRIER] * 1e-3 if n[k.CARRIER] > 0 else s[k.RESONANCE]
+    leak = complex(0.0, ear.feedthrough * c[k.C_C0] * s[k.VOLTAGE])
+    current = 2.0 * math.pi * frequency * (c[k.C_FACTOR] * s[k.CHARGE] * z + leak)
+    seed, now = int(c[k.C_SEED]), n[k.NOW]
+    noise = complex(k.gaussian(seed, _PICKUP_RE, now), k.gaussian(seed, _PICKUP_IM, now))
+    return complex(ear.per_metre * z + ear.shunt * current + ear.noise * noise)
 
 
 class Plant:

@@ -10,6 +10,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
+from squeezefilm.instruments.control.gains import IdentifiedPlate
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.chain.area_map import at_best_place
 from squeezefilm.physics.chain.free_vibration import chosen_mode
@@ -75,6 +76,16 @@ class WorkingPoint:
             return 1 / pickup.sensitivity
         omega = 2 * math.pi * self.mode.resonance_frequency
         return 1 / (omega * self.force_factor * pickup.shunt)
+
+    def identified(self, settings: TwinSettings) -> IdentifiedPlate:
+        """What a sweep would say of the twin's plate before it drifts, for `loop_gains`.
+
+        Raises `InputError` for a plate or a pickup that no loop can use.
+        """
+        mode = self.mode
+        ratio = mode.amplitude_per_volt / self.pickup_calibration(settings.pickup)
+        ratio *= settings.amplifier.gain
+        return IdentifiedPlate(mode.resonance_frequency, mode.quality_factor, ratio)
 
 
 def working_point(
