@@ -31,6 +31,11 @@
 #define PLATE_HALF_BANDWIDTH 50000
 #define PLATE_FREQUENCY 29980000
 #define PLATE_LOSS 0x18000
+/* A finger that goes 40 mm to and fro at 80 mm/s and is in the air for a fifth of a second of each; its
+ * sensor takes 500 samples a second. */
+#define FINGER_CYCLE 1000000u
+#define FINGER_AIR 200000u
+#define FINGER_SAMPLE 2000u
 
 static sf_machine machine;
 static uint8_t out[OUT_SIZE];
@@ -129,8 +134,11 @@ static uint32_t pickup(void *board)
 
 static sf_finger sensor(void *board)
 {
-    static const sf_finger finger = {1000, 0, 1};
+    uint32_t at = microseconds() % FINGER_CYCLE, half = FINGER_CYCLE / 2;
+    sf_finger finger = {0, 0, at < FINGER_CYCLE - FINGER_AIR};
     (void)board;
+    at -= at % FINGER_SAMPLE;
+    finger.x = (int32_t)((at < half ? at : FINGER_CYCLE - at) * 2 / 25);
     return finger;
 }
 

@@ -132,6 +132,9 @@ app.add_typer(device_app, name="device")
 OnDrive = Annotated[
     str, typer.Option("--drive", help="twin, or a port like serial:/dev/ttyACM0[@baud].")
 ]
+OnSensor = Annotated[
+    str, typer.Option(help="device, what its own is like (touch-panel-240-hz), or replay:FILE.")
+]
 
 
 @dataclass(frozen=True)
@@ -141,13 +144,7 @@ class PlayOptions:
     texture: Texture
     display: OnDisplay
     drive: OnDrive = "twin"
-    sensor: Annotated[
-        str,
-        typer.Option(
-            help="device: its own sensor; replay:STROKE.csv; or what its sensor is like, such as "
-            "touch-panel-240-hz."
-        ),
-    ] = "device"
+    sensor: OnSensor = "device"
     mode: Annotated[
         str, typer.Option(help="stream: the loop here renders; tile: the device by itself.")
     ] = "stream"
@@ -251,15 +248,16 @@ class CheckOptions:
         str, typer.Option(help="The display on it: a preset's name or a TOML file.")
     ] = "biet2008-plate"
     rate: Annotated[str, In("Hz"), typer.Option(help='Rate of this loop, like "5 kHz".')] = "5 kHz"
+    sensor: OnSensor = "device"
     as_json: AsJson = False
 
 
 @device_app.command()
 @called_with(CheckOptions)
 def check(asked: CheckOptions) -> None:
-    """Check a device: link, round trip, timing, limits, watchdog, readings.
+    """Check a device: link, round trip, timing, limits, watchdog, readings, position sensor.
 
-    At no more than 1 V. Exit code 1 if a check fails.
+    At no more than 1 V. Exit code 1 if a check fails; what is in doubt is told.
     """
     from squeezefilm.core.results import to_json
     from squeezefilm.instruments.bench.play import check_drive

@@ -198,7 +198,6 @@ RENDER_STEPS = HardLimit("steps of a rendered stroke", 2, 3_000_000, "fifty arra
 LAG_PRODUCTS = HardLimit(
     "products of a lag's correlation", 0, 5e8, "more take minutes for one number"
 )
-SIMULATED_TICKS = HardLimit("simulated ticks", 1, 20_000_000, "a gigabyte of rows")
 PIXELS = HardLimit("pixels of an image", 1, 1_048_576, "one table of 8 MB in a program")
 PARTICIPANT_TRIALS = HardLimit("trials of one participant", 1, 20_000, "a month of sittings")
 SIMULATED_TRIALS = HardLimit(

@@ -12,7 +12,7 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.cli.textures import device_app
-from squeezefilm.instruments.bench.check import CheckResult, DeviceCheck
+from squeezefilm.instruments.bench.check_result import CheckResult, DeviceCheck
 from squeezefilm.instruments.session.record.trace import TraceExport
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.texture_files.texture_file import load_texture
@@ -133,16 +133,18 @@ def test_a_check_is_of_the_twin_and_fails_with_1(stands_in: StandsIn) -> None:
     asked = stands_in("instruments.bench.play:check_drive", DeviceCheck("twin", (PASSED,)))
     done = run("device", "check")
     assert asked.given == ("twin", DISPLAY)
-    assert asked.named == {"rate": 5000.0}
+    assert asked.named == {"rate": 5000.0, "sensor": "device"}
     assert done.returncode == 0
     assert "1 of 1 checks passed" in done.stdout
     assert done.stderr == "  a step …\n"
 
     asked.answer = DeviceCheck("serial:x", (PASSED, FAILED))
     done = run(
-        "device", "check", "--drive", "serial:x", "--display", "d.toml", "--rate", "0 Hz", "--json"
-    )
-    assert asked.calls[-1] == (("serial:x", "d.toml"), {"rate": 0.0})
+        "device", "check", "--drive", "serial:x", "--display", "d.toml", "--rate", "0 Hz", "--json",
+        "--sensor", "touch-panel-240-hz",
+    )  # fmt: skip
+    named = {"rate": 0.0, "sensor": "touch-panel-240-hz"}
+    assert asked.calls[-1] == (("serial:x", "d.toml"), named)
     found = json.loads(done.stdout)
     assert found["passed"] is False
     assert [one["name"] for one in found["results"]] == ["link", "watchdog"]

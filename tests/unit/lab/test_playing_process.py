@@ -6,7 +6,6 @@ import math
 import os
 import signal
 from collections.abc import Callable
-from dataclasses import asdict
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -15,8 +14,9 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.core.results import to_json
 from squeezefilm.instruments.bench import play as bench_play
-from squeezefilm.instruments.bench.check import CheckResult
+from squeezefilm.instruments.bench.check_result import CheckResult
 from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.report import page
 from squeezefilm.instruments.session.loop.rows import COLUMNS
@@ -184,7 +184,7 @@ def test_a_check_tells_each_step_and_each_result(monkeypatch: pytest.MonkeyPatch
     check(pipe, "twin", "one")
     assert pipe.said == [
         {"type": "device progress", "text": "twin of one"},
-        {"type": "device checked", "passed": False, "results": [asdict(one), asdict(two)]},
+        {"type": "device checked", "passed": False, "results": to_json([one, two])},
         {"type": "device ended", "failed": False, "message": "checked"},
     ]
 

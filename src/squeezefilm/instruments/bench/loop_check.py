@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.instruments.bench.check import CheckResult
+from squeezefilm.instruments.bench.check_result import CheckResult
 from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.instruments.session.loop.process import LoopProcess
@@ -62,6 +62,18 @@ def stolen_time() -> si.Second:
     with contextlib.suppress(OSError, IndexError, ValueError):
         return int(Path("/proc/stat").read_text().split(maxsplit=9)[8]) / os.sysconf("SC_CLK_TCK")
     return 0.0
+
+
+def waited_time() -> si.Second:
+    """Time for which some program of this computer has waited for a processor since it started,
+    and what its host took from it (s); 0 where the system does not tell.
+
+    Source: Linux, Documentation/accounting/psi.rst, the total of "some".
+    """
+    with contextlib.suppress(OSError, IndexError, ValueError):
+        some = Path("/proc/pressure/cpu").read_text().split(maxsplit=5)[4]
+        return int(some.removeprefix("total=")) * 1e-6 + stolen_time()
+    return stolen_time()
 
 
 def loop_result(lateness: Lateness, stolen: si.Second) -> CheckResult:

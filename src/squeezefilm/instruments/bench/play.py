@@ -22,9 +22,10 @@ from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp
-from squeezefilm.instruments.bench.check import DeviceCheck, check_device
+from squeezefilm.instruments.bench.check import WATCHED, check_device
+from squeezefilm.instruments.bench.check_result import DeviceCheck
 from squeezefilm.instruments.bench.conversation import Conversation
-from squeezefilm.instruments.bench.loop_check import check_loop
+from squeezefilm.instruments.bench.loop_check import check_loop, waited_time
 from squeezefilm.instruments.bench.played_session import PlayedSession, judge_session, tile_summary
 from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.instruments.device.ports import ReplaySensor
@@ -32,6 +33,7 @@ from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.play.plan import PlayView
 from squeezefilm.instruments.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.instruments.session.record.trace import read_trace
+from squeezefilm.instruments.twin.plant_kernel import COLUMNS
 from squeezefilm.instruments.twin.pty_server import running_twin
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.chain.played_texture import FingerMotion, require_on_display
@@ -49,6 +51,10 @@ STROKE = "60 mm/s over 4 cm"
 DURATION: si.Second = 4.0
 _MARGIN: si.Metre = 2e-3
 _REPLAY_PERIOD: si.Second = 1e-3
+_LIFT: si.Second = 0.2
+_STROKED: si.Second = 6.0
+"""For which a person strokes a real device's sensor."""
+_TRUTH_LIMIT: si.Second = 5.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -216,12 +222,16 @@ def check_drive(
     target: str | Path,
     *,
     rate: si.Hertz = 5e3,
+    sensor: str = "device",
     progress: SayProgress | None = None,
 ) -> DeviceCheck:
     """Check a device, or a twin of a display, and this computer's loop at a rate (Hz).
 
+    `sensor` is what its own is like (or the twin's is to be), as of `play_texture`. A twin's hand
+    lifts its finger between strokes, and its truth says where that is.
+
     Raises:
-        InputError: a drive or display that cannot be used.
+        InputError: a drive, display or sensor that cannot be used.
         DeviceError: a device that does not answer.
     """
     tell = progress or (lambda _: None)
@@ -230,19 +240,45 @@ def check_drive(
     prediction = predict(display)
     frequency = prediction.frequency
     limits = display.limits(frequency, twin=drive == "twin")
-    settings = TwinSettings(sensor=LVDT_10_KHZ)
+    eyes, twin = LVDT_10_KHZ if sensor == "device" else sensor_named(sensor), drive == "twin"
+    settings = TwinSettings(sensor=eyes)
     with (
-        device_stream(drive, target, settings, STROKE, None, strict=True) as name,
+        tempfile.TemporaryDirectory() as folder,
+        device_stream(
+            drive, target, settings, STROKE, Path(folder) / TRUTH_NAME, strict=True, lift=_LIFT
+        ) as name,
         contextlib.closing(open_stream(name)) as stream,
     ):
+        here = twin or Path(drive.removeprefix("serial:")).resolve().is_relative_to("/dev/pts")
         return check_device(
-            Conversation(stream, time.monotonic, time.sleep),
+            Conversation(stream, time.monotonic, time.sleep, waited_time if here else None),
             frequency,
             drive=drive,
             window=(limits.lowest_frequency, limits.highest_frequency),
+            sensor=eyes,
+            watch=WATCHED if twin else _STROKED,
+            truth=_Truth(Path(folder) / TRUTH_NAME).place if twin else None,
             loop=lambda: check_loop(rate),
             progress=tell,
         )
+
+
+@dataclass(frozen=True, slots=True)
+class _Truth:
+    """A running twin's truth, which it writes in blocks of seconds."""
+
+    file: Path
+
+    def place(self, when: si.SecondArray) -> si.MetreArray:
+        """Where the finger was (m) at times of the twin (s); waits for them to be written."""
+        end = time.monotonic() + _TRUTH_LIMIT
+        while True:
+            text = self.file.read_text("utf-8")
+            whole = text[: text.rfind("\n")].splitlines()[1:]
+            rows = np.loadtxt(whole, delimiter=",", ndmin=2)
+            if rows[-1, 0] >= when.max() or time.monotonic() > end:
+                return np.interp(when, rows[:, 0], rows[:, COLUMNS.index("x_m")])
+            time.sleep(0.1)
 
 
 @contextlib.contextmanager
@@ -254,10 +290,12 @@ def device_stream(
     truth: Path | None,
     *,
     strict: bool = False,
+    lift: si.Second = 0.0,
 ) -> Iterator[str]:
     """The stream of a drive as `open_stream` reads it; a twin's process lives as long.
 
-    `strict`: a twin's watchdog counts all time, as a real device's does.
+    `strict`: a twin's watchdog counts all time, as a real device's does. `lift`: for how long its
+    finger is in the air between strokes (s).
 
     Raises `InputError` for a drive that is none, and for a twin that does not start.
     """
@@ -276,7 +314,9 @@ def device_stream(
             described = Path(folder) / f"{target.name}.toml"
             described.write_text(text_of(target), encoding="utf-8")
             target = described
-        with running_twin(target, file, stroke=stroke, truth=truth, strict=strict) as port:
+        with running_twin(
+            target, file, stroke=stroke, truth=truth, strict=strict, lift=lift
+        ) as port:
             yield f"serial:{port}"
 
 

@@ -1,4 +1,5 @@
-"""Settings of the loops from an identified plate: its resonance, loss, pickup and their delay."""
+"""An identified plate: its resonance, loss, pickup and their delay; the settings of the loops that
+follow from it, and the finger that they show on it."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.instruments.control.plate_loop import ONE, LoopGains
+from squeezefilm.instruments.control.plate_loop import LOCKED, ONE, LoopGains, LoopState
 
 _SHARE = 1 << 24
 _TURN = 1 << 32
@@ -264,3 +265,30 @@ def tracking_bandwidth(gains: LoopGains, interval: Annotated[si.Second, si.Above
     """ω/2π (Hz) of the frequency's loop, whose error follows a drift r (Hz/s) as 4 r/ω² s² e^…:
     at most 4 r/(e ω), and 0 once it is steady."""
     return -math.log(1 - gains.track_share / _SHARE) / (2 * math.pi * interval)
+
+
+@si.checked_numbers
+def finger_impedance(
+    state: LoopState,
+    plate: IdentifiedPlate,
+    modal_mass: Annotated[si.Kilogram, si.Above(0.0)],
+    free_frequency: Annotated[si.Hertz, si.Above(0.0)],
+) -> complex:
+    """The mechanical impedance (N s/m) that a finger adds at an antinode, R + i X.
+
+    The loss D that the loops see over the plate's own is R = D 2π f0 M/Q; the frequency that they
+    follow has moved from `free_frequency` (Hz, the last one without a finger) by Δf, so that
+    X = −4π M Δf: above 0 for a mass, which lowers it. `modal_mass` M (kg) is that of the mode for
+    an antinode's amplitude.
+
+    Valid for a load that is small beside the mode's stiffness, and as exact as Q, and as K, are
+    known: an error of K is taken for loss. Raises `InputError` for loops that are not locked.
+    """
+    if state.mode != LOCKED:
+        raise InputError(
+            "the loops are not locked, so no finger can be seen; wait until they are",
+            quantity="state",
+        )
+    own = 2 * math.pi * plate.frequency * modal_mass / plate.quality_factor
+    moved = state.frequency / 256e3 - free_frequency
+    return complex(own * state.load / (1 << 20), -4 * math.pi * modal_mass * moved)

@@ -16,7 +16,7 @@ from squeezefilm.physics.render.fidelity.report import lag_rows
 if TYPE_CHECKING:
     from rich.console import Group
 
-    from squeezefilm.instruments.bench.check import DeviceCheck
+    from squeezefilm.instruments.bench.check_result import DeviceCheck
     from squeezefilm.instruments.bench.play import PlayResult
     from squeezefilm.instruments.bench.played_session import Judged, PlayedSession
     from squeezefilm.instruments.session.play.plan import PlayView
@@ -38,25 +38,26 @@ def show_export(done: TraceExport) -> None:
 
 
 def show_check(check: DeviceCheck) -> None:
-    """Print a device's checks as a table, and what to do about those that failed."""
+    """Print a device's checks as a table, and what to do about those that did not pass."""
     console = plain_console()
     heading(console, f"Device on {check.drive}")
     rows = [
-        ("pass" if result.passed else "FAIL", result.name, result.measured, result.allowed)
-        for result in check.results
+        (result.verdict, result.name, result.measured, result.allowed) for result in check.results
     ]
     table(
         console,
         ("", "check", "measured", "allowed"),
         rows,
         fixed=(0,),
-        styles=lambda row: "green" if row[0] == "pass" else "bold red",
+        styles=lambda row: {"pass": "green", "doubt": "yellow"}.get(str(row[0]), "bold red"),
     )
-    bad = [result for result in check.results if not result.passed]
-    for result in bad:
-        console.print(f"! {result.name}: {result.advice}")
-    count = len(check.results)
-    console.print(f"{count - len(bad)} of {count} checks passed")
+    for result in check.results:
+        if not result.passed:
+            console.print(f"! {result.name}: {result.doubt or result.advice}")
+    count, verdicts = len(check.results), [result.verdict for result in check.results]
+    doubts = verdicts.count("doubt")
+    told = f", {doubts} in doubt" if doubts else ""
+    console.print(f"{verdicts.count('pass')} of {count} checks passed{told}")
 
 
 @contextmanager

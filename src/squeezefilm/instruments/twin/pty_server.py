@@ -231,6 +231,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--settings", type=Path, help="a TOML file of twin settings")
     parser.add_argument("--stroke", default=EXPLORING, help="the finger's motion, or 'none'")
     parser.add_argument("--force", default="0.5 N", help="it presses with")
+    parser.add_argument("--lift", default="0 s", help="time in the air between strokes")
     parser.add_argument(
         "--strict", action="store_true", help="a watchdog that counts all time, as a real device's"
     )
@@ -241,7 +242,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         hand = None
         if options.stroke != "none":
             force = si.parse_quantity(options.force, si.Unit("N"))
-            hand = hand_from(options.stroke, normal_force=force)
+            lift = si.parse_quantity(options.lift, si.Unit("s"))
+            hand = hand_from(options.stroke, normal_force=force, lift=lift)
         display = load_display(options.display)
         device = TwinDevice(display, settings, hand=hand, truth_file=options.truth)
         _warm_up(device, hand)
@@ -324,6 +326,7 @@ def running_twin(
     *,
     stroke: str = EXPLORING,
     normal_force: si.Newton = 0.5,
+    lift: si.Second = 0.0,
     truth: Path | None = None,
     start_limit: si.Second = START_LIMIT,
     strict: bool = False,
@@ -331,7 +334,7 @@ def running_twin(
     """A twin in a process of its own; yields the name of its serial port.
 
     `display` is a preset's name or a file, `settings` a TOML file, `stroke` "none" for no finger,
-    `strict` for a watchdog that counts all time.
+    `lift` the time in the air between strokes, `strict` for a watchdog that counts all time.
     The process ends with the block, and on its own if this process dies.
 
     Raises:
@@ -340,7 +343,7 @@ def running_twin(
     """
     require_pseudo_terminals()
     command = [sys.executable, "-m", "squeezefilm.instruments.twin.pty_server", str(display)]
-    command += ["--stroke", stroke, "--force", f"{normal_force!r} N"]
+    command += ["--stroke", stroke, "--force", f"{normal_force!r} N", "--lift", f"{lift!r} s"]
     command += ["--with-parent", str(os.getpid())]
     command += [] if settings is None else ["--settings", str(settings)]
     command += [] if truth is None else ["--truth", str(truth)]

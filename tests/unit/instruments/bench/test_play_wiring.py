@@ -204,7 +204,7 @@ def test_a_twins_process_gets_its_settings_by_file(monkeypatch: pytest.MonkeyPat
         settings = TwinSettings(seed=11)
         with device_stream("twin", DISPLAY, settings, "s", None, strict=strict) as stream:
             assert stream == "serial:/dev/pts/7"
-        told = (DISPLAY, 11, {"stroke": "s", "truth": None, "strict": strict})
+        told = (DISPLAY, 11, {"stroke": "s", "truth": None, "strict": strict, "lift": 0.0})
         assert asked[-1] == told
 
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.instruments.control.finger_load import finger_impedance
-from squeezefilm.instruments.control.gains import loop_gains
+from squeezefilm.instruments.control.gains import finger_impedance, loop_gains
 from squeezefilm.instruments.control.plate_loop import LOCKED, LoopState, first_state
 
 from .simulated_plate import FREQUENCY, LOAD, held

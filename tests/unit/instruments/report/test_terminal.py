@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from tests.unit.printed import printed
 
-from squeezefilm.instruments.bench.check import CheckResult, DeviceCheck
+from squeezefilm.instruments.bench.check_result import CheckResult, DeviceCheck
 from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.report.terminal import (
     bar,
@@ -212,11 +212,13 @@ def test_checks_are_listed_with_what_was_measured_and_allowed() -> None:
             CheckResult("link", True, "0 lost", "0"),
             CheckResult("clock", True, "1 ms", "2 ms"),
             CheckResult("watchdog", False, "never", "60 ms", "unplug it"),
+            CheckResult("speed", False, "slow", "fast", "wait", 0.1, "this computer was busy"),
         ),
     )
     assert printed(lambda: show_check(check)) == [
         "Device on twin", "check measured allowed", "pass link 0 lost 0", "pass clock 1 ms 2 ms",
-        "FAIL watchdog never 60 ms", "! watchdog: unplug it", "2 of 3 checks passed",
+        "FAIL watchdog never 60 ms", "doubt speed slow fast", "! watchdog: unplug it",
+        "! speed: this computer was busy", "2 of 4 checks passed, 1 in doubt",
     ]  # fmt: skip
 
 

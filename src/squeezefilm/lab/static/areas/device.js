@@ -193,10 +193,10 @@ class DeviceView {
 
   checked({ passed, results }) {
     this.results.hidden = false;
-    this.results.replaceChildren(element("h2", { text: passed ? "Every check passed" : "A check failed" }),
+    this.results.replaceChildren(element("h2", { text: !passed ? "A check failed" : results.some((one) => one.doubt) ? "No check failed; some are in doubt" : "Every check passed" }),
       element("div", { class: "scroll" }, element("table", {}, element("tr", {}, ...["", "check", "measured", "allowed"].map((one) => element("th", { text: one }))),
-        ...results.map((one) => element("tr", {}, element("td", { text: one.passed ? "pass" : "FAIL", class: one.passed ? "passed" : "failed" }),
-          element("td", { text: one.name }), element("td", { text: one.measured }), element("td", { text: one.passed ? one.allowed : `${one.allowed}. ${one.advice}` }))))));
+        ...results.map((one) => element("tr", {}, element("td", { text: one.passed ? "pass" : one.doubt ? "doubt" : "FAIL", class: one.passed ? "passed" : one.doubt ? "doubted" : "failed" }),
+          element("td", { text: one.name }), element("td", { text: one.measured }), element("td", { text: one.passed ? one.allowed : `${one.allowed}. ${one.doubt || one.advice}` }))))));
   }
 
   /** Numbers of a moment that is over would be taken for those of now. */

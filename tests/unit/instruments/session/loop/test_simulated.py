@@ -7,12 +7,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from tests.loop_runs import run_ticks, stream_samples
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.loop.simulated import SimulatedLoop, run_ticks, stream_samples
+from squeezefilm.instruments.session.loop.simulated import SimulatedLoop
 from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_stream
 
 PlanOf = Callable[..., LoopPlan]
@@ -174,14 +175,3 @@ def test_a_sensors_stream_is_a_finger_that_touches() -> None:
     assert np.all(np.isnan(samples[:, [column.SAMPLE_LEVEL, column.SAMPLE_AMPLITUDE]]))
     across = np.linspace(0.0, 1e-3, stream.stamp.size)
     np.testing.assert_array_equal(stream_samples(stream, across)[:, column.SAMPLE_Y], across)
-
-
-def test_arrivals_and_counts_that_make_no_run_are_refused(plan_of: PlanOf) -> None:
-    plan, two = plan_of(), np.concatenate([held(0.0), held(1.0)])
-    with pytest.raises(InputError, match="none before the one ahead"):
-        run_ticks(plan, two, np.array([1.0, 0.5]), 10)
-    assert len(run_ticks(plan, two, np.array([1e-4, 1e-4]), 10).rows) == 10
-    with pytest.raises(InputError, match="whole number"):
-        run_ticks(plan, two, np.zeros(2), 10.0)  # type: ignore[arg-type]
-    with pytest.raises(InputError, match="delays"):
-        run_ticks(plan, two, np.zeros(2), 10, np.array([-1e-9]))
