@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 
 from squeezefilm.actuators.motor import kernel
 from squeezefilm.actuators.motor.average_kernel import (
@@ -175,3 +175,100 @@ def test_the_slider_settles_where_the_feet_carry_its_preload() -> None:
         average_contact(stator, feet, sideways, height, swing, there)
         assert found == pytest.approx(there)
         assert found[2] == pytest.approx(preload, rel=1e-6)
+
+
+def begun(y, contact, guide):
+    contact = np.array(contact, dtype=float)
+    rounding = np.full(2 * FEET + 1, 1e-12)
+    return kernel.March(
+        y.copy(), contact, np.array([guide]), np.zeros((2, FEET)), np.zeros((8, y.size)),
+        np.zeros(2 * FEET + 1), rounding,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_while_nothing_changes_the_march_is_the_solution_of_the_rates(held: bool) -> None:
+    """Feet pressed in deeply, one of them slipping: against an integrator of many digits."""
+    stator, feet, _, slider = made(5, held=held, imposed=False)
+    feet = feet._replace(mu=np.array([9.0, 9.0, 9.0, 9.0, 0.05]), chi=np.full(FEET, 1e-3))
+    contact, steps, h = [1, 1, 1, 1, 3], 20, 2e-3
+    y = np.zeros(TOTALS + kernel.TOTALS)
+    y[2 * MODES], y[2 * MODES + 3] = -2.0, 3.0
+    y, _, events = instant(y, stator, feet, slider, contact, 1.0, 0.2)
+
+    def rates(t, y):
+        return instant(y, stator, feet, slider, contact, 1.0, t)[1]
+
+    exact = solve_ivp(rates, (0.2, 0.2 + steps * h), y, rtol=1e-11, atol=1e-12)
+    end, _, after = instant(exact.y[:, -1], stator, feet, slider, contact, 1.0, 0.2 + steps * h)
+    assert min(*events, *after) > 0
+    march, track = begun(y, contact, 1.0), np.full((steps, 1 + y.size + FEET), np.nan)
+    done = kernel.march_steps(0.2, h, steps, (stator, feet, slider, march), track)
+    assert done == steps
+    assert march.state == pytest.approx(end, rel=1e-6, abs=1e-7)
+    assert track[:, 0] == pytest.approx(0.2 + h * np.arange(1, steps + 1))
+    assert track[-1, 1:] == pytest.approx([*march.state, *contact])
+    assert march.shares == pytest.approx(steps * h * np.array([[1] * 5, [1] * 4 + [0]]))
+
+
+def test_each_event_changes_what_it_is_of_and_nothing_else() -> None:
+    e, totals = 2 * MODES + 4, TOTALS
+    kinds = set()
+    for seed in range(40):
+        random = np.random.default_rng(seed)
+        stator, feet, _, slider = made(seed, held=False, imposed=False)
+        y = 0.3 * random.standard_normal(totals + kernel.TOTALS)
+        contact = random.integers(0, 4, FEET).astype(float)
+        march = begun(y, contact, float(random.integers(-1, 2)))
+        march.room[6, totals + kernel.THRUST] = thrust = 3 * random.standard_normal()
+        state, guide = y.copy(), march.guide[0]
+        i, loosened = int(random.integers(0, FEET)), bool(random.integers(0, 2))
+        which = 2 * FEET if seed % 5 == 0 else 2 * i + loosened
+        across, along = feet.across[i], feet.along[i]
+        if which == 2 * FEET:
+            guide = np.sign(thrust - slider.load) if guide == 0 else 0.0
+            state[2 * MODES + 3] *= abs(guide)
+        elif loosened and contact[i] in (kernel.SLIP_UP, kernel.SLIP_DOWN, kernel.OPEN):
+            contact[i] = kernel.STICK
+        elif loosened:
+            pull = feet.k_nt[i] * (across @ y[:MODES] - y[2 * MODES]) + feet.k_tt[i] * y[e + i]
+            contact[i] = kernel.SLIP_UP if pull > 0 else kernel.SLIP_DOWN
+        elif contact[i] != kernel.OPEN:
+            contact[i], state[e + i] = kernel.OPEN, 0.0
+        else:
+            press = across @ y[MODES : 2 * MODES] - y[2 * MODES + 1]
+            drag = along @ y[MODES : 2 * MODES] - y[2 * MODES + 3]
+            needed = feet.k_nt[i] * press + feet.k_tt[i] * drag
+            given = feet.k_nn[i] * press + feet.k_nt[i] * drag
+            holds = abs(needed) <= feet.mu[i] * (1 + feet.chi[i] * press) * given
+            slips = kernel.SLIP_UP if needed > 0 else kernel.SLIP_DOWN
+            contact[i], state[e + i] = kernel.STICK if holds else slips, 0.0
+        kinds.add((which == 2 * FEET, loosened, contact[i]))
+        kernel._change(which, stator, feet, slider, march)
+        assert march.contact.tolist() == contact.tolist()
+        assert march.guide[0] == guide
+        assert march.state.tolist() == state.tolist()
+    assert len(kinds) > 9
+
+
+def test_a_foot_that_leaves_within_a_step_leaves_at_its_time() -> None:
+    """A free slider over one foot on a plate that stands still: it swings on the spring."""
+    stator, feet, _, slider = made(1, held=True, imposed=False)
+    stator = stator._replace(amplitude=np.zeros(MODES))
+    feet = feet._replace(k_nn=np.r_[9.0, np.zeros(FEET - 1)], k_nt=np.zeros(FEET))
+    feet = feet._replace(chi=np.zeros(FEET), mu=np.full(FEET, 50.0))
+    slider = slider._replace(mass=1.0, preload=0.5, damping=0.0, guide=1.0, load=0.0)
+    y = np.zeros(TOTALS + kernel.TOTALS)
+    y[2 * MODES], y[2 * MODES + 1] = 0.0, -0.6
+    march = begun(y, [1, 0, 0, 0, 0], 0.0)
+    # m z″ = −k z − preload from z = 0 down and back to z = 0, then a throw under the preload.
+    rate, middle = 3.0, -0.5 / 9
+    size, begin = np.hypot(middle, 0.6 / rate), np.arctan2(0.6 / rate, -middle)
+    lifted = (2 * np.pi - 2 * begin) / rate
+    assert middle + size * np.cos(rate * lifted + begin) == pytest.approx(0.0, abs=1e-12)
+    steps, h = 8, lifted / 7.5
+    assert kernel.march_steps(0.0, h, steps, (stator, feet, slider, march), np.empty((0, 0))) == 8
+    flown = steps * h - lifted
+    assert march.contact.tolist() == [0.0] * FEET
+    assert march.shares[0, 0] == pytest.approx(lifted, rel=1e-3)
+    assert march.state[2 * MODES] == pytest.approx(0.6 * flown - 0.25 * flown**2, rel=2e-2)
