@@ -60,7 +60,6 @@ class AdaptiveDesign:
 
     def __post_init__(self) -> None:
         shape_code(self.shape, self.axis)
-        on_axis(np.array(self.stimuli), self.axis)
         si.require("guess_rate", self.guess_rate, at_least=0.0, at_most=0.5)
         si.require("cells", self.cells, at_least=1)
         si.require("most_trials", self.most_trials, at_least=1)
