@@ -55,7 +55,6 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
         "pickle.load": "orders of its parent, by a pipe",
     },
     "design/sweep/lines.py": {"place.open": WRITES, "open": WRITES},
-    "design/sweep/cluster.py": {"pickle.loads": "an answer of the workers whom somebody named"},
     "design/sweep/answers.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
     "instruments/twin/plant.py": {"file.open": WRITES},
     "instruments/twin/pty_server.py": {"os.open": "a terminal of its own"},

@@ -170,14 +170,22 @@ def test_kill_9_leaves_adaptive_series_where_they_stood(
     _survives(tmp_path / "study.sqlite", kills=12, design=design)
 
 
-@pytest.mark.nightly
-def test_kill_9_at_200_moments_leaves_adaptive_series_where_they_stood(tmp_path: Path) -> None:
-    _survives(tmp_path / "study.sqlite", kills=200, design=_adaptive(800))
+MANY = [
+    pytest.param(40, marks=pytest.mark.nightly),
+    pytest.param(200, marks=pytest.mark.campaign),
+]
 
 
-@pytest.mark.nightly
-def test_kill_9_at_200_moments_loses_no_acknowledged_trial(tmp_path: Path) -> None:
-    _survives(tmp_path / "study.sqlite", kills=200, design=_design(500))
+@pytest.mark.parametrize("kills", MANY)
+def test_kill_9_at_many_moments_leaves_adaptive_series_where_they_stood(
+    tmp_path: Path, kills: int
+) -> None:
+    _survives(tmp_path / "study.sqlite", kills=kills, design=_adaptive(4 * kills))
+
+
+@pytest.mark.parametrize("kills", MANY)
+def test_kill_9_at_many_moments_loses_no_acknowledged_trial(tmp_path: Path, kills: int) -> None:
+    _survives(tmp_path / "study.sqlite", kills=kills, design=_design(3 * kills))
 
 
 def _full(command: list[str], path: Path, who: str, how: str) -> None:

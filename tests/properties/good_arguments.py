@@ -176,7 +176,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "core.formats.drawing.Arc": {"layer": "BOARD"},
     "core.formats.drawing.Text": {"text": "a board"},
     "core.formats.drawing.Drawing": {"layers": {}},
-    "core.formats.stl.stl_bytes": {"triangles": np.zeros((2, 3, 3)), "title": "a board"},
+    "design.fabrication.facets.stl_bytes": {"triangles": np.zeros((2, 3, 3)), "title": "a board"},
     "physics.texture_files.image_file.ImageFile": {"file": "picture.png"},
     "core.formats.traces.Table": {"columns": {"time_s": _GRID}},
     "core.formats.wav.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},

@@ -14,7 +14,6 @@ from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.formats.drawing import Drawing
 from squeezefilm.core.formats.dxf import dxf_text
-from squeezefilm.core.formats.stl import stl_bytes
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import csv_text, json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import HZ, printable, shown
@@ -29,8 +28,14 @@ from squeezefilm.core.kit.page_style import (
     text_table,
 )
 from squeezefilm.core.kit.sheet import pdf, sheet_figure, views_figure
+from squeezefilm.core.results import stamp
 from squeezefilm.design.analysis.report.point_rows import display_values, electronics_rows
-from squeezefilm.design.fabrication.facets import CHORD_ERROR, triangles_of, volume_error
+from squeezefilm.design.fabrication.facets import (
+    CHORD_ERROR,
+    stl_bytes,
+    triangles_of,
+    volume_error,
+)
 from squeezefilm.design.fabrication.report.rectangular_sheet import rectangular_sheet
 from squeezefilm.design.fabrication.report.round_sheet import round_sheet
 from squeezefilm.design.fabrication.report.rows import (
@@ -45,6 +50,7 @@ from squeezefilm.design.fabrication.report.rows import (
     plan_csv,
     step_rows,
 )
+from squeezefilm.design.fabrication.step_file import step_text
 from squeezefilm.design.fabrication.test_plan import TestStep
 from squeezefilm.design.fabrication.wiring import ANTIPHASE, wiring_said
 from squeezefilm.measure.calibration.blind import sealed
@@ -63,7 +69,7 @@ def write_fabrication(made: Fabrication, folder: Path) -> Path:
     A prediction that is there already stays, where it is the one that `made` has; raises
     `InputError` where it is another, and where the folder cannot be written to.
     """
-    folder = require_folder(folder)
+    folder, display = require_folder(folder), made.display
     files: dict[str, str | bytes] = {}
     if made.blind is not None and not made.blind.sha256:
         if (folder / PREDICTION).exists():
@@ -81,6 +87,7 @@ def write_fabrication(made: Fabrication, folder: Path) -> Path:
         "drawing.pdf": pdf(sheet_figure(drawing)),
         "drawing.svg": _alone(style.svg(sheet_figure(drawing), "drawing", title)),
         **_bodies(made),
+        "assembly.step": step_text(made.parts, display.name, stamp(display)["created_utc"]),
         "bill-of-materials.csv": bill_csv(made.bill),
         "electrodes.csv": csv_text(head, rows),
         "test-plan.csv": plan_csv(made),

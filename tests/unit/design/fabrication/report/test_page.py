@@ -45,7 +45,8 @@ def table_of(file: Path) -> list[dict[str, str]]:
 def test_everything_is_there(folder: Path) -> None:
     names = {one.name for one in folder.iterdir()}
     assert names == {
-        "index.html", "drawing.dxf", "drawing.svg", "drawing.pdf", "assembly.stl", "substrate.stl",
+        "index.html", "drawing.dxf", "drawing.svg", "drawing.pdf", "assembly.stl", "assembly.step",
+        "substrate.stl",
         "ceramics.stl", "glue.stl", "bill-of-materials.csv", "electrodes.csv", "test-plan.csv",
         "display.toml", "display.json", "fabrication.json",
     }  # fmt: skip
