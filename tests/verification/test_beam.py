@@ -390,3 +390,15 @@ def test_a_bimorph_as_a_beam_stands_beside_the_solid() -> None:
     beam, solid = working_mode(both, "timoshenko"), working_mode(both)
     assert beam.resonance_frequency == pytest.approx(solid.resonance_frequency, rel=0.04)
     assert beam.amplitude_per_volt == pytest.approx(solid.amplitude_per_volt, rel=0.2)
+
+
+def test_all_modes_up_to_twice_the_working_one_are_superposed() -> None:
+    plate = load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    response = beam_response(plate)
+    lines = [mode.nodal_lines for mode in response.modes]
+    frequencies = [mode.frequency for mode in response.modes]
+    assert lines == list(range(2, 2 + len(lines)))
+    assert response.mode in response.modes
+    beyond = pieced_beam_mode(beam_pieces(plate, "plane_strain"), lines[-1] + 1)
+    assert frequencies[-1] <= 2 * response.mode.frequency < beyond.frequency

@@ -1,11 +1,13 @@
 """Modes followed by their motions: through crossings, over grids, and lost where they are gone."""
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
+from squeezefilm.design.sweep import followed
 from squeezefilm.design.sweep.followed import followed_modes, modes_to_follow, packed, unpacked
 from squeezefilm.physics.display import load_display
 
@@ -77,3 +79,42 @@ def test_motions_come_back_from_text() -> None:
 def test_a_stator_is_not_followed() -> None:
     with pytest.raises(InputError, match=r"keep their labels: ask for plate\.modes\.0\.frequency"):
         modes_to_follow(load_display("biet2008-stator"))
+
+
+def test_the_band_is_around_the_working_mode_unless_one_is_given(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    display: Any = load_display("biet2008-plate")
+    asked: list[Any] = []
+
+    class Solved:
+        """Two modes: one that moves the upper face only, one that moves both alike."""
+
+        plate = SimpleNamespace(length=80e-3, width=40e-3, thickness=2e-3)
+        count, frequencies = 2, np.array([29e3, 30e3])
+
+        def index(self, label: Any) -> int:
+            assert label == display.actuator.working_label
+            return 1
+
+        def field(self, number: int, x: Any, y: Any, z: float) -> np.ndarray:
+            assert (x[0], x[-1], y[0], y[-1]) == (0.0, 80e-3, 0.0, 40e-3)
+            out = np.zeros((x.size, y.size, 3))
+            out[..., 2] = number + (z > 0)
+            return out
+
+    def solve(plate: Any, **given: Any) -> Solved:
+        asked.append(given)
+        return Solved()
+
+    monkeypatch.setattr(followed, "solve_modes", solve)
+    monkeypatch.setattr(followed, "mode_row", lambda modes, index: {"label": f"m{index}"})
+    found = modes_to_follow(display)
+    assert asked[0] == {"mode": display.actuator.working_label}
+    assert asked[1]["band"] == pytest.approx((0.88 * 30e3, 1.12 * 30e3))
+    assert [row["label"] for row in found.rows] == ["m0", "m1"]
+    # Lower face, upper face: 0 and 1, or 1 and 2, of unit length.
+    likeness = found.motions @ found.motions.T
+    assert likeness == pytest.approx(np.array([[1, 2 / 5**0.5], [2 / 5**0.5, 1]]))
+    modes_to_follow(display, band=(1e3, 2e3))
+    assert asked[2:] == [{"band": (1e3, 2e3)}]

@@ -7,7 +7,12 @@ import pytest
 from scipy.stats import qmc
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.calibration.emulator import emulator_of, least_points
+from squeezefilm.measure.calibration.emulator import (
+    _fitted,
+    _matern,
+    emulator_of,
+    least_points,
+)
 
 
 def truth(x: np.ndarray) -> np.ndarray:
@@ -39,3 +44,21 @@ def test_more_points_are_better() -> None:
 def test_too_few_points_are_refused() -> None:
     with pytest.raises(InputError, match=str(least_points(3))):
         emulator_of(np.zeros((10, 3)), np.zeros((10, 1)))
+
+
+def test_what_the_trend_leaves_is_carried_by_the_weights() -> None:
+    """y = line + covariance · weights but for the nugget, and the weights know no line."""
+    x = 2 * qmc.Sobol(2, rng=2).random(32) - 1
+    y = np.tanh(2 * x[:, 0]) * 0.1 + 0.3 * x[:, 1]
+    line, lengths, weights = _fitted(x, y)
+    trend = np.column_stack([np.ones(32), x])
+    left = y - trend @ line - _matern(x / lengths, x / lengths) @ weights
+    nugget = float(left @ weights / (weights @ weights))
+    assert 0 < nugget < 1e-3
+    assert left == pytest.approx(nugget * weights, abs=1e-9)
+    assert trend.T @ weights == pytest.approx(np.zeros(3), abs=1e-7 * np.abs(weights).sum())
+    # Of two points a unit apart, in Matérn's form of order 5/2.
+    apart = 1 + np.sqrt(5) + 5 / 3
+    assert _matern(np.zeros((1, 2)), np.array([[0.6, 0.8]]))[0, 0] == pytest.approx(
+        apart * np.exp(-np.sqrt(5))
+    )

@@ -7,7 +7,11 @@ import pytest
 from tests.made_bench.duffing import SofteningResonance
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.vibration.voltage_sweeps import fit_voltage_sweeps
+from squeezefilm.measure.fits.vibration.voltage_sweeps import (
+    _Duffing,
+    _Points,
+    fit_voltage_sweeps,
+)
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, VoltageSweeps
 
 F = np.linspace(31.5e3, 34.5e3, 90)
@@ -115,3 +119,32 @@ def test_what_tells_of_no_amplitude_is_refused() -> None:
     ):
         with pytest.raises(InputError, match=words):
             fit_voltage_sweeps(VoltageSweeps(sweeps, ways))
+
+
+@pytest.mark.parametrize(("law", "drift"), [("quadratic", True), ("linear", False)])
+def test_a_step_to_the_curve_is_newtons_and_a_fold_has_none(law, drift) -> None:
+    """Against differences of the equation of motion in the real and the imaginary part."""
+    random = np.random.default_rng(6)
+    u = random.normal(size=12) + 1j * random.normal(size=12)
+    v, order = random.uniform(0.2, 1, 12), np.linspace(-0.5, 0.5, 12)
+    f = 30e3 * random.uniform(0.98, 1.02, 12)
+    at = np.array([0.003, 0.02, -0.01, 0.1, 0.03, -0.02, 0.01, 0.02, 0.004])
+
+    def missed(u):
+        """D(|u|)·(u − R v) − g v, with the backbone, the loss and the drift written out."""
+        a = np.abs(u)
+        back = (1 + at[2] * a ** (2 if law == "quadratic" else 1)) * (
+            1 + at[0] + (at[8] * order if drift else 0)
+        )
+        D = back**2 * (1 + 1j * at[1] * (1 + at[3] * a)) - (f / 30e3) ** 2
+        return D * (u - (at[6] + 1j * at[7]) * v) - (at[4] + 1j * at[5]) * v, D
+
+    h = 1e-6
+    rows = [(missed(u + d)[0] - missed(u - d)[0]) / (2 * h) for d in (h, 1j * h)]
+    slopes = np.array([[row.real for row in rows], [row.imag for row in rows]])
+    slopes, (wanted, D) = slopes.transpose(2, 0, 1), missed(u)
+    newton = np.linalg.solve(slopes, np.stack([wanted.real, wanted.imag], axis=1)[..., None])
+    duffing = _Duffing(_Points(f, u, v, order, 1e-6, 10.0), law, 30e3, drift)
+    step, determinant = duffing.steps_to_curve(at)
+    assert step == pytest.approx(newton[:, 0, 0] + 1j * newton[:, 1, 0], rel=1e-5)
+    assert determinant == pytest.approx(np.linalg.det(slopes) / abs(D) ** 2, rel=1e-5)

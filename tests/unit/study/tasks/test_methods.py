@@ -1,13 +1,16 @@
 """Sentences of the methods section say what was presented."""
 
 import dataclasses
+from types import SimpleNamespace
+from typing import Any
 
+import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.simulated.answers import SimulatedStudy
-from squeezefilm.study.tasks.methods import _stimuli
+from squeezefilm.study.tasks.methods import _stimuli, _trials
 
 
 def test_a_series_has_its_reference_and_fixed_stimuli_have_all() -> None:
@@ -46,3 +49,24 @@ def test_a_simulated_study_of_another_task_has_no_confusions() -> None:
     for ask in (study.confusion, study.proportion_correct):
         with pytest.raises(InputError, match="'two-interval' has no confusions"):
             ask()
+
+
+def test_trials_are_counted_per_participant_on_the_display_itself() -> None:
+    design = dataclasses.replace(load_design("friction-jnd"), blocks=1)
+    phase = np.array(["main"] * 6 + ["practice"] * 2 + ["catch"] * 3 + ["main"])
+    whole = {
+        "display": np.array([0] * 11 + [1]),
+        "participant": np.array([0, 0, 0, 1, 1, 1, 0, 1, 0, 0, 1, 0]),
+        "phase": phase,
+    }
+
+    def taken(keep: Any) -> Any:
+        return SimpleNamespace(**{key: value[keep] for key, value in whole.items()}, take=taken)
+
+    answers: Any = taken(np.ones(12, dtype=bool))
+    said = _trials(design, answers, 0)
+    begin = "There were 3 trials a participant beside 1 of practice with feedback and 1.5 catch"
+    assert said.startswith(f"{begin} trials, ")
+    assert _trials(design, answers, 1).startswith("There were 1 trials a participant, ")
+    blocks = _trials(dataclasses.replace(design, blocks=3), answers, 1)
+    assert blocks.startswith("There were 1 trials a participant in 3 blocks, ")

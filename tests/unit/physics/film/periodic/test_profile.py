@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 from scipy.integrate import cumulative_simpson
 
-from squeezefilm.physics.film.periodic.profile import GapProfile, sampled_grid
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.film.periodic.profile import (
+    GapProfile,
+    profile_from_function,
+    sampled_grid,
+)
 
 XI = np.linspace(-1, 1, 4001)
 
@@ -53,3 +58,23 @@ def test_a_sampled_grid_is_from_the_middle_or_from_edge_to_edge() -> None:
         assert harmonics == pytest.approx(np.asarray(PROFILE.harmonics(x)), abs=0)
         for one in (x, slope, harmonics):
             assert not one.flags.writeable
+
+
+def test_a_function_s_harmonics_are_counted_over_one_period_and_the_contact() -> None:
+    def gap(X: np.ndarray, T: np.ndarray) -> np.ndarray:
+        # Beside the contact there is none.
+        inside = np.where(np.abs(X) <= 0.5, 1.0, np.nan)
+        return inside + 0.2 * X * np.cos(T) + 0.1 * np.sin(3 * T)
+
+    found = profile_from_function(gap, "three waves")
+    assert (found.orders, found.description) == (4, "three waves")
+    h = found.harmonics(np.array([-0.4, 0.0, 0.5]))
+    assert h == pytest.approx(
+        np.array([[1, 1, 1], [-0.08, 0, 0.1], [0, 0, 0], [-0.1j, -0.1j, -0.1j]]), abs=1e-12
+    )
+    still = profile_from_function(lambda X, T: 1.0 + 0.1 * X + 0 * T)
+    assert still.orders == 1
+    with pytest.raises(InputError, match="not periodic"):
+        profile_from_function(lambda X, T: 1.0 + 0.01 * T + 0 * X)
+    with pytest.raises(InputError, match="not finite"):
+        profile_from_function(lambda X, T: np.where(T > 9, np.inf, 1.0) + 0 * X)
