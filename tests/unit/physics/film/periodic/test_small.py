@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,9 +18,11 @@ from squeezefilm.physics.film.periodic.small import (
     LEAST_DEPTH,
     enlarged,
     flow_factor,
+    reduced,
     small_pressure,
     small_vibration,
 )
+from squeezefilm.physics.film.periodic.solution import NO_FIELD, Field, Found
 
 
 @pytest.mark.parametrize("shape", ["strip", "disc"])
@@ -148,3 +151,31 @@ def test_only_a_motion_too_small_is_enlarged() -> None:
     assert factor == pytest.approx(larger.excursion / 1e-8)
     x, T = np.linspace(-0.5, 0.5, 7), np.linspace(0, 6, 5)
     assert pickle.loads(pickle.dumps(larger)).gap(x, T) == pytest.approx(larger.gap(x, T))
+
+
+def test_a_motion_made_smaller_takes_its_film_along() -> None:
+    """Swings in proportion, means with the square, the next order in the errors."""
+    random = np.random.default_rng(2)
+    harmonics = random.normal(size=9) + 1j * random.normal(size=9)
+    swing, mean = random.normal(size=(2, 4, 1)), 3.0
+    time = 2 * np.pi * np.arange(4) / 4
+    gap, over = 1 + swing[0, :2] * np.cos(time), mean + swing[1, :2] * np.sin(time)
+    field = Field(np.array([0.0, 0.5]), time, gap, over)
+    found = Found(0.5, 1e-4, True, 7, 1e-9, 32, 16, harmonics, np.full(9, 1e-5))
+    assert reduced(found, field, 1.0, 1e-2) == (found, field)
+    small, less = reduced(found, field, 10.0, 1e-2)
+    assert (small.over, small.iterations, small.cells, small.met) == (0.5 / 100, 7, 32, True)
+    assert small.harmonics == pytest.approx(np.r_[0.005, harmonics[1:] / 10])
+    largest = np.abs(harmonics[1:]).max() / 10
+    assert small.error == pytest.approx(1e-6 + 100 * LEAST_DEPTH**2 * 0.005)
+    assert small.harmonics_error[0] == small.error
+    assert small.harmonics_error[1:] == pytest.approx(1e-6 + 2 * LEAST_DEPTH * largest)
+    assert less.gap == pytest.approx(1 + swing[0, :2] * np.cos(time) / 10)
+    assert less.over == pytest.approx(mean / 100 + swing[1, :2] * np.sin(time) / 10)
+    assert (less.position is field.position, less.time is field.time) == (True, True)
+    # Both the load and the harmonics must meet the tolerance.
+    assert not reduced(found, field, 10.0, 1.5e-4)[0].met
+    rough = replace(found, harmonics_error=np.full(9, 0.1))
+    assert not reduced(rough, field, 10.0, 1e-2)[0].met
+    assert not reduced(replace(found, met=False), field, 10.0, 1e-2)[0].met
+    assert reduced(found, NO_FIELD, 10.0, 1e-2)[1] is NO_FIELD
