@@ -19,6 +19,7 @@ from squeezefilm.instruments.bench.check import check_device
 from squeezefilm.instruments.bench.check_result import DeviceCheck
 from squeezefilm.instruments.bench.conversation import Conversation
 from squeezefilm.instruments.bench.loop_check import loop_result
+from squeezefilm.instruments.bench.reading_check import DELAY_WITHIN
 from squeezefilm.instruments.device.machine import device
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.playing import Finger
@@ -134,7 +135,7 @@ def test_a_good_device_passes_every_check() -> None:
     assert "ms after the last frame" in said["watchdog"]
     assert said["sensor rate"].startswith("500 Hz; ")
     # A millisecond, and half a sample of 2 ms.
-    assert 1.8 < float(said["sensor delay"].split()[0]) < 2.2
+    assert float(said["sensor delay"].split()[0]) == pytest.approx(2.0, abs=200 * DELAY_WITHIN)
     assert (
         "0.5 V while it is touched; zero 0 ms after it was not, seen 3 times"
         in (said["sensor silence"])

@@ -20,7 +20,9 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import TABLE_BYTES
 from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.regular_file import read_regular_text
 from squeezefilm.core.results import Result, stamp
 from squeezefilm.instruments.bench.check import WATCHED, check_device
 from squeezefilm.instruments.bench.check_result import DeviceCheck
@@ -273,11 +275,12 @@ class _Truth:
         """Where the finger was (m) at times of the twin (s); waits for them to be written."""
         end = time.monotonic() + _TRUTH_LIMIT
         while True:
-            text = self.file.read_text("utf-8")
-            whole = text[: text.rfind("\n")].splitlines()[1:]
-            rows = np.loadtxt(whole, delimiter=",", ndmin=2)
-            if rows[-1, 0] >= when.max() or time.monotonic() > end:
-                return np.interp(when, rows[:, 0], rows[:, COLUMNS.index("x_m")])
+            text = read_regular_text(self.file, TABLE_BYTES, "the twin's truth")
+            lines = text[: text.rfind("\n")].splitlines()[1:]
+            rows = np.array([line.split(",") for line in lines], dtype=float, ndmin=2)
+            if time.monotonic() > end or (lines and rows[-1, 0] >= when.max()):
+                place: si.MetreArray = np.interp(when, rows[:, 0], rows[:, COLUMNS.index("x_m")])
+                return place
             time.sleep(0.1)
 
 

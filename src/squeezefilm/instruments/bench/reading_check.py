@@ -225,10 +225,11 @@ def _delay(
     seen: _Watched, sensor: SensorModel, truth: Callable[[si.SecondArray], si.MetreArray]
 ) -> CheckResult:
     """By how much the places shown are late against the true ones: the shift of least squares."""
-    where = seen.moved
+    when, place = seen.time[seen.moved], seen.place[seen.moved]
+    times = np.arange(when[0] - _DELAYS[-1], when[-1] - _DELAYS[0] + 1e-3, 1e-3)
+    true = truth(times)
     apart = [
-        float(np.mean((seen.place[where] - truth(seen.time[where] - delay)) ** 2))
-        for delay in _DELAYS
+        float(np.mean((place - np.interp(when - delay, times, true)) ** 2)) for delay in _DELAYS
     ]
     delay, _ = peak(_DELAYS, -np.array(apart))
     # What is shown is on average half a sample older than when it came.
