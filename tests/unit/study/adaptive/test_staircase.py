@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import pytest
@@ -44,3 +45,18 @@ def test_three_in_a_row_go_down_and_one_error_goes_up_by_its_ratio() -> None:
         levels.append(stairs.next_stimulus())
     # Down by 2 after three; the turn halves the step, and steps up are half of it again.
     assert levels == [8.0, 8.0, 6.0, 6.5, 7.0, 7.5]
+
+
+def test_an_odd_reversal_is_left_out_with_the_first_ones() -> None:
+    stairs = Staircase(StaircaseRule(**RULE | {"axis": "log", "start": 8.0}, down_after=1))
+    turns = []
+    for correct in (True, False, True, True, False, True, False):
+        intensity = stairs.next_stimulus()
+        stairs.update(intensity, correct)
+        turns += [intensity] if stairs.trials[-1].reversal else []
+    assert len(turns) == 5
+    for discard, left in ((0, turns[1:]), (1, turns[1:]), (2, turns[3:]), (3, turns[3:])):
+        geometric = math.exp(sum(map(math.log, left)) / len(left))
+        assert stairs.threshold(discard) == pytest.approx(geometric)
+    with pytest.raises(InputError, match="no two reversals"):
+        stairs.threshold(4)

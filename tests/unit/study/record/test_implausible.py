@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ import pytest
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.record.foreign import read_answers
+from squeezefilm.study.record.implausible import _require_one_scale, _require_pair
 
 DESIGN = load_design("friction-jnd")
 HEAD = "participant_id,stimulus,second_stimulus,choice,response_time_s"
@@ -91,3 +94,66 @@ def test_other_words_units_and_commas_are_read_on_request(tmp_path: Path) -> Non
     )
     assert found.choice.tolist() == plain.choice.tolist()
     assert found.response_time == pytest.approx(plain.response_time)
+
+
+def estimates(values: list[float], stimulus: str = "a") -> Any:
+    return [
+        (line, {"stimulus": stimulus, "estimate": str(value)})
+        for line, value in enumerate(values, 2)
+    ]
+
+
+def test_one_number_in_another_unit_is_refused_with_its_line() -> None:
+    usual = [1.0, 2.0, 3.0] * 4
+    for odd in (2.0 * 299, 2.0 / 299, 0.5):
+        _require_one_scale("f", "p", estimates([*usual, odd]))
+    for odd, said in ((2.0 * 301, "602|301"), (2.0 / 301, "0.00332")):
+        with pytest.raises(ConfigError, match=f"'p' gave 'a' ({said}) times the usual") as found:
+            _require_one_scale("f", "p", estimates([*usual, odd]))
+        assert found.value.line == 14
+    # Of few numbers, or two of a surface, nothing can be told.
+    _require_one_scale("f", "p", estimates([1.0, 1.0, 1.0, 1000.0]))
+    other = [(20, {"stimulus": "b", "estimate": "1e6"}), (21, {"stimulus": "b", "estimate": "1"})]
+    _require_one_scale("f", "p", [*estimates(usual), *other])
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, None),
+        ({"stimulus": "other"}, None),
+        ({"stimulus": "other", "second_stimulus": "third"}, "other / third has no reference"),
+        ({"stimulus": ""}, "has no reference"),
+        ({"adaptive_series": "up", "intensity": "0.1"}, None),
+        ({"adaptive_series": "up", "intensity": "2.0"}, None),
+        ({"adaptive_series": "up", "intensity": "0.0"}, None),
+        ({"adaptive_series": "up", "intensity": "2.1"}, "2.1 is outside the series 'up'"),
+        ({"adaptive_series": "up", "intensity": "0.04"}, "0.04 is outside the series"),
+    ],
+)
+def test_a_pair_has_its_reference_and_a_series_its_range(
+    changes: dict[str, str], said: str | None
+) -> None:
+    design: Any = SimpleNamespace(
+        task="two-interval",
+        reference="ref",
+        described=SimpleNamespace(surfaces=2),
+        series=lambda name: SimpleNamespace(name=name, lowest=0.1, highest=1.0),
+    )
+    row = {"stimulus": "a", "second_stimulus": "ref", "adaptive_series": "", **changes}
+    if said is None:
+        _require_pair("f", 7, design, row)
+        return
+    with pytest.raises(ConfigError, match=said) as found:
+        _require_pair("f", 7, design, row)
+    assert found.value.line == 7
+
+
+def test_of_the_same_twice_no_reference_is_asked() -> None:
+    alike: Any = SimpleNamespace(
+        task="same-different", reference="ref", described=SimpleNamespace(surfaces=2)
+    )
+    row = {"stimulus": "a", "second_stimulus": "a", "adaptive_series": ""}
+    _require_pair("f", 7, alike, row)
+    with pytest.raises(ConfigError, match="has no reference"):
+        _require_pair("f", 7, alike, row | {"second_stimulus": "b"})
