@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from scipy.special import ndtr
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.perception.perceived import Perceived
 from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.design.study_design import StudyDesign, load_design
@@ -20,7 +23,7 @@ from squeezefilm.study.simulated.answers import (
 )
 from squeezefilm.study.simulated.causes import Causes
 from squeezefilm.study.simulated.chain_tables import ChainTables
-from squeezefilm.study.simulated.judgements import simulate_judgements
+from squeezefilm.study.simulated.judgements import _alike_in_plane, simulate_judgements
 
 EXACT = dataclasses.replace(
     load_observer(),
@@ -148,3 +151,38 @@ def test_what_cannot_be_judged_is_refused() -> None:
         simulate_judgements(match, EXACT, 1, 0, tables(match))
     with pytest.raises(InputError, match="another design"):
         simulate_participants(ALIKE, EXACT, 2, 0, tables(NUMBERS))
+
+
+def test_alike_in_the_plane_is_within_the_criterion_of_noise_alone() -> None:
+    """Strengths along both ways, and periods where both are felt; blind people guess."""
+    random = np.random.default_rng(8)
+    count = 6
+    one, other = (
+        Perceived(
+            random.normal(size=(count, 2)),
+            random.normal(1.5, 1.0, (count, 2)),
+            random.random((count, 2)) < 0.6,
+        )
+        for _ in range(2)
+    )
+    people: Any = SimpleNamespace(
+        spread=np.full(count + 2, 0.3),
+        blind=np.array([[9.0] * 8, [0.9, 0.9, 0.9, 0.9, 0.01, 0.01, 0.0, 0.0]]),
+        lapse=np.full(count + 2, 0.05),
+        guess=np.array([[0.0] * 8, [0.0, 0.0, 0.0, 0.0, 0.4, 0.6, 0.0, 0.0]]),
+    )
+    room: Any = SimpleNamespace(observer=SimpleNamespace(detection_criterion=0.8))
+    given = _alike_in_plane(room, people, [one, other], 1.2, 1, count)
+    for k in range(count):
+        terms, square = 2, 0.0
+        for way in range(2):
+            square += (max(one.strength[k, way], 0) - max(other.strength[k, way], 0)) ** 2
+            if one.felt[k, way] and other.felt[k, way]:
+                terms += 1
+                square += ((one.log_period[k, way] - other.log_period[k, way]) / 0.3) ** 2
+        apart = math.sqrt(square / (2 * 1.2**2) / terms)
+        blind = k in (4, 5)
+        assert given.choice[k] == ((k == 4) if blind else (apart > 0.8))
+        assert given.doubt[k] == pytest.approx(1.0 if blind else math.exp(-abs(apart - 0.8)))
+    assert np.isnan(given.estimate).all()
+    assert given.estimate.shape == (count,)

@@ -9,6 +9,8 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import SOLID_HEAT
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.heat.thermal import (
+    CERAMIC_CONDUCTIVITY,
+    GLASS_CONDUCTIVITY,
     STATOR_THICKNESS,
     Thermal,
     driven_thickness,
@@ -67,3 +69,20 @@ def test_a_disc_and_a_stator_have_theirs() -> None:
 def test_what_no_plate_has_is_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(InputError, match=next(iter(wrong))):
         Thermal(**wrong)  # type: ignore[arg-type]
+
+
+def test_a_disc_with_a_hole_is_a_ring_under_a_ring() -> None:
+    disc = load_display("winfield2007-tpad").actuator
+    assert isinstance(disc, DiscPlate)
+    bored = dataclasses.replace(
+        disc, inner_diameter=5e-3, ceramic_inner_diameter=8e-3, ceramic_outer_diameter=20e-3
+    )
+    body, thick = thermal_body(bored), bored.thickness
+    face = math.pi * (12.5e-3**2 - 2.5e-3**2)
+    assert body.face_area == pytest.approx(face)
+    assert body.perimeter == pytest.approx(2 * math.pi * (12.5e-3 + 2.5e-3))
+    ceramic = math.pi * (10e-3**2 - 4e-3**2) * bored.ceramic_thickness * 7750 * 400
+    assert body.heat_capacity == pytest.approx(face * thick * 2230 * 830 + ceramic)
+    assert body.through == pytest.approx(
+        thick / GLASS_CONDUCTIVITY + bored.ceramic_thickness / CERAMIC_CONDUCTIVITY
+    )
