@@ -52,6 +52,11 @@ class Adversary:
             return self.random.randbytes(self.random.randrange(300))
         return data
 
+    def sensible(self, message: m.Message) -> bytes:
+        """A message as a good host would send it."""
+        self.sequence += 1
+        return message.frame(self.sequence % 65536).encoded()
+
     def _frame(self, machine: Machine) -> bytes:
         pick = self.random
         self.sequence += 1 if pick.random() < 0.97 else pick.randrange(65536)

@@ -15,6 +15,7 @@ from collections import Counter
 from dataclasses import astuple, replace
 
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
+from squeezefilm.instruments.control.plate_loop import LOCKED
 from squeezefilm.instruments.device.machine.device import TICK_PERIOD, Machine, next_token
 from squeezefilm.instruments.device.machine.held import HeldPlate
 from squeezefilm.instruments.device.machine.limits import DeviceLimits
@@ -130,25 +131,35 @@ def page_session() -> Recording:
 
 @functools.cache
 def adversarial(seed: int, steps: int) -> Recording:
-    """A host that means no good, with its finger anywhere and its clock over the wrap."""
+    """A host that means no good, with its finger anywhere and its clock over the wrap.
+
+    Half of the searches of its loops it leaves alone until they have locked.
+    """
     host, pick = Adversary(random.Random(seed)), random.Random(-seed - 1)
     finger = Finger() if seed % 4 else None
-    recording = Recording(seed, WIDE, finger, pick.choice((50, 100, 500, 1000)))
+    recording = Recording(seed, WIDE, finger, pick.choice((50, 100, 500, 500, 500, 1000)))
     twin, seen = recording.twin, recording.seen
     now = 2**32 - pick.randrange(2_000_000)
+    resonator, patient, started = Resonator(), False, False
+    resonator.now = now
     for _ in range(steps):
+        searching = twin.loops.on and twin.state is State.PLAYING and twin.loops.state.mode < LOCKED
+        patient = searching and (patient if started else pick.random() < 0.5)
+        started = searching
         if finger is not None:
             finger.x = pick.choice((0, -1000, 333, 777, 2**31 - 1, -(2**31), pick.randrange(9999)))
             finger.y, finger.touching = pick.randrange(-5000, 5000), pick.random() < 0.8
             finger.pickup = pick.randrange(2**32)
-            finger.phases, finger.temperature = plate(pick, twin), pick.randrange(-(2**31), 2**31)
-        data = host.step(twin)
+            finger.temperature = pick.randrange(-(2**31), 2**31)
+        data = host.sensible(m.Envelope(500, (30.0,))) if patient else host.step(twin)
         cut = pick.randrange(len(data) + 1)
         for part in (data[:cut], data[cut:]):
             recording.receive(part, now)
         if pick.random() < 0.002:
             recording.trip()
-        for elapsed in (host.pause(), 500):
+        for elapsed in (500, 500) if patient else (host.pause(), 500):
+            if finger is not None:
+                finger.phases = resonator.shown(pick, twin, (now + elapsed) % 2**32)
             now = (now + elapsed) % 2**32
             recording.tick(now)
             for frame in Deframer().take(recording.outgoing()):
@@ -165,14 +176,25 @@ def adversarial(seed: int, steps: int) -> Recording:
     return recording
 
 
-def plate(pick: random.Random, twin: Machine) -> tuple[int, int]:
-    """A pickup that shows the drive at resonance, most of the time, or whatever it can."""
-    if pick.random() < 0.03:
-        return pick.choice((0, 2**31 - 1, -(2**31))), pick.choice((0, 2**31 - 1, -(2**31)))
-    gains = twin.loops.gains or GAINS
-    angle = 2 * math.pi * (gains.turn / 2**32 + pick.gauss(0, 0.01))
-    shown = twin.level * gains.ratio / 2**24 * pick.uniform(0.8, 1.0)
-    return round(shown * math.cos(angle)), round(shown * math.sin(angle))
+class Resonator:
+    """The plate that `GAINS` are for, driven by a device, and the pickup's two phases of it (µV):
+    what they are, most of the time, or whatever an input can show."""
+
+    def __init__(self) -> None:
+        self.z, self.now = 0j, 0
+
+    def shown(self, pick: random.Random, twin: Machine, now: int) -> tuple[int, int]:
+        half_bandwidth, ratio = GAINS.half_bandwidth * 1e-3, GAINS.ratio / 2**24
+        off = (twin.frequency - GAINS.reference) * 1e-3
+        rate = 1 + 1j * off / half_bandwidth
+        rest = ratio * twin.level / rate
+        elapsed = (now - self.now) % 2**32 * 1e-6
+        self.z = rest + (self.z - rest) * cmath.exp(-rate * elapsed * 2 * math.pi * half_bandwidth)
+        self.now = now
+        if pick.random() < 0.01:
+            return pick.choice((0, 2**31 - 1, -(2**31))), pick.choice((0, 2**31 - 1, -(2**31)))
+        shown = self.z * cmath.exp(1j * (1.0 - 2 * math.pi * 1e-5 * off))
+        return round(shown.real), round(shown.imag)
 
 
 @functools.cache

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from squeezefilm.instruments.control.plate_loop import LOCKED, PROBING, SEARCHING
 from squeezefilm.instruments.device.machine.limits import NO_LEVEL, level_of
 from squeezefilm.instruments.device.machine.playing import Mode
 from squeezefilm.instruments.device.wire import messages as m
@@ -125,13 +126,14 @@ def test_what_the_twin_did(firmware: Library | Sanitized, made: Callable[[], Rec
 
 def test_adversarial_streams(firmware: Library | Sanitized) -> None:
     seen = Counter[object]()
-    for seed in range(8):
+    for seed in (*range(8), 11):
         recording = adversarial(seed, 1_500)
         assert firmware.record(recording) == recording.record, f"seed {seed}"
         seen += recording.seen
     assert all(seen[state] > 100 for state in State), seen
     assert all(seen[mode] > 50 for mode in Mode), seen
     assert seen[m.Reading] > 500, seen
+    assert min(seen["loops", mode] for mode in (SEARCHING, PROBING, LOCKED)) > 100, seen
     assert min(seen["dry"], seen["late"], seen["late ticks"]) > 100, seen
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from squeezefilm.instruments.control.plate_loop import LOCKED
 from squeezefilm.instruments.device.machine.limits import DeviceLimits
 
 from .arm import Arm, ArmMachine, firmware_alone, instruction_counter
@@ -55,8 +56,11 @@ def test_what_the_twin_did_on_arm(arm: Arm, made: Callable[[], Recording]) -> No
 
 
 def test_adversarial_streams_on_arm(arm: Arm) -> None:
-    for seed in (0, 1):  # without a sensor, and with one
+    for seed in (0, 11):  # without a sensor, and with one and loops that lock
         check(arm, adversarial(seed, 1_500))
+    locked = adversarial(11, 1_500).seen["loops", LOCKED]
+    print(f"locked in {locked} of 1500 steps")
+    assert locked > 50
     check(arm, noise(9, 2_000))
 
 

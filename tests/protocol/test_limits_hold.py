@@ -15,14 +15,15 @@ from squeezefilm.instruments.device.wire.frames import Deframer
 from squeezefilm.instruments.device.wire.states import Fault, State
 
 from .adversary import Adversary
-from .recording import plate
+from .recording import Resonator
 
 
 class Watch:
     """Watches the output with floats of its own, by what docs/development/protocol.md promises."""
 
     def __init__(self) -> None:
-        loops = HeldPlate(lambda: plate(random.Random(self.now), self.machine))
+        resonator = Resonator()
+        loops = HeldPlate(lambda: resonator.shown(random.Random(self.now), self.machine, self.now))
         self.machine = Machine(3, sensor=self.finger, pickup=lambda: 7, loops=loops)
         self.now = self.heard = 0
         self.level = 0
