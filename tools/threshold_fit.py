@@ -28,9 +28,7 @@ from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 
 PUBLISHED = "bernard2020-detection.toml"
-RULE = StaircaseRule(
-    8.0, math.log(2.0), math.log(1.12), down_after=3, axis="log", reversals=999, most_trials=50
-)
+RULE = StaircaseRule(8.0, math.log(2.0), math.log(1.12), down_after=3, axis="log", most_trials=50)
 
 
 def published() -> DetectionThresholds:

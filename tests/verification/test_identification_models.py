@@ -16,7 +16,7 @@ from squeezefilm.study.identification.choice_model import (
     choice_model,
     choice_probabilities,
 )
-from squeezefilm.study.identification.response_times import response_time_summary
+from squeezefilm.study.identification.condition_means import response_time_summary
 from squeezefilm.study.identification.sensitivity import ordered_sensitivity
 
 

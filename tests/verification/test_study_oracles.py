@@ -23,10 +23,11 @@ from tests.task_models import (
 
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.placement import Placement
+from squeezefilm.study.design.tasks.two_interval import QUARTILE
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior
 from squeezefilm.study.tasks.magnitude import exponents
-from squeezefilm.study.tasks.two_interval import QUARTILE, differences, on_grid
+from squeezefilm.study.tasks.on_grid import on_grid
 
 SETS = range(20)
 FEW = pytest.mark.parametrize(
@@ -224,7 +225,7 @@ def test_twenty_people_without_lapses_agree_with_a_probit_model(
         random = np.random.default_rng([5, seed])
         person = Person(random.uniform(0.08, 0.15), 0.9, random.normal(0.0, 0.03))
         main = answered(DESIGNS["constant"], [person] * 4, random).main(0)
-        x, y = differences(main), (main.choice == 0).astype(float)
+        x, y = main.differences, (main.choice == 0).astype(float)
         model = api.GLM(
             y,
             api.add_constant(x),

@@ -10,7 +10,6 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.adaptive.staircase import StaircaseRule
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior
 
@@ -104,22 +103,6 @@ def test_priors_that_are_none(change: dict[str, Any], message: str) -> None:
     values: dict[str, Any] = {"threshold": (1.0, 9.0), "width": (0.5, 12.0)} | change
     with pytest.raises(InputError, match=message):
         PsychometricPrior(**values)
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"axis": "lin"}, "linear, log"),
-        ({"smallest_step": 2.0}, "smallest_step = 2 "),
-        ({"down_after": 0}, "down_after"),
-        ({"lowest": 9.0}, "not between lowest"),
-        ({"start": -1.0, "axis": "log"}, "start = -1"),
-    ],
-)
-def test_rules_that_are_none(change: dict[str, Any], message: str) -> None:
-    values: dict[str, Any] = {"start": 8.0, "step": 1.0, "smallest_step": 0.5} | change
-    with pytest.raises(InputError, match=message):
-        StaircaseRule(**values)
 
 
 @pytest.mark.parametrize(

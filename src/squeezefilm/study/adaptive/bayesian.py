@@ -123,15 +123,6 @@ class BayesianAdaptive:
         """The posterior on the grid, shape `design.cells`; sums to 1."""
         return self._weights.reshape(self.design.cells).copy()
 
-    @property
-    def entropy(self) -> float:
-        """Entropy of the posterior of what is of interest (nat)."""
-        weights = self.probability
-        if self.design.interest == "threshold and width":
-            weights = weights.sum(axis=2)
-        some = weights[weights > 0]
-        return float(-np.sum(some * np.log(some)))
-
     def estimate(self) -> tuple[float, float]:
         """Posterior mean of the threshold (in the stimulus' unit; of ln intensity on a
         logarithmic axis) and posterior geometric mean of the width. For intervals use a fit."""
@@ -154,8 +145,7 @@ class BayesianAdaptive:
         Raises:
             InputError: all trials have been made.
         """
-        if self.finished:
-            raise InputError(f"all {self.design.most_trials} trials have been made; start another")
+        self._require_room()
         return float(self.design.stimuli[int(np.argmax(self.expected_information()))])
 
     def update(self, intensity: float, positive: bool) -> None:
@@ -164,8 +154,7 @@ class BayesianAdaptive:
         Raises:
             InputError: an intensity off the axis, or all trials have been made.
         """
-        if self.finished:
-            raise InputError(f"all {self.design.most_trials} trials have been made; start another")
+        self._require_room()
         intensity = float(intensity)
         if intensity in self.design.stimuli:
             psi = self._table[:, self.design.stimuli.index(intensity)]
@@ -183,6 +172,10 @@ class BayesianAdaptive:
             )
         self._weights = weights / total
         self._trials.append(AdaptiveTrial(intensity, bool(positive)))
+
+    def _require_room(self) -> None:
+        if self.finished:
+            raise InputError(f"all {self.design.most_trials} trials have been made; start another")
 
 
 def _nodes(design: AdaptiveDesign) -> list[si.FloatArray]:

@@ -9,7 +9,7 @@ the same for psychometric functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -99,20 +99,16 @@ class PlacementModel:
 class Placement:
     """A choice of stimuli as it runs: `next_stimulus`, then `update`, until `finished`.
 
-    Nothing in it is random: the answers are all its state, and playing them again (`answers`, pairs
-    of the numbers of stimulus and answer) gives the placement that was interrupted.
+    Nothing in it is random: the answers are all its state, and playing them again (`update`)
+    gives the placement that was interrupted.
     """
 
-    def __init__(
-        self, model: PlacementModel, trials: int, answers: Iterable[tuple[int, int]] = ()
-    ) -> None:
+    def __init__(self, model: PlacementModel, trials: int) -> None:
         si.require("trials", trials, at_least=1)
         self.model, self.trials = model, trials
         self._chances = np.ascontiguousarray(model.chances[:-1])
         self._weights = model.first_weights()
         self._given: list[tuple[int, int]] = []
-        for stimulus, answer in answers:
-            self.update(stimulus, answer)
 
     @property
     def given(self) -> tuple[tuple[int, int], ...]:

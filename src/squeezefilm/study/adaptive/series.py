@@ -39,25 +39,20 @@ class SameDifferentSeries:
 
     def __init__(self, series: AdaptiveCondition) -> None:
         self._choices = np.geomspace(series.lowest, series.highest, _CHOICES)
-        self._placement = Placement(_differencing(series.lowest, series.highest), series.count)
+        self.placement = Placement(_differencing(series.lowest, series.highest), series.count)
 
     @property
     def finished(self) -> bool:
         """True where it has its trials."""
-        return self._placement.finished
-
-    def estimate(self) -> tuple[si.Dimensionless, si.Dimensionless]:
-        """Posterior mean and standard deviation of the Weber fraction; for intervals use the
-        study's analysis."""
-        return self._placement.estimate("Weber fraction")
+        return self.placement.finished
 
     def next_stimulus(self) -> si.Dimensionless:
         """The next difference above 0, in parts of the reference."""
-        asked = sum(number > 0 for number, _ in self._placement.given)
+        asked = sum(number > 0 for number, _ in self.placement.given)
         if asked % _SPREAD_EVERY == _SPREAD_EVERY - 1:
             # Steps of 17 come to each of the forty once before any comes again.
             return float(self._choices[17 * (asked // _SPREAD_EVERY) % _CHOICES])
-        told = self._placement.expected_information()[1:]
+        told = self.placement.expected_information()[1:]
         return float(self._choices[int(np.argmax(told))])
 
     def update(self, intensity: si.Dimensionless, correct: bool) -> None:
@@ -67,7 +62,7 @@ class SameDifferentSeries:
             number = 1 + int(np.argmin(np.abs(np.log(self._choices / intensity))))
         # "different" is right of all but a pair that is the same.
         said = "different" if correct == (intensity > 0) else "same"
-        self._placement.update(number, self._placement.model.answers.index(said))
+        self.placement.update(number, self.placement.model.answers.index(said))
 
 
 @functools.lru_cache(maxsize=8)
@@ -81,6 +76,7 @@ def _differencing(lowest: float, highest: float) -> PlacementModel:
     weber, criterion, lapse = (axis.reshape(-1, 1) for axis in grid)
     model = SAME_DIFFERENT.model
     assert model is not None
+    assert model.rate is not None
     rise = model.rate(differences * D_PRIME_OF_75 / np.log1p(weber), criterion)
     different = model.lapses * lapse + (1.0 - lapse) * rise
     chances = np.stack([different, 1.0 - different])
@@ -120,7 +116,6 @@ def adaptive_method(
                 down_after=series.down,
                 lowest=series.lowest,
                 highest=series.highest,
-                reversals=series.count + 2,
                 most_trials=series.count,
             )
         )

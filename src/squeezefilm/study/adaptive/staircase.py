@@ -1,8 +1,8 @@
 """Staircases: rules that move the intensity up and down with the answers, and where they settle.
 
 Transformed up–down rules (Levitt 1971, 10.1121/1.1912375): down after n correct answers in a row,
-up after one that is not. Weighted ones (Kaernbach 1991, 10.3758/BF03214307) take larger steps up
-than down. Levels move on the axis; on a logarithmic axis a step is a difference of ln intensity.
+up after one that is not. Levels move on the axis; on a logarithmic axis a step is a difference of
+ln intensity.
 """
 
 from __future__ import annotations
@@ -12,73 +12,31 @@ from dataclasses import dataclass
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.psychometric.function import AXES, Axis
+from squeezefilm.study.psychometric.function import Axis
 
 
 @dataclass(frozen=True, slots=True)
 class StaircaseRule:
-    """Rule by which a staircase moves and ends.
+    """Rule by which a staircase moves and ends; a design's series is checked by itself.
 
     Args:
         start: first intensity, in the unit of the stimulus.
-        step: first step down, above 0: in that unit, or a difference of ln intensity.
+        step: first step, above 0: in that unit, or a difference of ln intensity.
         smallest_step: steps are halved at every reversal as long as they stay at least this.
         down_after: correct answers in a row before a step down, at least 1.
-        up_ratio: step up over step down, above 0.
         lowest, highest: intensities that are never left.
         axis: "linear" or "log".
-        reversals: after which it ends, at least 2.
-        most_trials: after which it ends at the latest, at least 1.
-
-    Raises:
-        InputError: a value outside its range, or bounds that contradict each other.
+        most_trials: after which it ends, at least 1.
     """
 
     start: float
     step: float
     smallest_step: float
     down_after: int = 2
-    up_ratio: si.Dimensionless = 1.0
     lowest: float = -math.inf
     highest: float = math.inf
     axis: Axis = "linear"
-    reversals: int = 12
     most_trials: int = 200
-
-    def __post_init__(self) -> None:
-        si.require_one_of("axis", self.axis, AXES)
-        si.require("start", self.start, above=0.0 if self.axis == "log" else None)
-        si.require("step", self.step, above=0.0)
-        si.require("smallest_step", self.smallest_step, above=0.0, at_most=self.step)
-        si.require("down_after", self.down_after, at_least=1)
-        si.require("up_ratio", self.up_ratio, above=0.0)
-        si.require("reversals", self.reversals, at_least=2)
-        si.require("most_trials", self.most_trials, at_least=1)
-        if not self.lowest <= self.start <= self.highest:
-            raise InputError(
-                f"start = {self.start:g} is not between lowest, {self.lowest:g}, and highest, "
-                f"{self.highest:g}; move it or them",
-                quantity="start",
-            )
-        low, high = self.lowest, self.highest
-        if self.axis == "log":
-            low, high = (math.log(end) if end > 0 else -math.inf for end in (low, high))
-        if high - low < self.smallest_step:
-            raise InputError(
-                f"from lowest to highest there is less than the smallest step, "
-                f"{self.smallest_step:g}, so that the staircase cannot move; take smaller steps or "
-                "a wider range",
-                quantity="smallest_step",
-            )
-
-    @property
-    def target(self) -> si.Dimensionless:
-        """Probability of a correct answer at which it settles: (s₊/(s₊ + s₋))^(1/n).
-
-        There the expected steps up and down cancel: pⁿ s₋ = (1 − pⁿ) s₊. 70.7 % for two down, one
-        up (Levitt 1971), s₊/(s₊ + s₋) for a weighted staircase (Kaernbach 1991). Holds for small
-        steps."""
-        return float((self.up_ratio / (self.up_ratio + 1.0)) ** (1.0 / self.down_after))
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,9 +70,8 @@ class Staircase:
 
     @property
     def finished(self) -> bool:
-        """True where it has its reversals or its trials."""
-        reversals = sum(trial.reversal for trial in self._trials)
-        return reversals >= self.rule.reversals or len(self._trials) >= self.rule.most_trials
+        """True where it has its trials."""
+        return len(self._trials) >= self.rule.most_trials
 
     def next_stimulus(self) -> float:
         """The intensity to show next, in the unit of the stimulus.
@@ -149,7 +106,7 @@ class Staircase:
             self._step *= 0.5
         if direction:
             self._direction = direction
-            self._level += self._step * (rule.up_ratio if direction > 0 else -1.0)
+            self._level += direction * self._step
             self._hold_within_bounds()
         self._trials.append(StaircaseTrial(float(intensity), bool(correct), turned))
 
@@ -165,7 +122,7 @@ class Staircase:
         """Mean of the intensities at the reversals (geometric on a logarithmic axis).
 
         The first `discard` reversals are left out, and one more where an odd number is left.
-        An estimate of the intensity at `rule.target`; a fit uses the answers better.
+        It estimates where pⁿ = ½ after n in a row; a fit uses the answers better.
 
         Raises:
             InputError: fewer than two reversals are left.

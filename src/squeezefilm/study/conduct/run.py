@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-import math
 import sqlite3
 import time
 import uuid
@@ -30,6 +29,7 @@ from squeezefilm.study.conduct.sessions import display_wanted, next_planned
 from squeezefilm.study.conduct.study_device import TrialMotion
 from squeezefilm.study.design.trials import Trial
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now
+from squeezefilm.study.record.tables import known
 
 State = Literal["ready", "presented", "display changes", "finished"]
 
@@ -338,7 +338,7 @@ class StudyRun:
             "intensity": intensity,
             "correct": correct,
             **answered,
-            "path_length_m": _known(sum(motion.path_length for motion in felt)) if felt else None,
+            "path_length_m": known(sum(motion.path_length for motion in felt)) if felt else None,
             "mean_speed_m_per_s": _mean([motion.mean_speed for motion in felt]),
             "mean_normal_force_N": _mean([motion.mean_normal_force for motion in felt]),
             "traces": json.dumps(traces),
@@ -349,12 +349,8 @@ class StudyRun:
         }
 
 
-def _known(value: float) -> float | None:
-    return value if math.isfinite(value) else None
-
-
 def _mean(values: list[float]) -> float | None:
-    return _known(sum(values) / len(values)) if values else None
+    return known(sum(values) / len(values)) if values else None
 
 
 def _require_answer(trial: Trial, response: Response) -> None:

@@ -16,9 +16,9 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.hard_limits import PLANNED_TRIALS, require_within
 from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import Result, write_named
-from squeezefilm.physics.perception.observer import NamedObserver, load_observer
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.perception.observer import NamedObserver, Observer, load_observer
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
-from squeezefilm.study.design.doubts import doubts_of
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import (
     Trial,
@@ -204,3 +204,71 @@ def new_study_file(
     )
     config.load_text(StudyDesign, header + text, file=str(file))
     write_named(file, header + text, replace=replace)
+
+
+def predicted_fraction(design: StudyDesign, observer: Observer) -> si.Dimensionless | None:
+    """The observer's Weber fraction of what a design judges; None where it has no sense of it."""
+    return {
+        "spatial_period": observer.period_weber_fraction,
+        "friction_depth": observer.strength_weber_fraction,
+    }.get(design.judged)
+
+
+def doubts_of(design: StudyDesign, observer: Observer, reach: bool = False) -> tuple[str, ...]:
+    """Sentences about a design, each with what to do; none where nothing is doubtful.
+
+    With `reach` each display is solved, and stimuli are named that ask for less friction than it
+    makes at its largest amplitude. Raises what `load_display` and `predict` raise.
+    """
+    sentences = [*_of_range(design, observer)]
+    if design.answers and not design.catch:
+        sentences.append(
+            "there are no catch trials: who does not attend is told by the answers alone; add "
+            "[[catch]] with a surface that everybody tells"
+        )
+    if reach:
+        sentences += [said for name in design.displays for said in _of_display(design, name)]
+    return tuple(sentences)
+
+
+def _of_range(design: StudyDesign, observer: Observer) -> list[str]:
+    """Doubt of differences from the reference that do not bracket the predicted threshold."""
+    fraction = predicted_fraction(design, observer)
+    has_threshold = design.described.model is not None and not design.in_amounts
+    if not has_threshold or not design.on_a_scale or fraction is None:
+        return []
+    ends = [math.expm1(difference) for difference in design.differences]
+    threshold = f"the predicted threshold of {si.percent(fraction, 1)} ('{observer.name}')"
+    if min(ends) > fraction:
+        return [
+            f"the least difference from the reference, {si.percent(min(ends), 1)}, is above "
+            f"{threshold}: most people tell all of them; add smaller ones"
+        ]
+    if max(ends) < fraction:
+        return [
+            f"the greatest difference from the reference, {si.percent(max(ends), 1)}, is below "
+            f"{threshold}: most people tell none of them; add larger ones"
+        ]
+    return []
+
+
+def _of_display(design: StudyDesign, name: str) -> list[str]:
+    """The stimuli that ask for less friction than a display makes."""
+    # It solves a plate, which a plan without it need not load.
+    from squeezefilm.physics.chain.prediction import predict
+
+    least = float(predict(load_display(name)).relative_friction)
+    lacking = [one for one in _presented(design) if not one.texture and one.low < least]
+    if not lacking:
+        return []
+    asked = ", ".join(f"'{stimulus.name}' for {stimulus.low:.3g}" for stimulus in lacking)
+    return [
+        f"'{name}' reaches a relative friction of {least:.3g} at its largest amplitude, and the "
+        f"design asks it: {asked}; take shallower surfaces, or another display"
+    ]
+
+
+def _presented(design: StudyDesign) -> list[Stimulus]:
+    """Every surface that may be presented, a series' farthest comparison too."""
+    chosen = [design.comparison(series, series.highest) for series in design.adaptive]
+    return [*design.stimuli, *(trial.stimulus for trial in design.catch), *chosen]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
@@ -56,26 +57,18 @@ class TrialRules:
         NaN is what is not known. No movement is said first: speed follows from it.
         """
         for value, limit, wrong, said, unit in (
-            (way, self.shortest_way, _below, "the finger hardly moved", "m"),
-            (touch, self.least_touch, _below, "the finger was lifted", "1"),
-            (speed, self.slowest, _below, "the finger moved too slowly", "m/s"),
-            (speed, self.fastest, _above, "the finger moved too fast", "m/s"),
-            (force, self.lightest, _below, "the finger pressed too lightly", "N"),
-            (force, self.hardest, _above, "the finger pressed too hard", "N"),
+            (way, self.shortest_way, operator.lt, "the finger hardly moved", "m"),
+            (touch, self.least_touch, operator.lt, "the finger was lifted", "1"),
+            (speed, self.slowest, operator.lt, "the finger moved too slowly", "m/s"),
+            (speed, self.fastest, operator.gt, "the finger moved too fast", "m/s"),
+            (force, self.lightest, operator.lt, "the finger pressed too lightly", "N"),
+            (force, self.hardest, operator.gt, "the finger pressed too hard", "N"),
         ):
             if limit is not None and not math.isnan(value) and wrong(value, limit):
                 one, other = (si.format_quantity(v, si.Unit(unit), 3) for v in (value, limit))
-                end = "least" if wrong is _below else "most"
+                end = "least" if wrong is operator.lt else "most"
                 return f"{said} ({one}; at {end} {other})"
         return ""
-
-
-def _below(value: float, limit: float) -> bool:
-    return value < limit
-
-
-def _above(value: float, limit: float) -> bool:
-    return value > limit
 
 
 _Share = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]

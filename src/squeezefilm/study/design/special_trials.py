@@ -63,10 +63,6 @@ class AdaptiveCondition:
         if self.method == "staircase":
             si.require("start", self.start, at_least=self.lowest, at_most=self.highest)
             si.require("step", self.step, above=0.0, at_most=self.highest)
-        self._require_room()
-
-    def _require_room(self) -> None:
-        """Refuse a domain in which the method cannot move. Raises `InputError`."""
         if self.method == "staircase" and self.highest - self.lowest < self.step / 4:
             raise InputError(
                 f"series '{self.name}' cannot move: from lowest = {self.lowest:g} to highest = "

@@ -1,6 +1,6 @@
 """A study's design: its task, what is presented, how often and in which order; from a TOML file.
 
-Five tasks, each a record of `design.tasks`:
+Tasks, each a record of `design.tasks`:
 
 - "match-to-sample": one virtual surface; which of the real gratings (`alternatives`) is it like?
   Or, with `matched_with` = "stimuli", which of the stimuli, shapes and maps too, was it?
@@ -9,6 +9,9 @@ Five tasks, each a record of `design.tasks`:
   friction change (`judged` = "friction_depth")? One of them is always `reference`.
 - "odd-one-out": three surfaces, two of them the same; which is the other? One kind is `reference`.
 - "magnitude-estimation": one surface; a number for how coarse, rough or strong it is.
+- "direction": one surface; does it have more or less than the reference, known from before?
+- "yes-no": one surface, the flat `reference` in half of the trials; was anything felt?
+- "detection": two surfaces, one of them the flat `reference`; which had something to feel?
 
 `squeezefilm.study.design.trials` makes each participant's trials of a design.
 """
@@ -34,6 +37,7 @@ from squeezefilm.study.design.matching import (
     Exploring,
     MatchedWith,
     require_amounts,
+    require_comparison,
     require_matching,
 )
 from squeezefilm.study.design.rules import ExclusionRule, TrialRules
@@ -58,7 +62,7 @@ class StudyDesign:
         name, title: what it is called, in files and for people.
         displays: presets or files of displays; every participant does the trials on each, in an
             order balanced over participants.
-        task: one of the five of this module.
+        task: one of this module.
         stimuli: the conditions.
         alternatives: real gratings; for match-to-sample only, where they are the answers.
         matched_with: what match-to-sample offers as answers: the "real gratings", or the "stimuli"
@@ -146,7 +150,20 @@ class StudyDesign:
                 f"{si.did_you_mean(self.reference, known)} Stimuli: {', '.join(known)}",
                 quantity="reference",
             )
-        self._require_task()
+        require_matching(
+            *(self.task, self.matched_with, self.exploring),
+            *(self.stimuli, self.alternatives, self.answers),
+        )
+        amounts = [self.judged_value(stimulus) for stimulus in self.stimuli]
+        require_amounts(
+            *(self.described, self.judged, self.stimuli, amounts, self.reference, self.in_amounts)
+        )
+        require_comparison(
+            *(self.described, self.reference, len(self.stimuli), bool(self.adaptive)),
+            *(self.practice, self.practice_criterion, self.modulus),
+        )
+        for item in self.adaptive:
+            self._require_series(item)
         self._require_answers()
         require_within(
             PARTICIPANT_TRIALS,
@@ -239,6 +256,42 @@ class StudyDesign:
         """Amount (SI) of what is judged that a stimulus has; of a period the whole one."""
         return surface.period if self.judged == "spatial_period" else surface.amount(self.judged)
 
+    @property
+    def in_amounts(self) -> bool:
+        """True where differences are of amounts: of an orientation, or from a flat surface."""
+        return self.described.in_amounts or self.judged == "orientation"
+
+    @property
+    def measure(self) -> str:
+        """Name of what a difference that is just told is called."""
+        return "threshold" if self.in_amounts else "Weber fraction"
+
+    @property
+    def reference_value(self) -> float:
+        """Amount (SI) of what is judged that the reference has; NaN without one."""
+        return self.judged_value(self.stimulus(self.reference)) if self.reference else math.nan
+
+    def level(self, surface: Stimulus) -> float:
+        """Place of a stimulus on the scale of which differences are taken."""
+        value = self.judged_value(surface)
+        return value if self.in_amounts else math.log(value)
+
+    @property
+    def reference_level(self) -> float:
+        """The same of the reference; NaN without one."""
+        return self.level(self.stimulus(self.reference)) if self.reference else math.nan
+
+    @property
+    def differences(self) -> list[float]:
+        """Differences above 0 that the design asks about, of two stimuli without a reference."""
+        if self.adaptive:
+            ends = [x for series in self.adaptive for x in (series.lowest, series.highest)]
+            return ends if self.in_amounts else [math.log1p(end) for end in ends]
+        levels = [self.level(stimulus) for stimulus in self.stimuli]
+        origins = [self.reference_level] if self.reference else levels
+        apart = [abs(level - origin) for level in levels for origin in origins]
+        return [difference for difference in apart if difference > 0]
+
     def catch_condition(self, catch: CatchTrial) -> Condition:
         """Surfaces of a catch trial: its stimulus, in tasks of several surfaces with the
         reference in an order in which its answer is right.
@@ -248,7 +301,8 @@ class StudyDesign:
         name, here = catch.stimulus.name, self.reference
         if not self.compares:
             return (name,)
-        for order in self.described.conditions(name, [here]):
+        others = [here] if here else [stimulus.name for stimulus in self.stimuli]
+        for order in self.described.conditions(name, others):
             if self.answer_to(*(self.stimulus(other) for other in order)) == catch.answer:
                 return order
         raise InputError(
@@ -256,56 +310,6 @@ class StudyDesign:
             f"reference '{here}'; change one of them",
             quantity="catch",
         )
-
-    def _require_task(self) -> None:
-        require_matching(
-            self.task, self.matched_with, self.exploring, self.stimuli, self.alternatives
-        )
-        pair, methods = self.compares, self.described.adaptive
-        if pair and not self.reference:
-            raise InputError(
-                f"task = '{self.task}' compares with a reference; name one of the stimuli",
-                quantity="reference",
-            )
-        if pair and len(self.stimuli) < 2 and not self.adaptive:
-            raise InputError(
-                "only the reference is there; add a stimulus to compare with it, or [[adaptive]]",
-                quantity="stimuli",
-            )
-        if self.adaptive and not methods:
-            raise InputError(
-                "adaptive series compare with a reference, in task = 'two-interval' or "
-                f"'same-different'; '{self.task}' does not",
-                quantity="adaptive",
-            )
-        stairs = [item.name for item in self.adaptive if item.method not in methods]
-        if stairs:
-            raise InputError(
-                f"series '{stairs[0]}' is a staircase, which would settle where a person's "
-                "criterion has it, not their senses; same-different takes method = 'bayesian'",
-                quantity="adaptive",
-            )
-        if pair and self.practice and len(self.stimuli) < 2:
-            raise InputError(
-                "practice needs a stimulus to compare with the reference; add one (adaptive "
-                "series use it for practice only), or practice = 0",
-                quantity="practice",
-            )
-        if self.practice_criterion and (not self.practice or self.task == "magnitude-estimation"):
-            raise InputError(
-                f"practice_criterion = {self.practice_criterion:g} needs practice with right "
-                "answers; give practice = 8 or so, or leave it out (numbers are never right)",
-                quantity="practice_criterion",
-            )
-        amounts = [self.judged_value(stimulus) for stimulus in self.stimuli]
-        require_amounts(self.task, self.judged, self.stimuli, amounts)
-        for series in self.adaptive:
-            self._require_series(series)
-        if self.modulus and (self.task != "magnitude-estimation" or not self.reference):
-            raise InputError(
-                "a modulus needs magnitude-estimation and a reference that it is given to",
-                quantity="modulus",
-            )
 
     @property
     def on_a_scale(self) -> bool:
@@ -325,13 +329,24 @@ class StudyDesign:
 
     def comparison(self, series: AdaptiveCondition, intensity: float) -> Stimulus:
         """The stimulus that an adaptive series presents beside the reference at an intensity: more
-        of what is varied, by that part of the reference's value. Raises `InputError` if there can't
-        be so much of it."""
+        of what is varied, by that part of the reference's value; beside a flat one the first other
+        stimulus with that much of it. Raises `InputError` if there can't be so much of it."""
         here = self.stimulus(self.reference)
+        part = f"{100 * intensity:.3g} %"
+        if self.described.reference == "flat":
+            [textured, *_] = (one for one in self.stimuli if one.name != self.reference)
+            return textured.varied(f"{textured.name} at {part}", series.varied, intensity)
         value = here.amount(series.varied) * (1.0 + intensity)
-        return here.varied(f"{here.name} +{100 * intensity:.3g} %", series.varied, value)
+        return here.varied(f"{here.name} +{part}", series.varied, value)
 
     def _require_series(self, series: AdaptiveCondition) -> None:
+        methods = self.described.adaptive
+        if series.method not in methods:
+            raise InputError(
+                f"series '{series.name}' is a {series.method}, which would settle where a person's "
+                f"criterion has it; {self.task} takes method = '{methods[0]}'",
+                quantity="adaptive",
+            )
         if series.varied != self.judged:
             raise InputError(
                 f"series '{series.name}' varies {series.varied} while {self.judged} is judged; "
@@ -348,14 +363,6 @@ class StudyDesign:
 
     def _require_answers(self) -> None:
         names = self.answers
-        for stimulus in self.stimuli:
-            if stimulus.matches and stimulus.matches not in names:
-                raise InputError(
-                    f"stimulus '{stimulus.name}' matches '{stimulus.matches}', which is no "
-                    f"alternative.{si.did_you_mean(stimulus.matches, names)} "
-                    f"Alternatives: {', '.join(names)}",
-                    quantity="stimuli",
-                )
         for trial in self.catch:
             if names and trial.answer not in names:
                 raise InputError(
@@ -363,15 +370,6 @@ class StudyDesign:
                     quantity="catch",
                 )
             self.catch_condition(trial)
-        if self.task == "two-interval":
-            here = self.stimulus(self.reference)
-            for stimulus in self.stimuli:
-                if stimulus.name != self.reference and not self.answer_to(here, stimulus):
-                    raise InputError(
-                        f"stimulus '{stimulus.name}' has the same {self.judged} as the reference: "
-                        "no answer would be right; change it, or `judged`",
-                        quantity="stimuli",
-                    )
 
 
 def load_design(name_or_path: str | Path) -> StudyDesign:

@@ -136,11 +136,10 @@ def orders(
 def conditions(design: StudyDesign) -> tuple[Condition, ...]:
     """Surfaces of the trials of a repetition, once each.
 
-    One stimulus each; in tasks of several surfaces each other stimulus with the reference in all
-    orders, and for same-different as often (the same, the same), half with each of the two.
+    One stimulus each; where a task compares with a reference as its record says.
     """
-    compares, here = design.compares, design.reference
-    names = [stimulus.name for stimulus in design.stimuli if not compares or stimulus.name != here]
+    here, compared = design.reference, design.described.reference
+    names = [one.name for one in design.stimuli if not compared or one.name != here]
     return design.described.conditions(here, names)
 
 
@@ -281,9 +280,7 @@ def _adaptive_trials(
     random = _random(seed, _SPREAD, participant, place)
     queue: list[tuple[str, bool, str, CatchTrial | None]] = []
     for series in design.adaptive:
-        kinds = [(k % 2 == 0, ("second", "first")[k % 2]) for k in range(series.count)]
-        if design.task == "same-different":
-            kinds = [(k % 4 < 2, ("different", "same")[k % 2]) for k in range(series.count)]
+        kinds = [design.described.series(k) for k in range(series.count)]
         order = random.permutation(series.count)
         queue += [(series.name, *kinds[i], None) for i in order]
     queue = [queue[i] for i in random.permutation(len(queue))]

@@ -17,7 +17,12 @@ from squeezefilm.study.identification.choice_model import (
     ChoiceModel,
     choice_model,
 )
-from squeezefilm.study.identification.condition_means import ConditionMean, condition_means
+from squeezefilm.study.identification.condition_means import (
+    ConditionMean,
+    ResponseTimeSummary,
+    condition_means,
+    response_time_summary,
+)
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
 from squeezefilm.study.identification.course import Course
 from squeezefilm.study.identification.information import (
@@ -31,10 +36,6 @@ from squeezefilm.study.identification.proportions import (
     participant_interval,
     permutation_test,
     proportion_interval,
-)
-from squeezefilm.study.identification.response_times import (
-    ResponseTimeSummary,
-    response_time_summary,
 )
 from squeezefilm.study.identification.screening import Screening
 from squeezefilm.study.identification.sensitivity import OrderedSensitivity, ordered_sensitivity

@@ -9,6 +9,7 @@ import numpy as np
 from scipy import stats
 
 from squeezefilm.core import quantities as si
+from squeezefilm.study.psychometric.estimate import t_interval
 from squeezefilm.study.record.answers import Answers
 
 ATTENDS: si.Dimensionless = 0.95
@@ -93,13 +94,10 @@ def drift(
         slopes.append(float(np.polyfit(place, values[mine], 1)[0]))
     if not slopes:
         return None
-    mean, count = float(np.mean(slopes)), len(slopes)
-    low = high = p = math.nan
+    mean, count, p = t_interval(np.array(slopes), level), len(slopes), math.nan
     if count > 1 and (error := float(np.std(slopes, ddof=1)) / math.sqrt(count)) > 0:
-        reach = float(stats.t.isf((1 - level) / 2, count - 1)) * error
-        low, high = mean - reach, mean + reach
-        p = float(2 * stats.t.sf(abs(mean) / error, count - 1))
-    return Drift(quantity, mean, low, high, level, p, count)
+        p = float(2 * stats.t.sf(abs(mean.value) / error, count - 1))
+    return Drift(quantity, mean.value, mean.low, mean.high, level, p, count)
 
 
 def attention(caught: Answers) -> tuple[Attention, ...]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,14 +21,9 @@ from squeezefilm.core.hard_limits import STUDIES, require_within
 from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.proportions import proportion_interval
 
-
-class ParticipantSimulator(Protocol):
-    """Draws participants: of each their counts or whatever else the test takes, in an array whose
-    first axis is theirs."""
-
-    def __call__(self, participants: int, random: np.random.Generator) -> NDArray[Any]:
-        """Simulate so many people; all randomness from `random`."""
-        ...
+ParticipantSimulator = Callable[[int, np.random.Generator], NDArray[Any]]
+"""Draws so many participants: of each their counts or whatever else the test takes, in an array
+whose first axis is theirs; all randomness from the generator."""
 
 
 def above_0(scores: si.FloatArray) -> tuple[si.Dimensionless, si.Dimensionless]:
@@ -114,7 +109,7 @@ def power_curve(
         InputError: no sizes or one below 2, fewer than 10 studies, a share not between 0 and 1, or
             a p value that is not one.
     """
-    sizes = _sizes(participants, studies)
+    sizes = sizes_of(participants, studies)
     require_within(STUDIES, studies, "studies")
     si.require("alpha", alpha, above=0.0, below=1.0)
     si.require("target", target, above=0.0, below=1.0)
@@ -134,12 +129,12 @@ def power_curve(
         studies,
         alpha,
         target,
-        _first_lasting(sizes, power >= target),
-        _first_lasting(sizes, low >= target),
+        first_lasting(sizes, power >= target),
+        first_lasting(sizes, low >= target),
     )
 
 
-def _sizes(participants: tuple[int, ...], studies: int) -> tuple[int, ...]:
+def sizes_of(participants: tuple[int, ...], studies: int) -> tuple[int, ...]:
     """Numbers of people, rising; refused where they or the studies are too few to simulate."""
     sizes = tuple(sorted(set(participants)))
     if not sizes or sizes[0] < 2 or studies < 10:
@@ -169,7 +164,7 @@ def _significant(
     return number
 
 
-def _first_lasting(sizes: tuple[int, ...], reached: NDArray[np.bool_]) -> int | None:
-    # Reached here and at every larger size.
+def first_lasting(sizes: tuple[int, ...], reached: NDArray[np.bool_]) -> int | None:
+    """The least size at which, and at every larger one, it is reached; None of none."""
     lasting = np.flip(np.logical_and.accumulate(np.flip(reached)))
     return sizes[int(np.argmax(lasting))] if lasting.any() else None

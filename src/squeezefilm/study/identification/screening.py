@@ -162,30 +162,27 @@ def _habits(mine: Answers) -> list[str]:
         most, share = int(counts.argmax()), float(counts.max() / mine.trials)
         alternates = float(np.mean(np.diff(mine.choice) != 0))
         if share >= rule.one_answer and np.mean(mine.right == most) < 0.8 * share:
-            reasons.append(f"answers “{names[most]}” in {_percent(share)}")
+            reasons.append(f"answers “{names[most]}” in {si.percent(share)}")
         elif len(names) == 2 and alternates >= rule.one_answer:
-            reasons.append(f"alternates the answers in {_percent(alternates)}")
+            reasons.append(f"alternates the answers in {si.percent(alternates)}")
     times = mine.response_time[np.isfinite(mine.response_time)]
     if times.size and (fast := float(np.mean(times < rule.fastest))) > rule.fast:
-        reasons.append(f"{_percent(fast)} of the answers within {rule.fastest:g} s")
+        reasons.append(f"{si.percent(fast)} of the answers within {rule.fastest:g} s")
     return reasons
-
-
-def _percent(share: float) -> str:
-    return f"{100 * share:.0f} %"
 
 
 def _models(mine: Answers, lapse: float = _LAPSE) -> _Models:
     """ln likelihood of each trial's answer by who does the task, who mixes up the answers, and who
     guesses, each of shape (trials, models)."""
-    if not _one_of_two(mine):
+    model = mine.design.described.model
+    if model is None or model.counts < 0:
         return _among_names(mine)
-    x, y = _signal(mine)
+    x = mine.differences if mine.design.on_a_scale else (mine.first != mine.second).astype(float)
+    y = mine.told
     reach = max(float(np.abs(x).max()), 1e-9)
     least = float(np.abs(x[x != 0]).min()) if np.any(x) else reach
-    places = np.linspace(-0.5, 0.5, _PLACES) * reach
-    if mine.design.task == "same-different":
-        places = np.linspace(-1.0, 1.5, _PLACES) * reach
+    least_place, most_place = model.criteria[[0, -1]] if model.rate is None else (-1.0, 1.5)
+    places = np.linspace(least_place, most_place, _PLACES) * reach
     spreads = np.geomspace(least / 4, 8 * reach, _SPREADS)
     place, spread = (axis.ravel() for axis in np.meshgrid(places, spreads))
     rise = ndtr((x[:, None] - place) / spread)
@@ -194,22 +191,6 @@ def _models(mine: Answers, lapse: float = _LAPSE) -> _Models:
     task, turned = np.log(np.where(said, p, 1 - p)), np.log(np.where(said, 1 - p, p))
     guesses = np.linspace(0.5 * _LAPSE, 1 - 0.5 * _LAPSE, _GUESSES)
     return task, turned, np.log(np.where(said, guesses, 1 - guesses))
-
-
-def _one_of_two(mine: Answers) -> bool:
-    """True where two answers divide what is presented by how much it has."""
-    return mine.design.task in ("two-interval", "same-different")
-
-
-def _signal(mine: Answers) -> tuple[si.FloatArray, si.IntArray]:
-    """Amount presented of what is asked, in two intervals signed, and whether it was said."""
-    if mine.design.task == "two-interval":
-        logs = np.log(mine.values)
-        return np.asarray(logs[mine.first] - logs[mine.second]), mine.choice == 0
-    if mine.design.on_a_scale:
-        logs = np.log(mine.values)
-        return np.abs(logs[mine.first] - logs[mine.second]), mine.choice == 1
-    return (mine.first != mine.second).astype(float), mine.choice == 1
 
 
 def _among_names(mine: Answers) -> _Models:
@@ -267,13 +248,13 @@ def _changed(mine: Answers, models: _Models) -> list[str]:
         words, gain = max(gains.items(), key=lambda pair: float(pair[1].max()))
         if gain.max() > rule.turned:
             said.append(words.format(int(at[gain.argmax()])))
-    if _one_of_two(mine):
+    if len(models[0][0]) == _PLACES * _SPREADS:
         usual, many = (
             max(_best(_models(mine, times * rule.lapses)[0]) for times in pair)
             for pair in ((0.5, 1.0), (1.5, 2.0))
         )
         if many - max(one_for_all, usual) > _SURE:
-            said.append(f"lapses in more than {_percent(rule.lapses)} of the trials")
+            said.append(f"lapses in more than {si.percent(rule.lapses)} of the trials")
     return said
 
 

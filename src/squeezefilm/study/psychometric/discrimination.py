@@ -7,6 +7,7 @@ and 9). d′ is the distance of two stimuli over the standard deviation of one p
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -111,11 +112,12 @@ class SensitivityInterval:
     level: si.Dimensionless
 
 
-_MODELS = {
+MODELS: dict[str, Callable[[si.Dimensionless, si.Dimensionless], Sensitivity]] = {
     "yes-no": yes_no_sensitivity,
     "two-interval": two_interval_sensitivity,
     "differencing": differencing_sensitivity,
 }
+"""d′ of hit and false alarm rate, by model."""
 
 
 def sensitivity(
@@ -143,10 +145,10 @@ def sensitivity(
     Raises:
         InputError: an unknown model or a value outside its range.
     """
-    si.require_one_of("model", model, _MODELS)
+    si.require_one_of("model", model, MODELS)
     si.require("level", level, above=0.0, below=1.0)
     si.require("draws", draws, at_least=39)
-    of = _MODELS[model]
+    of = MODELS[model]
     point = of(corrected_proportion(hits, signals), corrected_proportion(false_alarms, noises))
     random = np.random.default_rng(seed)
     h = _within(random.beta(hits + 0.5, signals - hits + 0.5, draws))

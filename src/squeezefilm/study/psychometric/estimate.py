@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import stats
 
 from squeezefilm.core import quantities as si
 
@@ -34,3 +36,12 @@ def holding(
     # A comparison with NaN is false: an end that is not known stays so.
     below, above = estimate < ends[0], estimate > ends[1]
     return np.where(below, estimate, ends[0]), np.where(above, estimate, ends[1])
+
+
+def t_interval(values: si.FloatArray, level: si.Dimensionless) -> Estimate:
+    """The mean of people's values with Student's interval; NaN ends for one person."""
+    mean, reach = float(values.mean()), math.nan
+    if values.size > 1:
+        error = float(values.std(ddof=1)) / math.sqrt(values.size)
+        reach = float(stats.t.isf((1 - level) / 2, values.size - 1)) * error
+    return Estimate(mean, mean - reach, mean + reach, level, "t, over people")

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.design.tasks.task import DifferenceModel
 from squeezefilm.study.record.exploration import MEASURES
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import Cell, is_chosen, origin_of, presented, trial_table
@@ -76,6 +77,27 @@ class Answers:
         """Numbers of the surfaces, shape (surfaces of a trial, trials)."""
         every = (self.first, self.second, self.third)[: self.design.described.surfaces]
         return np.array(every, dtype=np.int64)
+
+    @property
+    def model(self) -> DifferenceModel:
+        """The model of the task, which must have one."""
+        model = self.design.described.model
+        assert model is not None
+        return model
+
+    @property
+    def told(self) -> NDArray[np.bool_]:
+        """True for each trial whose answer is what the model counts."""
+        counts = self.model.counts
+        return np.asarray(self.choice == (self.right if counts < 0 else counts))
+
+    @property
+    def differences(self) -> si.FloatArray:
+        """Difference of levels that the task's model takes of each trial."""
+        design = self.design
+        levels = np.array([design.level(surface) for surface in self.surfaces])
+        found = self.model.difference(levels[self.presented], design.reference_level)
+        return np.asarray(np.round(found, 12))
 
     @property
     def correct(self) -> si.DimensionlessArray:

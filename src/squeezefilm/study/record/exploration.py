@@ -1,4 +1,4 @@
-"""Exploration by a finger: way, speed, passes, coverage, force; of a trace, or of an answer."""
+"""Exploration by a finger: way, speed, passes, coverage; of a trace, or of an answer."""
 
 from __future__ import annotations
 
@@ -20,9 +20,6 @@ from squeezefilm.physics.plate.layout import AnnularStator
 from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.study.record.store import StudyStore
 
-# Slower than this the finger rests rather than explores; assumed.
-RESTING_SPEED: si.MetrePerSecond = 5e-3
-"""Speed (m/s) below which a finger counts as resting; assumed."""
 CELL: si.Metre = 5e-3
 """Side of the cells that a face is divided into for `coverage`: half a contact; assumed."""
 PATH_PERIOD: si.Second = 10e-3
@@ -42,15 +39,10 @@ class Exploration:
         path_length: of the finger's way over the surface (m).
         mean_speed: path over the time in touch (m/s); NaN if it never touched.
         peak_speed: the largest between two samples (m/s); NaN likewise.
-        moving_speed: path over the time spent above `RESTING_SPEED` (m/s); NaN if it never moved.
-        moving_share: share of the time in touch spent above `RESTING_SPEED`.
-        reversals: of the motion along x, rests left out.
         passes: straight stretches one way, of 4 mm or more (`physics.perception.path_percepts`).
         along_x_share: share of the passes' way that goes along x more than along y; NaN without.
         coverage: share of the face's cells of 5 mm that the finger's middle came over; NaN where
             the face is not known.
-        mean_force, force_spread: normal force, weighted by time, and its standard deviation (N);
-            NaN where no force was taken.
     """
 
     duration: si.Second
@@ -58,26 +50,20 @@ class Exploration:
     path_length: si.Metre
     mean_speed: si.MetrePerSecond
     peak_speed: si.MetrePerSecond
-    moving_speed: si.MetrePerSecond
-    moving_share: si.Dimensionless
-    reversals: int
     passes: int
     along_x_share: si.Dimensionless
     coverage: si.Dimensionless
-    mean_force: si.Newton
-    force_spread: si.Newton
 
 
 def exploration(
     time: ArrayLike,
     x: ArrayLike,
     y: ArrayLike | None = None,
-    force: ArrayLike | None = None,
     *,
     face: tuple[si.Metre, si.Metre] | None = None,
     longest_step: si.Second = math.inf,
 ) -> Exploration:
-    """Way, speed, passes, coverage and force of a finger's trace.
+    """Way, speed, passes and coverage of a finger's trace.
 
     A sensor's noise lengthens the path: give positions that are filtered, or no denser than the
     noise allows.
@@ -85,29 +71,19 @@ def exploration(
     Args:
         time: of the samples (s), shape (n,), rising.
         x, y: positions (m), shape (n,); y is 0 if not given.
-        force: normal force (N), shape (n,), at least 0.
         face: length and width of what there is to explore (m).
         longest_step: between samples in touch (s): a longer one is a lifted finger, and what it
             did meanwhile is left out.
 
     Raises:
-        InputError: fewer than two samples, unequal lengths, times that do not rise, values that
-            are not finite, or a force below 0.
+        InputError: fewer than two samples, unequal lengths, times that do not rise, or values
+            that are not finite.
     """
-    t, along, across, pressed = _checked(time, x, y, force)
+    t, along, across = _checked(time, x, y)
     steps = np.diff(t)
     down = steps <= longest_step
-    way = np.hypot(np.diff(along), np.diff(across))[down]
-    steps, heading = steps[down], np.sign(np.diff(along))[down]
-    moving = way / steps > RESTING_SPEED
-    heading = heading[moving]
-    heading = heading[heading != 0]
-    touched, moved = float(steps.sum()), float(steps[moving].sum())
-    mean_force = spread = float("nan")
-    if pressed is not None and touched:
-        middle = 0.5 * (pressed[1:] + pressed[:-1])[down]
-        mean_force = float((middle * steps).sum() / touched)
-        spread = float(np.sqrt(((middle - mean_force) ** 2 * steps).sum() / touched))
+    way, steps = np.hypot(np.diff(along), np.diff(across))[down], steps[down]
+    touched = float(steps.sum())
     paths = touches(t, along, across, longest_step)
     runs = [run for path in paths for run in straight_runs(path)]
     length = sum(run.length for run in runs)
@@ -117,39 +93,29 @@ def exploration(
         path_length=float(way.sum()),
         mean_speed=float(way.sum()) / touched if touched else math.nan,
         peak_speed=float((way / steps).max()) if touched else math.nan,
-        moving_speed=float(way[moving].sum()) / moved if moved > 0 else math.nan,
-        moving_share=moved / touched if touched else math.nan,
-        reversals=int(np.count_nonzero(np.diff(heading))),
         passes=len(runs),
         along_x_share=sum(r.length for r in runs if r.along_x) / length if runs else math.nan,
         coverage=math.nan if face is None else coverage(paths, face),
-        mean_force=mean_force,
-        force_spread=spread,
     )
 
 
 def _checked(
-    time: ArrayLike, x: ArrayLike, y: ArrayLike | None, force: ArrayLike | None
-) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray | None]:
+    time: ArrayLike, x: ArrayLike, y: ArrayLike | None
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     t, along = np.asarray(time, dtype=float), np.asarray(x, dtype=float)
     across = np.zeros_like(along) if y is None else np.asarray(y, dtype=float)
-    pressed = None if force is None else np.asarray(force, dtype=float)
-    shapes = {t.shape, along.shape, across.shape} | (
-        {pressed.shape} if pressed is not None else set()
-    )
+    shapes = {t.shape, along.shape, across.shape}
     if len(shapes) != 1 or t.ndim != 1 or t.size < 2:
         raise InputError(
-            "time, x, y and force must be rows of the same length with at least 2 samples; their "
-            f"shapes are {sorted(shapes)}"
+            "time, x and y must be rows of the same length with at least 2 samples; their shapes "
+            f"are {sorted(shapes)}"
         )
     si.require("time", t, si.Unit("s"))
     if np.any(np.diff(t) <= 0):
         raise InputError("time must rise from sample to sample; sort the trace, drop repeats")
     for name, places in (("x", along), ("y", across)):
         si.require(name, places, si.Unit("m"), at_least=-_FARTHEST, at_most=_FARTHEST)
-    if pressed is not None:
-        si.require("force", pressed, si.Unit("N"), at_least=0.0)
-    return t, along, across, pressed
+    return t, along, across
 
 
 def touches(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import json
 import math
 import unicodedata
@@ -33,6 +34,22 @@ class Column:
     kind: Literal["text", "number", "whole", "truth"] = "text"
 
 
+SURFACES = ("stimulus", "second_stimulus", "third_stimulus")
+"""Columns with the names of what a trial presented, in its order."""
+
+
+def _of_surface(prefix: str) -> tuple[Column, ...]:
+    """Columns of one of the surfaces of a trial."""
+    return (
+        Column(prefix, "Name of the surface that was presented then; empty where there was none"),
+        Column(f"{prefix}_period_m", "Its spatial period, groove plus ridge", "m", "number"),
+        Column(f"{prefix}_friction_depth", "Its change of relative friction", "", "number"),
+        Column(f"{prefix}_second_period_m", "Of a grating across it, if any", "m", "number"),
+        Column(f"{prefix}_surface", "What kind of surface it is, in words"),
+        Column(f"{prefix}_surface_sha256", "Hash of the surface, its files and pictures read"),
+    )
+
+
 COLUMNS = (
     Column("participant_id", "Random pseudonym of the participant"),
     Column("participant_number", "Which of the balanced orders they had, from 0", kind="whole"),
@@ -42,19 +59,7 @@ COLUMNS = (
     Column("block", "Number of the block within the display, 0 before the first", kind="whole"),
     Column("phase", "familiarisation, practice, main or catch"),
     Column("task", "Task of the design"),
-    Column("stimulus", "Name of the stimulus, or of the first of several"),
-    Column("stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
-    Column("stimulus_friction_depth", "Its change of relative friction", "", "number"),
-    Column("stimulus_second_period_m", "That of a grating across it, if any", "m", "number"),
-    Column("stimulus_surface", "What kind of surface it is, in words"),
-    Column("stimulus_surface_sha256", "Hash of the surface, its files and pictures read"),
-    Column("second_stimulus", "Name of the second stimulus, if there are several"),
-    Column("second_stimulus_period_m", "Its spatial period, groove plus ridge", "m", "number"),
-    Column("second_stimulus_friction_depth", "Its change of relative friction", "", "number"),
-    Column("second_stimulus_second_period_m", "Of a grating across it, if any", "m", "number"),
-    Column("second_stimulus_surface", "What kind of surface it is, in words"),
-    Column("second_stimulus_surface_sha256", "Hash of the surface"),
-    Column("third_stimulus", "Name of the third stimulus, if there are three"),
+    *(column for surface in SURFACES for column in _of_surface(surface)),
     Column("adaptive_series", "Adaptive series that chose the comparison, if any"),
     Column(
         "intensity", "Its difference from the reference, in parts of the reference", "", "number"
@@ -85,9 +90,6 @@ COLUMNS = (
     Column("calibration_sha256", "Hash of its calibration"),
 )
 """Columns of every export, in this order."""
-
-SURFACES = ("stimulus", "second_stimulus", "third_stimulus")
-"""Columns with the names of what a trial presented, in its order."""
 
 PLACED = "SELECT *, min(number) OVER (PARTITION BY participant, display, block) AS begun FROM trial"
 """Trials, which come in the order of `begun, number`: block by block as they begin, and within one
@@ -122,9 +124,8 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
         traces = json.loads(row["traces"])
         row |= explored.measures(row["display"], traces) if traces else NO_MEASURES
         row["traces"] = " ".join(traces)
-        row["third_stimulus"] = names[2] if len(names) > 2 else ""
         row["correct"] = None if row["correct"] is None else bool(row["correct"])
-        for prefix, name in zip(("stimulus", "second_stimulus"), (*names, None), strict=False):
+        for prefix, name in itertools.zip_longest(SURFACES, names):
             row[prefix] = name or ""
             felt = row["phase"] == "familiarisation" and gratings
             one: Stimulus | Grating | None = None
@@ -184,15 +185,16 @@ def surface_cells(surface: Stimulus | Grating | None) -> dict[str, Cell]:
     except ConfigError:
         identity = ""
     return {
-        "period_m": _known(surface.period),
-        "friction_depth": _known(surface.amount("friction_depth")),
-        "second_period_m": _known(surface.second_period),
+        "period_m": known(surface.period),
+        "friction_depth": known(surface.amount("friction_depth")),
+        "second_period_m": known(surface.second_period),
         "surface": surface.kind,
         "surface_sha256": identity,
     }
 
 
-def _known(value: float) -> float | None:
+def known(value: float) -> float | None:
+    """A number as tables have it: NaN and infinite ones are none."""
     return value if math.isfinite(value) else None
 
 

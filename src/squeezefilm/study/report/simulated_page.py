@@ -17,7 +17,8 @@ from squeezefilm.core.kit.page_style import (
     section,
     text_table,
 )
-from squeezefilm.study.record.tables import Column, csv_text
+from squeezefilm.study.record.tables import COLUMNS as RECORDED
+from squeezefilm.study.record.tables import SURFACES, Column, csv_text
 from squeezefilm.study.report import observer_figures
 from squeezefilm.study.report.pictures import pictures, png_files
 from squeezefilm.study.report.words import confusion_rows
@@ -43,33 +44,16 @@ def remarks(design: StudyDesign) -> tuple[str, ...]:
     return (REMARK,) if design.alternatives else assumed(design)
 
 
+_SHARED = (
+    *("trial", "display", "phase", *SURFACES, "adaptive_series", "intensity", "choice", "estimate"),
+    *("correct", "response_time_s"),
+)
 COLUMNS = (
     Column("origin", "Always simulated"),
     Column("participant", "Number of the simulated participant, from 0", kind="whole"),
-    Column("trial", "Number among the trials asked, from 1", kind="whole"),
-    Column("display", "Display that presented the stimulus"),
-    Column("phase", "practice, main or catch"),
-    Column("stimulus", "Name of the stimulus"),
-    Column("second_stimulus", "Name of the second stimulus, if there are several"),
-    Column("third_stimulus", "Name of the third stimulus, if there are three"),
-    Column("adaptive_series", "Series that chose the comparison, if any"),
-    Column("intensity", "Of an adaptive comparison, in parts of the reference", "", "number"),
-    Column("choice", "What was answered"),
-    Column("estimate", "Number given", "", "number"),
-    Column("correct", "1 where it was right, 0 where not", "", "number"),
-    Column("response_time_s", "Of a model with assumed numbers", "s", "number"),
+    *(column for column in RECORDED if column.name in _SHARED),
 )
-REASONS = (
-    "Simulated",
-    "Hz",
-    "Bandwidth",
-    "Kept",
-    "Lag",
-    "Contact",
-    "Ripple",
-    "d′",
-    "Clearest",
-)
+REASONS = ("Simulated", "Hz", "Bandwidth", "Kept", "Lag", "Contact", "Ripple", "d′", "Clearest")
 LEGEND = (
     "Hz: frequency at which the texture passes the finger. Bandwidth: of the display's envelope "
     "(Hz). Kept: line of the friction rendered over that asked for; the wave's ripple is in it. "

@@ -9,27 +9,28 @@ import numpy as np
 
 from squeezefilm.core.kit import style
 from squeezefilm.study.design.tasks.every_task import TASKS
+from squeezefilm.study.design.tasks.task import JUDGED
 from squeezefilm.study.report.figures import data_of, named_ticks
-from squeezefilm.study.report.words import estimate_words
-from squeezefilm.study.tasks.two_interval import QUARTILE
+from squeezefilm.study.report.words import condition_head, estimate_words, scale_of
+from squeezefilm.study.tasks.findings import PARTS, through
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from squeezefilm.core.quantities import FloatArray
+    from squeezefilm.study.psychometric.estimate import Estimate
     from squeezefilm.study.tasks.findings import PersonFunction, TaskAnalysis
 
-_SCALE = {
-    "spatial_period": (1e3, "spatial period (mm)"),
-    "friction_depth": (1e2, "friction change (%)"),
-}
 _FAINT: dict[str, Any] = {"color": style.METAL, "lw": 0.8, "alpha": 0.7}
 _MOST_LINES = 60
 
 
 def _scale(analysis: TaskAnalysis) -> tuple[float, str]:
-    return _SCALE.get(analysis.judged, (1.0, analysis.judged.replace("_", " ")))
+    judged = JUDGED[analysis.judged]
+    return judged.factor, f"{judged.words} ({judged.unit.strip()})"
 
 
 @style.drawn
@@ -37,10 +38,11 @@ def answers(analysis: TaskAnalysis) -> Figure:
     """Answers against the stimulus: psychometric functions, or the scale of numbers."""
     figure = style.new_figure(_said(analysis), data_of(analysis), 4.4)
     axes = figure.subplots()
-    if analysis.measure == "exponent":
+    model = TASKS[analysis.task].model
+    if model is None:
         _magnitudes(axes, analysis)
-    elif TASKS[analysis.task].model is not None:
-        _differences(axes, analysis)
+    elif math.isnan(analysis.conditions[0].value):
+        _unlike(axes, analysis)
     elif analysis.is_adaptive:
         _adaptive(axes, analysis)
     else:
@@ -51,62 +53,44 @@ def answers(analysis: TaskAnalysis) -> Figure:
 def _said(analysis: TaskAnalysis) -> str:
     if analysis.pooled is None:
         return f"No {analysis.measure} could be computed"
-    percent = analysis.measure == "Weber fraction"
-    words = estimate_words(analysis.pooled, *((100, " %") if percent else ()))
+    words = estimate_words(analysis.pooled, *scale_of(analysis))
     return f"The {analysis.measure} is {words}"
 
 
 def _functions(axes: Axes, analysis: TaskAnalysis) -> None:
+    """Shares of the counted answer by stimulus, and everybody's function where it is a cumulative
+    normal."""
     scale, label = _scale(analysis)
-    values = [condition.value for condition in analysis.conditions]
-    x = np.geomspace(min([*values, analysis.standard]), max([*values, analysis.standard]), 161)
-    for function in list(analysis.functions.values())[:_MOST_LINES]:
-        more = _share(function, np.log(x / analysis.standard))
-        axes.plot(scale * x, 100 * more, **_FAINT)
-    _shares(axes, analysis, scale)
+    values = [*(condition.value for condition in analysis.conditions), analysis.standard]
+    x = np.linspace(min(values), max(values), 161)
+    thin = _thin(axes, analysis, scale * x, x)
+    _shares(axes, analysis, [scale * condition.value for condition in analysis.conditions])
     axes.axvline(scale * analysis.standard, **style.GUIDE)
-    axes.axhline(50, **style.GUIDE)
-    axes.set(xlabel=label, ylabel="the comparison has more (%)", ylim=(-2, 103))
-    axes.set_title("thin: each person's function; dots: all trials; dotted: the reference")
+    axes.set(xlabel=label)
+    axes.set_title(f"{thin}dots: all trials; dotted: the reference")
 
 
-def _shares(axes: Axes, analysis: TaskAnalysis, scale: float) -> None:
-    for condition in analysis.conditions:
-        if condition.share is not None:
-            x = scale * condition.value
-            axes.plot(
-                [x, x], [100 * condition.share.low, 100 * condition.share.high], **style.INTERVAL
-            )
-            axes.plot([x], [100 * condition.share.value], **style.ESTIMATE)
+def _points(axes: Axes, places: Iterable[float], estimates: Iterable[Estimate | None]) -> None:
+    """Estimates with their intervals at places."""
+    for x, estimate in zip(places, estimates, strict=True):
+        if estimate is not None:
+            # An interval that is not known is no line.
+            axes.plot([x, x], [estimate.low, estimate.high], **style.INTERVAL)
+            axes.plot([x], [estimate.value], **style.ESTIMATE)
 
 
-def _differences(axes: Axes, analysis: TaskAnalysis) -> None:
-    scale, label = _scale(analysis)
-    if math.isnan(analysis.conditions[0].value):
-        _unlike(axes, analysis)
-        return
-    _shares(axes, analysis, scale)
-    axes.set(xlabel=f"{label} of the other", ylabel=_counted(analysis), ylim=(-2, 103))
-    axes.axvline(scale * analysis.standard, **style.GUIDE)
-    axes.set_title("dotted: the reference")
-
-
-def _counted(analysis: TaskAnalysis) -> str:
-    """Label of an axis of answers."""
-    counted = TASKS[analysis.task].counted.lower()
-    return f"called {counted} (%)" if counted == "different" else f"{counted} (%)"
+def _shares(axes: Axes, analysis: TaskAnalysis, places: Iterable[float]) -> None:
+    """Shares of the counted answer (%) at places."""
+    axes.set(ylabel=f"{condition_head(analysis)[4].lower()} (%)", ylim=(-2, 103))
+    shares = [condition.share for condition in analysis.conditions]
+    _points(axes, places, [share and through(share, lambda part: 100 * part) for share in shares])
 
 
 def _unlike(axes: Axes, analysis: TaskAnalysis) -> None:
     """Surfaces without an amount, side by side by name."""
-    for at, condition in enumerate(analysis.conditions):
-        if condition.share is not None:
-            axes.plot(
-                [at, at], [100 * condition.share.low, 100 * condition.share.high], **style.INTERVAL
-            )
-            axes.plot([at], [100 * condition.share.value], **style.ESTIMATE)
+    _shares(axes, analysis, range(len(analysis.conditions)))
     _named(axes, [condition.name for condition in analysis.conditions])
-    axes.set(xlabel="the other surface", ylabel=_counted(analysis), ylim=(-2, 103))
+    axes.set(xlabel="the other surface")
     axes.set_title("all trials, Wilson's intervals")
 
 
@@ -115,41 +99,49 @@ def _named(axes: Axes, names: list[str]) -> None:
     axes.set_xlim(-0.5, len(names) - 0.5)
 
 
-def _share(person: PersonFunction, difference: FloatArray) -> FloatArray:
-    """Share of right answers (1) at differences of logarithms, without a bias."""
+def _thin(axes: Axes, analysis: TaskAnalysis, x: FloatArray, amounts: FloatArray) -> str:
+    """Draw each person's function, where it is a cumulative normal; what to say of the lines."""
+    if not TASKS[analysis.task].ordered:
+        return ""
+    for function in list(analysis.functions.values())[:_MOST_LINES]:
+        axes.plot(x, 100 * _share(analysis, function, amounts), **_FAINT)
+    return "thin: each person's function; "
+
+
+def _share(analysis: TaskAnalysis, person: PersonFunction, x: FloatArray) -> FloatArray:
+    """Share of the counted answer (1) at amounts (SI), in two intervals without a bias."""
     from scipy.special import ndtr
 
-    spread = math.log1p(person.weber_fraction) / QUARTILE
-    rise = ndtr(difference / spread)
+    task, in_parts = TASKS[analysis.task], analysis.measure == "Weber fraction"
+    assert task.model is not None
+    threshold = math.log1p(person.threshold) if in_parts else person.threshold
+    apart = np.log(x / analysis.standard) if in_parts else x - analysis.standard
+    bias = person.bias if task.surfaces == 1 else 0.0
+    rise = ndtr((apart - bias) * task.model.threshold / threshold)
     return np.asarray(0.5 * person.lapse_rate + (1 - person.lapse_rate) * rise)
 
 
 def _adaptive(axes: Axes, analysis: TaskAnalysis) -> None:
-    """Shares correct of everybody's trials in classes of equal size, and everybody's function."""
-    places = np.array([condition.value for condition in analysis.conditions])
+    """Shares of everybody's trials in classes of equal size, and everybody's function."""
+    places = np.array([c.value for c in analysis.conditions if c.value > 0])
     x = np.geomspace(places.min() / 1.2, places.max() * 1.2, 161)
-    for function in list(analysis.functions.values())[:_MOST_LINES]:
-        axes.plot(100 * x, 100 * _share(function, np.log1p(x)), **_FAINT)
-    for condition in analysis.conditions:
-        if condition.share is not None:
-            ends = 100 * condition.share.low, 100 * condition.share.high
-            axes.plot([100 * condition.value] * 2, ends, **style.INTERVAL)
-            axes.plot([100 * condition.value], [100 * condition.share.value], **style.ESTIMATE)
-    axes.set(xscale="log", xlabel="difference from the reference (%)", ylabel="correct (%)")
-    axes.set_ylim(40, 103)
+    in_parts = analysis.measure == "Weber fraction"
+    amounts = analysis.standard * (1 + x) if in_parts else analysis.standard + x
+    thin = _thin(axes, analysis, 100 * x, amounts)
+    _shares(axes, analysis, [100 * (c.value or x[0]) for c in analysis.conditions])
+    axes.set(
+        xscale="log",
+        xlabel="difference from the reference (%)",
+        ylabel=f"{condition_head(analysis)[4].lower()} (%)",
+    )
     style.plain_log(axes.xaxis)
-    axes.set_title("thin: each person's function; dots: eighths of all trials, Wilson's intervals")
+    axes.set_title(f"{thin}dots: eighths of all trials, Wilson's intervals")
 
 
 def _magnitudes(axes: Axes, analysis: TaskAnalysis) -> None:
     scale, label = _scale(analysis)
     x = np.array([scale * condition.value for condition in analysis.conditions])
-    for at, condition in zip(x, analysis.conditions, strict=True):
-        magnitude = condition.magnitude
-        if magnitude is not None:
-            if not math.isnan(magnitude.low):
-                axes.plot([at, at], [magnitude.low, magnitude.high], **style.INTERVAL)
-            axes.plot([at], [magnitude.value], **style.ESTIMATE)
+    _points(axes, x, [condition.magnitude for condition in analysis.conditions])
     if analysis.pooled is not None and x.size:
         middle = float(np.mean(np.log(x)))
         level = float(
@@ -166,7 +158,7 @@ def _magnitudes(axes: Axes, analysis: TaskAnalysis) -> None:
 @style.drawn
 def persons(analysis: TaskAnalysis) -> Figure:
     """Each person's estimate with its interval, and the population's."""
-    scale, unit = (100.0, " (%)") if analysis.measure == "Weber fraction" else (1.0, "")
+    scale, unit = scale_of(analysis)
     people = sorted(analysis.persons, key=lambda person: person.estimate.value)
     figure = style.new_figure(
         f"{len(people)} people, one by one: {analysis.measure}",
@@ -187,7 +179,7 @@ def persons(analysis: TaskAnalysis) -> Figure:
         low, high = scale * analysis.pooled.low, scale * analysis.pooled.high
         axes.axhspan(low, high, color=style.BAND, zorder=0)
         axes.axhline(scale * analysis.pooled.value, color=style.ORANGE, lw=1.3, zorder=1)
-    if unit:
+    if analysis.measure in PARTS:
         axes.set_yscale("log")
         style.plain_log(axes.yaxis)
     few = len(people) <= 16
@@ -196,7 +188,8 @@ def persons(analysis: TaskAnalysis) -> Figure:
         [style.plain(person.person, 12) for person in people] if few else [],
         rotation=30,
     )
-    axes.set(xlabel="participant, by estimate", ylabel=f"{analysis.measure}{unit}")
+    said = f" ({unit.strip()})" if unit else ""
+    axes.set(xlabel="participant, by estimate", ylabel=analysis.measure + said)
     return figure
 
 
@@ -216,10 +209,7 @@ def sensitivity(analysis: TaskAnalysis) -> Figure:
         3.8,
     )
     axes = figure.subplots()
-    for value, d in points:
-        if not math.isnan(d.low):
-            axes.plot([scale * value] * 2, [d.low, d.high], **style.INTERVAL)
-        axes.plot([scale * value], [d.value], **style.ESTIMATE)
+    _points(axes, *zip(*((scale * value, d) for value, d in points), strict=True))
     axes.axhline(0, **style.ZERO)
     if unlike:
         _named(axes, [condition.name for condition in known])

@@ -25,6 +25,7 @@ from squeezefilm.study.report.words import (
     screening_rows,
     whose,
 )
+from squeezefilm.study.tasks.findings import PARTS, TaskAnalysis
 
 if TYPE_CHECKING:
     from squeezefilm.core.quantities import DimensionlessArray, IntArray
@@ -39,8 +40,6 @@ _SHOWN_PEOPLE = 24
 
 def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
     """Print what to read first of each display, its answers and its main numbers."""
-    from squeezefilm.study.tasks.findings import TaskAnalysis
-
     console = plain_console()
     for display, analysis in analyses.items():
         heading(console, f"{display}: {whose(analysis.origin)}")
@@ -86,9 +85,8 @@ def show_power(power: PlannedPower) -> None:
 def show_precision(precision: PlannedPrecision) -> None:
     """Print how many people make an answer precise, and what stopping early does."""
     console = plain_console()
-    wanted = f"± {100 * precision.precision:g} %"
-    if precision.measure != "Weber fraction":
-        wanted = f"± {precision.precision:g}"
+    scale, unit = (100, " %") if precision.measure in PARTS else (1, "")
+    wanted = f"± {scale * precision.precision:g}{unit}"
     heading(console, f"{precision.measure} of {precision.design} on {precision.display}, SIMULATED")
     head = ("people", f"studies within {wanted}", "95 % bounds", "intervals that hold the value")
     rows = _by_size(precision.participants, precision.reached, precision.low, precision.high)
@@ -104,7 +102,7 @@ def show_precision(precision: PlannedPrecision) -> None:
     scatter = 2 * (0.95 * 0.05 / precision.studies) ** 0.5
     short = precision.participants[precision.held < 0.95 - scatter]
     if short.size:
-        normal = "normal in the logarithm" if precision.measure == "Weber fraction" else "normal"
+        normal = "normal in the logarithm" if precision.measure in PARTS else "normal"
         console.print(
             f"With {', '.join(map(str, short))} people the interval holds the value less often "
             f"than the 95 % that it promises: it takes people's values to be {normal}, which those "

@@ -9,10 +9,13 @@ import numpy as np
 from squeezefilm.core.kit import style
 from squeezefilm.study.report.figures import data_of, named_ticks
 from squeezefilm.study.report.words import key_words
+from squeezefilm.study.tasks.findings import PARTS
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from squeezefilm.core.quantities import DimensionlessArray, IntArray
     from squeezefilm.study.identification.power import PowerCurve
     from squeezefilm.study.psychometric.fit import PsychometricFit
     from squeezefilm.study.simulated.planned_precision import PlannedPrecision
@@ -75,6 +78,14 @@ def exploration(analysis: StudyAnalysis) -> Figure:
     return figure
 
 
+def _by_people(axes: Axes, people: IntArray, *shares: DimensionlessArray) -> None:
+    """Shares of studies with their bounds against the number of people."""
+    share, low, high = (100 * part for part in shares)
+    axes.plot(people, share, color=style.BLUE, lw=1.3)
+    axes.vlines(people, low, high, **style.INTERVAL)
+    axes.plot(people, share, **style.ESTIMATE)
+
+
 @style.drawn
 def power(curve: PowerCurve) -> Figure:
     """Power against the number of people, with the error of the simulation."""
@@ -92,10 +103,7 @@ def power(curve: PowerCurve) -> Figure:
         4.0,
     )
     axes = figure.subplots()
-    axes.plot(curve.participants, 100 * curve.power, color=style.BLUE, lw=1.3)
-    for n, low, high in zip(curve.participants, curve.low, curve.high, strict=True):
-        axes.plot([n, n], [100 * low, 100 * high], **style.INTERVAL)
-    axes.plot(curve.participants, 100 * curve.power, **style.ESTIMATE)
+    _by_people(axes, curve.participants, curve.power, curve.low, curve.high)
     axes.axhline(100 * curve.target, color=style.ORANGE, lw=1.1, ls=(0, (4, 2)))
     if needed is not None:
         axes.axvline(needed, color=style.ORANGE, lw=1.1, ls=(0, (1.4, 1.2)))
@@ -107,7 +115,7 @@ def power(curve: PowerCurve) -> Figure:
 @style.drawn
 def precision(found: PlannedPrecision) -> Figure:
     """Share of studies that are precise enough against the number of people."""
-    wanted = f"± {100 * found.precision:g} %" if found.measure == "Weber fraction" else ""
+    wanted = f"± {100 * found.precision:g} %" if found.measure in PARTS else ""
     wanted = wanted or f"± {found.precision:g}"
     said = f"{found.needed} people give the {found.measure} within {wanted}"
     if found.needed is None:
@@ -119,10 +127,7 @@ def precision(found: PlannedPrecision) -> Figure:
         4.0,
     )
     axes = figure.subplots()
-    axes.plot(found.participants, 100 * found.reached, color=style.BLUE, lw=1.3)
-    for n, low, high in zip(found.participants, found.low, found.high, strict=True):
-        axes.plot([n, n], [100 * low, 100 * high], **style.INTERVAL)
-    axes.plot(found.participants, 100 * found.reached, **style.ESTIMATE)
+    _by_people(axes, found.participants, found.reached, found.low, found.high)
     axes.plot(found.participants, 100 * found.held, color=style.ORANGE, ls=(0, (4, 2)), lw=1.1)
     axes.axhline(95, **style.GUIDE)
     axes.set(xlabel="participants", ylabel="studies (%)", xlim=(0, None), ylim=(0, 103))

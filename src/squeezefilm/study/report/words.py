@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import shown
 from squeezefilm.study.design.tasks.every_task import TASKS
+from squeezefilm.study.design.tasks.task import JUDGED
 from squeezefilm.study.identification.information import METHOD
+from squeezefilm.study.tasks.findings import PARTS, TaskAnalysis
 
 if TYPE_CHECKING:
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
@@ -18,16 +20,12 @@ if TYPE_CHECKING:
     from squeezefilm.study.identification.screening import Screening
     from squeezefilm.study.psychometric.estimate import Estimate
     from squeezefilm.study.tasks.analyze import StudyAnalysis
-    from squeezefilm.study.tasks.findings import TaskAnalysis
-
 Rows = list[tuple[str, str, str]]
 _SURE = 0.05
 
 
 def read_first(analysis: StudyAnalysis) -> list[str]:
     """Sentences for somebody with a minute."""
-    from squeezefilm.study.tasks.findings import TaskAnalysis
-
     people = f"{analysis.participants} {_people(analysis)}"
     said = [f"{people} answered {analysis.trials} main trials."]
     if isinstance(analysis, TaskAnalysis):
@@ -76,13 +74,12 @@ def _task_first(analysis: TaskAnalysis) -> list[str]:
     if analysis.measure == "sensitivity d′":
         meaning = f"People tell the surfaces from the reference with d′ = {estimate_words(found)}."
     elif analysis.measure == "exponent":
-        meaning = (
-            f"Numbers grow with {_JUDGED[analysis.judged]} to the power of {estimate_words(found)}."
-        )
+        judged = JUDGED[analysis.judged].words
+        meaning = f"Numbers grow with {judged} to the power of {estimate_words(found)}."
     else:
         meaning = (
-            f"A typical person tells a difference of {estimate_words(found, 100, ' %')} in "
-            f"{_JUDGED[analysis.judged]} in 75 % of two intervals: the Weber fraction."
+            f"A typical person tells a difference of {estimate_words(found, *scale_of(analysis))} "
+            f"in {JUDGED[analysis.judged].words} in 75 % of two intervals: the {analysis.measure}."
         )
     said = [meaning]
     if analysis.spread is not None:
@@ -95,12 +92,11 @@ def _task_first(analysis: TaskAnalysis) -> list[str]:
     return said
 
 
-_JUDGED = {
-    "spatial_period": "spatial period",
-    "friction_depth": "friction change",
-    "ridge_share": "ridge share",
-    "orientation": "orientation",
-}
+def scale_of(analysis: TaskAnalysis) -> tuple[float, str]:
+    """Factor and unit by which an analysis' measure is shown."""
+    judged = JUDGED[analysis.judged]
+    known = {"threshold": (judged.factor, judged.unit), "Weber fraction": (100.0, " %")}
+    return known.get(analysis.measure, (1.0, ""))
 
 
 def _screening_first(screening: Screening) -> list[str]:
@@ -137,9 +133,9 @@ def result_rows(analysis: StudyAnalysis) -> Rows:
     screening = analysis.screening
     if screening is None or not screening.named:
         return []
-    measure = getattr(analysis, "measure", "proportion correct")
-    parts = measure in ("Weber fraction", "proportion correct")
-    scale, unit = (100.0, " %") if parts else (1.0, "")
+    measure, scale, unit = "proportion correct", 100.0, " %"
+    if isinstance(analysis, TaskAnalysis):
+        measure, (scale, unit) = analysis.measure, scale_of(analysis)
     return [
         (f"{measure[:1].upper()}{measure[1:]}: {name}", *_value_and_interval(result, scale, unit))
         for name, result in screening.results.items()
@@ -181,8 +177,6 @@ def estimate_words(estimate: Estimate, scale: float = 1.0, unit: str = "") -> st
 
 def key_rows(analysis: StudyAnalysis) -> Rows:
     """The main numbers: what, value, remark."""
-    from squeezefilm.study.tasks.findings import TaskAnalysis
-
     rows = [("Participants", f"{analysis.participants}", f"{analysis.trials} main trials")]
     if isinstance(analysis, TaskAnalysis):
         rows += _task_rows(analysis)
@@ -217,8 +211,7 @@ def course_rows(course: Course | None) -> Rows:
 
 
 def _task_rows(analysis: TaskAnalysis) -> Rows:
-    percent = analysis.measure == "Weber fraction"
-    scale, unit = (100.0, " %") if percent else (1.0, "")
+    (scale, unit), task = scale_of(analysis), TASKS[analysis.task]
     rows = []
     for name, found in (
         (analysis.measure.capitalize(), analysis.pooled),
@@ -227,9 +220,11 @@ def _task_rows(analysis: TaskAnalysis) -> Rows:
         if found is None:
             continue
         s, u = (scale, unit) if name.lower() == analysis.measure.lower() else _scale_of(name)
+        if task.ordered and task.model is not None and name == task.model.criterion:
+            s, u = scale, unit
         rows.append((name[0].upper() + name[1:], *_value_and_interval(found, s, u)))
     if analysis.spread is not None:
-        what = "ln(Weber fraction)" if percent else "the exponent"
+        what = f"ln({analysis.measure})" if analysis.measure in PARTS else "the exponent"
         spread = _value_and_interval(analysis.spread, 1.0, "")
         rows.append((f"Spread of {what} over people", *spread))
     return rows
@@ -317,16 +312,15 @@ def whose(origin: str) -> str:
 
 def condition_head(analysis: TaskAnalysis) -> tuple[str, ...]:
     """Head of `condition_rows`: what is counted depends on the task."""
-    in_parts = analysis.is_adaptive and analysis.task == "two-interval"
-    counted = "Right" if in_parts else TASKS[analysis.task].counted
+    model = TASKS[analysis.task].model
+    is_right = analysis.is_adaptive and model is not None and model.rate is None
+    counted = "Right" if is_right else TASKS[analysis.task].counted
     return ("Stimulus", "Value", "Trials", "People", counted, "d′")
 
 
 def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
     """Each comparison or stimulus: its answers with their interval, and d′."""
-    in_parts = analysis.is_adaptive and analysis.task == "two-interval"
-    units = {} if in_parts else {"spatial_period": "m", "orientation": "rad"}
-    unit = si.Unit(units.get(analysis.judged, "1"))
+    unit = si.Unit("1" if analysis.is_adaptive else JUDGED[analysis.judged].si_unit)
     rows: list[tuple[str, ...]] = []
     for condition in analysis.conditions:
         answers = condition.magnitude or condition.share
@@ -350,7 +344,7 @@ PERSON_HEAD = ("Participant", "Estimate", "Interval", "Trials", "Remark")
 
 def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
     """Each person's Weber fraction, exponent or d′."""
-    scale, unit = (100.0, " %") if analysis.measure == "Weber fraction" else (1.0, "")
+    scale, unit = scale_of(analysis)
     return [
         (
             person.person,

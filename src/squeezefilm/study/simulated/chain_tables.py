@@ -24,14 +24,15 @@ from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.simulated.causes import Causes, median_causes
 from squeezefilm.study.simulated.felt_surfaces import (
     Asked,
+    Causes,
     FeltSurface,
     felt_by_strokes,
     felt_freely,
     felt_really,
     felt_surfaces,
+    median_causes,
 )
 
 

@@ -253,7 +253,9 @@ def _paths(
             # A file of one's own may have any step; a study's has its own, and lifts between.
             step = LONGEST_STEP if more & _KEPT else math.inf
             force = table.columns.get("force_N")
-            exploration(time, x, y, force)
+            exploration(time, x, y)
+            if force is not None:
+                si.require("force", force, si.Unit("N"), at_least=0.0)
             return touches(time, x, y, step), None if force is None else float(np.mean(force))
     motion = motion_from(given)
     if isinstance(motion, FingerPath):

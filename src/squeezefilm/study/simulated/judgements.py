@@ -263,6 +263,14 @@ def _judged(
     return felt.log_period, people.spread[: felt.log_period.size] * skill
 
 
+def _remembered(room: _Room, finger: si.IntArray) -> si.FloatArray:
+    """Level of the reference without noise, of each person; of a strength the first's without."""
+    if room.design.judged != "friction_depth":
+        return np.full(finger.shape, room.design.reference_level)
+    place = room.place.get(room.design.reference, 0)
+    return np.asarray(room.tables.directions.d_prime[0, finger, place, :, 0].max(axis=-1))
+
+
 def _decided(
     room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
 ) -> _Given:
@@ -275,8 +283,16 @@ def _decided(
     if room.design.judged == "friction_depth":
         # How strong a surface is can be said of one that is hardly felt.
         known = np.ones_like(known)
+        # Where nothing is felt there is the noise of a percept.
+        noise = skill * people.noise[at, :, :count].reshape(-1, count, people.noise[0, 0, 0].size)
+        judged = [
+            (np.where(np.isfinite(level), level, alone[:, 0]), deviation)
+            for (level, deviation), alone in zip(judged, noise, strict=False)
+        ]
     level, deviation = np.array([one for one, _ in judged]), judged[0][1]
-    found = decides(Percepts(level, known, deviation, room.observer.detection_criterion))
+    remembered = _remembered(room, people.finger[:count])
+    criterion = room.observer.detection_criterion
+    found = decides(Percepts(level, known, deviation, criterion, remembered))
     blind = ~found.decided | (people.blind[at, :count] < people.lapse[:count])
     number = len(room.design.answers)
     guess = number - 1 - np.floor(people.guess[at, :count] * number).astype(np.int64)
@@ -305,12 +321,11 @@ def _number(
     design = room.design
     values = np.array([design.judged_value(stimulus) for stimulus in design.stimuli])
     middle = math.exp(float(np.mean(np.log(np.maximum(values, 1e-12)))))
-    here = design.judged_value(design.stimulus(design.reference)) if design.reference else middle
+    here = design.reference_value if design.reference else middle
     one = _in_clearest_direction(felt[0])
     if design.judged == "friction_depth":
         # Strength has no unit of its own: that of the reference is felt as often as it likes.
-        place = room.place[design.reference] if design.reference else 0
-        known = room.tables.directions.d_prime[0, people.finger[:count], place, :, 0].max(axis=-1)
+        known = _remembered(room, people.finger[:count])
         step = percept_deviation(room.observer.strength_weber_fraction)
         level, known = (step * np.maximum(x, _FAINTEST) for x in (one.strength, known))
         error = people.memory[:count] * step / np.tanh(known)

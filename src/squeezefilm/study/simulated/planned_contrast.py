@@ -9,19 +9,18 @@ test of a mixed model with a slope of each person's own, where all have done as 
 from __future__ import annotations
 
 import dataclasses
-import math
 from dataclasses import KW_ONLY, dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.physics.display import load_display
+from squeezefilm.study.identification.power import above_0
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import chain_tables
 from squeezefilm.study.simulated.planned_power import PlannedPower, PlannedStudies
@@ -30,6 +29,7 @@ from squeezefilm.study.simulated.planned_precision import (
     person_values,
     simulated_answers,
 )
+from squeezefilm.study.tasks.findings import PARTS
 
 _DIFFERENCES: Kept[tuple[str, si.FloatArray]] = Kept(
     "simulated-differences", tuple[str, si.FloatArray]
@@ -96,16 +96,13 @@ def within_people(answers: Answers) -> tuple[str, si.FloatArray]:
     """Name of what is measured of a person, and each person's value on the first display less that
     on the second, shape (people,); of a Weber fraction the logarithm."""
     (measure, here), (_, there) = (person_values(answers.main(number)) for number in (0, 1))
-    if measure == "Weber fraction":
-        return "ln Weber fraction", np.log(here) - np.log(there)
+    if measure in PARTS:
+        return f"ln {measure}", np.log(here) - np.log(there)
     return measure, here - there
 
 
 def otherwise_than_0(scores: NDArray[Any]) -> float:
     """p of Student's two-sided test of people's mean; 1 where all are 0, 0 where all have the same
     other value."""
-    mean, spread = float(scores.mean()), float(scores.std(ddof=1))
-    if spread == 0.0:
-        return 1.0 if mean == 0.0 else 0.0
-    t = abs(mean) / spread * math.sqrt(scores.size)
-    return float(2.0 * stats.t.sf(t, scores.size - 1))
+    _, p = above_0(scores if scores.mean() >= 0.0 else -scores)
+    return min(2.0 * p, 1.0)

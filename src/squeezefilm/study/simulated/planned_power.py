@@ -190,7 +190,7 @@ def require_pair(design: StudyDesign, first: str, second: str) -> None:
         )
     if first == second:
         raise InputError(f"'{first}' is asked to be told from itself; name two stimuli")
-    if design.compares and design.reference not in (first, second):
+    if design.described.reference == "presented" and design.reference not in (first, second):
         raise InputError(
             f"'{design.name}' compares with its reference '{design.reference}'; name it as one of "
             "the two"
@@ -200,7 +200,8 @@ def require_pair(design: StudyDesign, first: str, second: str) -> None:
 def pair_scores(answers: Answers, first: str, second: str) -> si.FloatArray:
     """Success of each person at telling two stimuli apart, shape (people,); 0 in the mean of people
     who cannot: share of right answers less that of guesses; "different" to them less "different" to
-    the same; or the difference of the mean logarithms of their numbers, more less less.
+    the same; or, of one surface, the difference of the shares that are counted, or of the mean
+    logarithms of their numbers, more less less.
 
     Raises `InputError` for a pair that no test tells apart.
     """
@@ -215,18 +216,18 @@ def pair_scores(answers: Answers, first: str, second: str) -> si.FloatArray:
             / np.maximum(np.bincount(people[rows], minlength=size), 1)
         )
 
-    if design.task == "magnitude-estimation":
+    if not design.compares:
         less, more = sorted(
             (first, second), key=lambda name: design.judged_value(design.stimulus(name))
         )
-        logs = np.log(main.estimate)
-        return mean(logs, names[main.first] == more) - mean(logs, names[main.first] == less)
+        values = main.told.astype(float) if design.answers else np.log(main.estimate)
+        return mean(values, names[main.first] == more) - mean(values, names[main.first] == less)
     shown = names[main.presented]
     alike = (shown == shown[0]).all(axis=0)
     here = np.isin(shown, [first, second]).all(axis=0) & ~alike
-    if design.task != "same-different":
+    if not alike.any():
         return mean(main.correct, here) - 1.0 / len(design.answers)
-    different = (main.choice == 1).astype(float)
+    different = main.told.astype(float)
     return mean(different, here) - mean(different, alike)
 
 

@@ -18,19 +18,20 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.called_with import called_with
-from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept
+from squeezefilm.study.identification.power import first_lasting, sizes_of
 from squeezefilm.study.identification.proportions import proportion_interval
+from squeezefilm.study.psychometric.estimate import t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.answers import answers_of
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.simulated.planned_power import Planned, PlannedStudies, on_one_display
-from squeezefilm.study.tasks.by_difference import MEASURE, on_grid_of_differences, unlike_persons
-from squeezefilm.study.tasks.findings import PersonEstimate
+from squeezefilm.study.tasks.by_condition import MEASURE, unlike_persons
+from squeezefilm.study.tasks.findings import PARTS, PersonEstimate
 from squeezefilm.study.tasks.magnitude import exponents
-from squeezefilm.study.tasks.two_interval import PeopleOnGrid, on_grid, t_interval
+from squeezefilm.study.tasks.on_grid import PeopleOnGrid, on_grid
 
 PEOPLE = 400
 """Simulated people that studies are drawn from; each one's fit takes some 20 ms."""
@@ -77,8 +78,8 @@ class PlannedPrecision(Planned):
     """Precision against the number of people; arrays of shape (numbers,).
 
     Attributes:
-        measure: "Weber fraction", "exponent" or "proportion correct".
-        precision: half the interval asked for: of a Weber fraction in parts of it, else absolute.
+        measure: "Weber fraction", "threshold", "exponent" or "proportion correct".
+        precision: half the interval asked for: of one of `PARTS` in parts of it, else absolute.
         truth: the value of all simulated people.
         participants: numbers of people.
         reached: share of studies whose interval is that narrow, with `low` and `high`, its 95 %
@@ -131,9 +132,7 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
     si.require("target", asked.target, above=0.0, below=1.0)
     si.require("studies", studies, at_least=10, at_most=100_000)
     si.require("people", people, at_least=20, at_most=20_000)
-    sizes = tuple(sorted(set(asked.participants)))
-    if not sizes or sizes[0] < 2:
-        raise InputError(f"participants = {sizes}; give numbers of at least 2")
+    sizes = sizes_of(asked.participants, studies)
     alone = on_one_display(asked.design, asked.display)
     tables = chain_tables(alone, asked.observer, finger=asked.finger, progress=asked.tell)
 
@@ -151,7 +150,7 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
 
     def precise(ends: Ends) -> bool:
         _, low, high = ends
-        if measure == "Weber fraction":
+        if measure in PARTS:
             return low > 0 and math.sqrt(high / low) - 1.0 <= precision
         return 0.5 * (high - low) <= precision
 
@@ -175,7 +174,6 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
     sequential = _sequential(
         interval, precise, truth, people, studies, asked.seed, f"{of_people} {precision}"
     )
-    lasting = [size for at, size in enumerate(sizes) if np.all(reached[at:] >= asked.target)]
     return PlannedPrecision(
         design=asked.design.name,
         display=alone.displays[0],
@@ -192,7 +190,7 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
         high=np.array([bound.high for bound in bounds]),
         held=held,
         target=asked.target,
-        needed=lasting[0] if lasting else None,
+        needed=first_lasting(sizes, reached >= asked.target),
         studies=studies,
         sequential=sequential,
     )
@@ -221,7 +219,7 @@ def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Int
             found = people.population.estimate(0.95, who)
             return math.exp(found.mean), math.exp(found.low), math.exp(found.high)
 
-        return "Weber fraction", fraction
+        return main.design.measure, fraction
     measure, values = person_values(main)
 
     def mean(who: si.IntArray) -> Ends:
@@ -236,8 +234,8 @@ def person_values(main: Answers) -> tuple[str, si.FloatArray]:
     analysis fits it; shape (people,)."""
     people, task = _on_grid(main), main.design.task
     if people is not None:
-        return "Weber fraction", _values(people.estimates(0.95))
-    if task == "same-different":
+        return main.design.measure, _values(people.estimates(0.95))
+    if main.design.described.model is not None:
         return MEASURE, _values(unlike_persons(main, 0.95, 0)[0])
     if task == "magnitude-estimation":
         return "exponent", _values(exponents(main, 0.95)[0])
@@ -247,11 +245,8 @@ def person_values(main: Answers) -> tuple[str, si.FloatArray]:
 
 
 def _on_grid(main: Answers) -> PeopleOnGrid | None:
-    """Each person's Weber fraction, in tasks whose surfaces differ along a scale."""
-    if main.design.task == "two-interval":
-        return on_grid(main, lambda _: None)
-    is_scaled = main.design.described.model is not None and main.design.on_a_scale
-    return on_grid_of_differences(main) if is_scaled else None
+    """Each person's threshold, in tasks whose surfaces differ along a scale."""
+    return on_grid(main) if main.design.described.model and main.design.on_a_scale else None
 
 
 def _values(persons: list[PersonEstimate]) -> si.FloatArray:

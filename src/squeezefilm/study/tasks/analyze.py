@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,17 +20,19 @@ from squeezefilm.study.identification.analysis import (
     analysis_of,
     proportion_correct,
 )
-from squeezefilm.study.identification.condition_means import ConditionMean, condition_means
-from squeezefilm.study.identification.course import course_of
-from squeezefilm.study.identification.response_times import (
+from squeezefilm.study.identification.condition_means import (
+    ConditionMean,
     ResponseTimeSummary,
+    condition_means,
     response_time_summary,
 )
+from squeezefilm.study.identification.course import course_of
 from squeezefilm.study.identification.screening import Screening, judged_people, rule_of
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers, recorded_answers
 from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.tasks.by_condition import comparisons
 from squeezefilm.study.tasks.findings import TaskAnalysis
 from squeezefilm.study.tasks.magnitude import require_magnitudes
 from squeezefilm.study.tasks.measures import measured
@@ -233,31 +234,23 @@ def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
             f"{found.measure}: an end of its interval is where the prior ends, and more trials "
             "near the threshold are wanted"
         )
-    here = design.judged_value(design.stimulus(design.reference)) if design.reference else math.nan
+    own = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
     return TaskAnalysis(
+        **own | {"notes": tuple(notes)},
         name=how.name,
         origin=answers.origin,
         task=design.task,
         judged=design.judged,
-        measure=found.measure,
         people=tuple(main.people[person] for person in np.unique(main.participant)),
         trials=main.trials,
-        standard=here,
-        persons=tuple(found.persons),
-        pooled=found.pooled,
-        spread=found.spread,
-        conditions=found.conditions,
-        more=found.more,
-        functions=found.functions,
+        standard=design.reference_value,
         is_adaptive=bool((main.series >= 0).any()),
         response_times=times,
         course=course,
         exploration=explored,
         assumed=how.assumed,
-        notes=tuple(notes),
         methods=methods_text(answers, display),
         screening=None,
-        robust=found.robust,
         seed=seed,
     )
 
@@ -271,12 +264,8 @@ def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
     place = np.argsort(order, kind="stable")
     names = tuple(main.surfaces[surface].name for surface in order)
     if main.design.compares:
-        here = names.index(main.design.reference) if main.design.reference in names else -1
-        shown = place[main.presented]
-        # The one that is not the reference; several are the same one.
-        other = np.where(shown != here, shown, -1).max(axis=0)
-        alike = (shown == shown[0]).all(axis=0)
-        return np.where(alike, len(names), other), (*names, "the same")
+        other, _ = comparisons(main)
+        return np.where(other < 0, len(names), place[other]), (*names, "the same")
     return place[main.first], names
 
 

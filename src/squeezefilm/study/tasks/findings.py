@@ -10,18 +10,20 @@ from typing import Any, ClassVar
 from squeezefilm.core import quantities as si
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.physics.perception.stimuli import Varied
-from squeezefilm.study.design.tasks.task import Task
-from squeezefilm.study.identification.condition_means import ConditionMean
+from squeezefilm.study.design.tasks.task import JUDGED, Task
+from squeezefilm.study.identification.condition_means import ConditionMean, ResponseTimeSummary
 from squeezefilm.study.identification.course import Course
-from squeezefilm.study.identification.response_times import ResponseTimeSummary
 from squeezefilm.study.identification.screening import Screening
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.tasks.population import PopulationEstimate
 
+PARTS = ("Weber fraction", "threshold")
+"""Measures whose logarithms are normal over people, and whose precision is in parts of them."""
+
 
 @dataclass(frozen=True, slots=True)
 class PersonEstimate:
-    """A person's Weber fraction or exponent.
+    """A person's Weber fraction, threshold or exponent.
 
     `unbounded` says that the answers alone do not bound it: an end of the interval is the prior's.
     """
@@ -34,10 +36,10 @@ class PersonEstimate:
 
 @dataclass(frozen=True, slots=True)
 class PersonFunction:
-    """A person's answers as a function of the difference: Weber fraction (1), bias for an interval
-    (of the logarithm) or criterion, and lapse rate (1)."""
+    """A person's answers as a function of the difference: Weber fraction (1) or threshold (SI),
+    bias (of the logarithm or the amount) or criterion, and lapse rate (1)."""
 
-    weber_fraction: si.Dimensionless
+    threshold: float
     bias: float
     lapse_rate: si.Dimensionless
 
@@ -75,20 +77,19 @@ class TaskAnalysis(Result):
         name: of the study and the display.
         origin: whose answers these are; every figure repeats it.
         task, judged: of the design.
-        measure: what `persons` and `pooled` are: "Weber fraction", "exponent", or "sensitivity d′"
-            of surfaces without an amount to compare.
+        measure: what `persons` and `pooled` are: "Weber fraction", "threshold" (SI), "exponent",
+            or "sensitivity d′" of surfaces without an amount to compare.
         people: pseudonyms.
         trials: main trials.
         standard: the reference's value of what is judged (SI); NaN without a reference.
         persons: of each person.
         pooled: of the population, see `population` and `magnitude`.
-        spread: standard deviation over people of ln(Weber fraction), or of the exponent.
+        spread: standard deviation over people of the logarithm of `PARTS`, or of the exponent.
         conditions: by comparison or stimulus.
         more: other numbers by name, such as the bias for an interval.
         functions: each person's, of Weber fractions.
         is_adaptive: whether series chose the comparisons: `conditions` are then eighths of the
-            trials by their difference, which is their value (same-different: what it makes of
-            the reference).
+            trials by their difference, which is their value.
         response_times: by condition; empty without times.
         course: drift and attention.
         exploration: quantity (with unit in its key) → means by condition.
@@ -138,7 +139,8 @@ class TaskAnalysis(Result):
 
     def summary(self) -> dict[str, Any]:
         """All numbers as plain JSON values, units in the keys."""
-        unit = {"spatial_period": "_m", "orientation": "_rad"}.get(self.judged, "")
+        judged = JUDGED[self.judged].si_unit
+        unit = "" if judged == "1" else f"_{judged}"
         values = {
             "name": self.name,
             "origin": self.origin,

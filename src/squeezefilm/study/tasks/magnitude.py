@@ -14,10 +14,9 @@ from scipy import stats
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.psychometric.estimate import Estimate, holding
+from squeezefilm.study.psychometric.estimate import Estimate, holding, t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import ConditionFinding, PersonEstimate, through
-from squeezefilm.study.tasks.two_interval import t_interval
 
 
 def exponents(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,13 +12,10 @@ from scipy.stats import mstats
 
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.tasks.by_difference import (
+from squeezefilm.study.tasks.by_condition import (
     MEASURE,
-    difference_conditions,
-    difference_numbers,
-    false_alarms,
-    on_grid_of_differences,
-    unlike_conditions,
+    condition_findings,
+    more_numbers,
     unlike_persons,
 )
 from squeezefilm.study.tasks.findings import (
@@ -28,25 +25,18 @@ from squeezefilm.study.tasks.findings import (
     of_population,
 )
 from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions
-from squeezefilm.study.tasks.two_interval import (
-    PeopleOnGrid,
-    adaptive_conditions,
-    on_grid,
-    two_interval_conditions,
-    two_interval_numbers,
-)
+from squeezefilm.study.tasks.on_grid import on_grid
 
 Tell = Callable[[str], None]
-Numbers = dict[str, Estimate]
 _POPULATION = "posterior, mixed model"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Measured:
-    """Results of a task's own analysis."""
+    """Results of a task's own analysis, as `TaskAnalysis` has them."""
 
     measure: str
-    persons: list[PersonEstimate]
+    persons: tuple[PersonEstimate, ...]
     pooled: Estimate | None
     spread: Estimate | None
     conditions: tuple[ConditionFinding, ...]
@@ -61,12 +51,12 @@ def measured(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
 
     `level` is of the intervals (1), `seed` of resampling; `tell` hears each step.
     """
-    own = {"two-interval": _two_interval, "magnitude-estimation": _magnitudes}
-    found = own.get(main.design.task, _by_difference)(main, level, seed, tell)
+    analysis = _magnitudes if main.design.described.model is None else _by_difference
+    found = analysis(main, level, seed, tell)
     return replace(found, robust=found.robust or _trimmed(found.persons, level))
 
 
-def _trimmed(persons: list[PersonEstimate], level: float) -> Estimate | None:
+def _trimmed(persons: Sequence[PersonEstimate], level: float) -> Estimate | None:
     """The mean of people's values without the fifth at either end, with Yuen's interval (1974,
     10.1093/biomet/61.1.165); None of fewer than five people."""
     values = np.sort([person.estimate.value for person in persons])
@@ -81,13 +71,11 @@ def _trimmed(persons: list[PersonEstimate], level: float) -> Estimate | None:
     return Estimate(mean, mean - reach, mean + reach, level, "trimmed by a fifth at either end")
 
 
-def _of_fractions(
-    people: PeopleOnGrid,
-    level: float,
-    conditions: tuple[ConditionFinding, ...],
-    more: Numbers,
-    criterion: bool = False,
-) -> Measured:
+def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
+    if not main.design.on_a_scale:
+        return _unlike(main, level, seed, tell)
+    people = on_grid(main, tell)
+    tell("mixed model over people")
     notes: list[str] = []
     persons = people.estimates(level)
     pooled, spread, robust = persons[0].estimate, None, None
@@ -97,47 +85,35 @@ def _of_fractions(
         low, middle, high = (math.exp(end) for end in population.robust(level))
         robust = Estimate(middle, low, high, level, "posterior, some do not do the task")
         # Answers at random go into a criterion where there is one.
+        criterion = main.model.criterion
         notes += [note for note in [population.lapse_note] if note and not criterion]
     else:
         notes.append(
             "one participant: the population's interval is theirs, and says nothing of others"
         )
-    functions = people.functions(level)
     return Measured(
-        "Weber fraction", persons, pooled, spread, conditions, more, functions, notes, robust
+        main.design.measure,
+        tuple(persons),
+        pooled,
+        spread,
+        condition_findings(main, level, seed),
+        more_numbers(main, people.bias, level),
+        people.functions(level),
+        notes,
+        robust,
     )
-
-
-def _two_interval(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
-    people = on_grid(main, tell)
-    tell("mixed model over people")
-    adaptive = bool((main.series >= 0).any())
-    conditions = (
-        adaptive_conditions(main, level) if adaptive else two_interval_conditions(main, level, seed)
-    )
-    return _of_fractions(people, level, conditions, two_interval_numbers(main, level))
-
-
-def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
-    if not main.design.on_a_scale:
-        return _unlike(main, level, seed, tell)
-    tell(f"{main.design.task} model of each person")
-    people = on_grid_of_differences(main)
-    conditions = difference_conditions(main, level, seed)
-    more = difference_numbers(main, people.bias, level)
-    return _of_fractions(people, level, conditions, more, criterion=bool(more))
 
 
 def _unlike(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
     tell("sensitivity of each person")
     persons, pooled = unlike_persons(main, level, seed)
-    conditions = unlike_conditions(main, level, seed)
+    conditions = condition_findings(main, level, seed)
     notes = [
         f"the surfaces have no {main.design.judged} to be told apart by, so that there is no Weber "
         "fraction: d′ is of whole surfaces"
     ]
-    more = false_alarms(main, level)
-    return Measured(MEASURE, persons, pooled, None, conditions, more, {}, notes)
+    more = more_numbers(main, [], level)
+    return Measured(MEASURE, tuple(persons), pooled, None, conditions, more, {}, notes)
 
 
 def _magnitudes(main: Answers, level: float, _seed: int, tell: Tell) -> Measured:
@@ -152,4 +128,4 @@ def _magnitudes(main: Answers, level: float, _seed: int, tell: Tell) -> Measured
         )
     if len(persons) == 1:
         notes.append("one line: the interval is of it, and not of a population")
-    return Measured("exponent", persons, pooled, spread, conditions, {}, {}, notes)
+    return Measured("exponent", tuple(persons), pooled, spread, conditions, {}, {}, notes)

@@ -8,6 +8,7 @@ from squeezefilm import __version__
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.design.tasks.task import JUDGED
 from squeezefilm.study.record.answers import Answers
 
 _MATCHED = {"real gratings": "real gratings", "stimuli": "surfaces known from before"}
@@ -21,12 +22,6 @@ _UNLIKE = (
     "by the differencing model of Macmillan and Creelman (2005), and its mean has Student's "
     "interval over participants."
 )
-_JUDGED = {
-    "spatial_period": "spatial period (coarseness)",
-    "friction_depth": "change of friction",
-    "ridge_share": "share of ridges",
-    "orientation": "orientation",
-}
 _PSI = "Kontsevich and Tyler 1999, 10.1016/S0042-6989(98)00285-5"
 _QUEST_PLUS = "Watson 2017, 10.1167/17.3.10"
 
@@ -49,12 +44,14 @@ def methods_text(answers: Answers, display: int) -> str:
             alternatives=len(design.answers),
             matched=_MATCHED[design.matched_with],
             reference=design.reference or "none",
-            judged=_JUDGED[design.judged],
+            judged=JUDGED[design.judged].words,
         )
         + f" (“{design.spoken_question}”).",
         *_adaptive(design),
         _trials(design, answers, display),
-        _UNLIKE if alike and not design.on_a_scale else design.described.analysed,
+        _UNLIKE
+        if alike and not design.on_a_scale
+        else design.described.analysed.format(judged=JUDGED[design.judged].words),
         f"Orders and analysis were made with squeezefilm {__version__} "
         f"(design SHA-256 {design.sha256[:12]}).",
     ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Iterable
 
 import numpy as np
 import pytest
@@ -31,6 +32,14 @@ NUMBERS = magnitude_model(
 MODELS = {"two": TWO, "alike": ALIKE, "match": MATCH, "numbers": NUMBERS}
 
 
+def played(model: PlacementModel, trials: int, answers: Iterable[tuple[int, int]]) -> Placement:
+    """A placement that has had answers: pairs of the numbers of stimulus and answer."""
+    placement = Placement(model, trials)
+    for stimulus, answer in answers:
+        placement.update(stimulus, answer)
+    return placement
+
+
 def entropy(weights: np.ndarray) -> float:
     some = weights[weights > 0]
     return float(-np.sum(some * np.log(some)))
@@ -41,7 +50,7 @@ def test_information_is_the_expected_fall_of_entropy(name: str) -> None:
     model = MODELS[name]
     first = next(iter(model.parameters))
     given = [(0, 0), (len(model.stimuli) - 1, 1), (1, 0)]
-    placement = Placement(model, 9, given)
+    placement = played(model, 9, given)
     now = entropy(placement.marginal(first))
     told = placement.expected_information()
     cells = placement.probability.ravel()
@@ -50,7 +59,7 @@ def test_information_is_the_expected_fall_of_entropy(name: str) -> None:
         for answer in range(len(model.answers)):
             share = float(cells @ model.chances[answer, :, stimulus])
             if share > 0:
-                then = Placement(model, 9, [*given, (stimulus, answer)])
+                then = played(model, 9, [*given, (stimulus, answer)])
                 after += share * entropy(then.marginal(first))
         assert told[stimulus] == pytest.approx(now - after, abs=1e-10)
     assert told[placement.next_stimulus()] == told.max()

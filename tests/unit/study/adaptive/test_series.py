@@ -84,7 +84,7 @@ def test_a_same_different_series_finds_the_weber_fraction() -> None:
         different = random.random() < 0.5 if random.random() < 0.02 else different
         method.update(asked, bool(different == (asked > 0)))
     assert isinstance(method, SameDifferentSeries)
-    found, error = method.estimate()
+    found, error = method.placement.estimate("Weber fraction")
     assert error < 0.06
     assert abs(found - weber) < 3 * error
 

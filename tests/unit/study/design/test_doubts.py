@@ -8,8 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from squeezefilm.physics.perception.observer import load_observer
-from squeezefilm.study.design.doubts import doubts_of, predicted_fraction
-from squeezefilm.study.design.plan import plan_study
+from squeezefilm.study.design.plan import doubts_of, plan_study, predicted_fraction
 from squeezefilm.study.design.study_design import load_design
 
 OBSERVER = load_observer()
@@ -22,7 +21,7 @@ def test_a_range_beside_the_predicted_threshold_is_said() -> None:
     assert doubts_of(ODD, OBSERVER) == ()
     coarse = dataclasses.replace(ODD, stimuli=(ODD.stimuli[0], *ODD.stimuli[2:]))
     (said,) = doubts_of(coarse, OBSERVER)
-    assert said.startswith("the least difference from the reference, 25 %, is above")
+    assert said.startswith("the least difference from the reference, 25.0 %, is above")
     near = dataclasses.replace(ODD.stimuli[1], name="4.1 mm", spatial_period=4.1e-3)
     (said,) = doubts_of(dataclasses.replace(ODD, stimuli=(ODD.stimuli[0], near)), OBSERVER)
     assert "the greatest difference from the reference, 2.5 %, is below" in said

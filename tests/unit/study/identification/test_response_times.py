@@ -9,7 +9,7 @@ import pytest
 from scipy import stats
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.response_times import response_time_summary
+from squeezefilm.study.identification.condition_means import response_time_summary
 
 NAMES = ("a", "b", "c")
 # Person, condition, time: three people, the third without "b"; nobody has "c".

@@ -16,8 +16,8 @@ from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import Candidates, line_periods
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.report.observer_figures import channels, percepts
-from squeezefilm.study.simulated.causes import Causes
 from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.felt_surfaces import Causes
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 

@@ -32,8 +32,8 @@ from squeezefilm.study.report.simulated_page import (
 )
 from squeezefilm.study.report.words import confusion_rows
 from squeezefilm.study.simulated.answers import SimulatedStudy, study_of
-from squeezefilm.study.simulated.causes import Causes
 from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.felt_surfaces import Causes
 from squeezefilm.study.simulated.participants import Matches
 from squeezefilm.study.tasks import analyze
 

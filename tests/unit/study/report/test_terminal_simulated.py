@@ -11,8 +11,8 @@ from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.report.simulated_page import LEGEND, REMARK
 from squeezefilm.study.report.terminal_analysis import show_simulated
 from squeezefilm.study.simulated.answers import SimulatedStudy, study_of
-from squeezefilm.study.simulated.causes import Causes
 from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.felt_surfaces import Causes
 from squeezefilm.study.simulated.participants import Matches
 
 from ...study.scripted import gratings

@@ -21,8 +21,8 @@ from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.simulated.answers import (
     simulate_participants,
 )
-from squeezefilm.study.simulated.causes import Causes
 from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.felt_surfaces import Causes
 from squeezefilm.study.simulated.judgements import _alike_in_plane, simulate_judgements
 
 EXACT = dataclasses.replace(

@@ -14,8 +14,8 @@ from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.design.study_design import StudyDesign, load_design
-from squeezefilm.study.simulated.causes import Causes
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
+from squeezefilm.study.simulated.felt_surfaces import Causes
 from squeezefilm.study.simulated.participants import right_answers, simulate_matches
 
 PERIODS = np.array([0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3])

@@ -13,13 +13,14 @@ from tests.recovery.task_people import DESIGNS, Person, analysed, answered, some
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.course import attention, course_of, drift
+from squeezefilm.study.psychometric.estimate import t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.analyze import analyze_answers
-from squeezefilm.study.tasks.by_difference import false_alarms, on_grid_of_differences
+from squeezefilm.study.tasks.by_condition import comparisons, false_alarms
 from squeezefilm.study.tasks.findings import TaskAnalysis
 from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions
 from squeezefilm.study.tasks.methods import methods_text
-from squeezefilm.study.tasks.two_interval import comparisons, differences, on_grid, t_interval
+from squeezefilm.study.tasks.on_grid import on_grid
 
 SHARP = Person(0.02, 0.9, 0.0)
 
@@ -64,7 +65,7 @@ def test_the_comparison_is_found_in_either_order() -> None:
     assert "30 %" not in set(names[surface])
     first = names[main.first] != "30 %"
     assert np.array_equal(more, (main.choice == 0) == first)
-    apart = differences(main)
+    apart = main.differences
     bigger = main.values[main.first] > main.values[main.second]
     assert np.array_equal(apart > 0, bigger)
 
@@ -90,7 +91,7 @@ def test_trials_decide_nothing_by_their_order() -> None:
             for key in ("participant", "first", "second", "choice", "right", "display", "series")
         },
     )
-    one, other = on_grid_of_differences(main), on_grid_of_differences(mixed)
+    one, other = on_grid(main), on_grid(mixed)
     for a, b in zip(one.likelihood, other.likelihood, strict=True):
         assert a == pytest.approx(b)
 

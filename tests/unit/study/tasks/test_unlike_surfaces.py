@@ -12,7 +12,7 @@ from squeezefilm.study.design.trials import conditions
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.planned_precision import person_values
 from squeezefilm.study.tasks.analyze import analyze_answers
-from squeezefilm.study.tasks.by_difference import MEASURE, unlike_conditions
+from squeezefilm.study.tasks.by_condition import MEASURE, condition_findings
 
 TRUE = {"bars": 1.0, "checks": 3.0}
 CRITERION = 1.4
@@ -62,7 +62,7 @@ def answers(people: int, repetitions: int, seed: int) -> Answers:
 def test_the_d_prime_of_each_pair_is_found_again() -> None:
     made = answers(40, 60, 3)
     assert not made.design.on_a_scale
-    same, *pairs = unlike_conditions(made, 0.95, 0)
+    same, *pairs = condition_findings(made, 0.95, 0)
     assert same.name == "the same"
     assert same.d_prime is None
     for one in pairs:

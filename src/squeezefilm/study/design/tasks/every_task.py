@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+from squeezefilm.study.design.tasks.detection import DETECTION
+from squeezefilm.study.design.tasks.direction import DIRECTION
 from squeezefilm.study.design.tasks.odd_one_out import ODD_ONE_OUT
 from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE
 from squeezefilm.study.design.tasks.same_different import SAME_DIFFERENT
 from squeezefilm.study.design.tasks.task import StudyTask
 from squeezefilm.study.design.tasks.two_interval import TWO_INTERVAL
+from squeezefilm.study.design.tasks.yes_no import YES_NO
 
 TASKS: dict[str, StudyTask] = {
     task.name: task
-    for task in (MATCH_TO_SAMPLE, SAME_DIFFERENT, TWO_INTERVAL, ODD_ONE_OUT, MAGNITUDE_ESTIMATION)
+    for task in (
+        MATCH_TO_SAMPLE,
+        SAME_DIFFERENT,
+        TWO_INTERVAL,
+        ODD_ONE_OUT,
+        MAGNITUDE_ESTIMATION,
+        DIRECTION,
+        YES_NO,
+        DETECTION,
+    )
 }
 """Every task, as designs name it."""

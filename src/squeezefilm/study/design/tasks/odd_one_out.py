@@ -22,6 +22,8 @@ from squeezefilm.core import quantities as si
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.tasks.task import (
     CLEARER,
+    POPULATION,
+    UNFELT,
     Condition,
     Decision,
     DifferenceModel,
@@ -29,6 +31,7 @@ from squeezefilm.study.design.tasks.task import (
     Percepts,
     StudyTask,
     kinds_of,
+    widest,
 )
 
 _ANSWERS = ("first", "second", "third")
@@ -95,6 +98,7 @@ def _decides(given: Percepts) -> Decision:
 ODD_ONE_OUT = StudyTask(
     name="odd-one-out",
     surfaces=3,
+    reference="presented",
     answers=_ANSWERS,
     question=lambda _: "Which of the three surfaces was different?",
     conditions=_conditions,
@@ -109,21 +113,21 @@ ODD_ONE_OUT = StudyTask(
         "Each participant's answers were fitted by the model of the triangular method (Ennis 1993, "
         "10.1111/j.1745-459X.1993.tb00222.x), in which the percept furthest from the other two is "
         "named, with lapses; the Weber fraction is the difference with d′ = 0.954, which is told "
-        "in 75 % of two intervals. The population is a mixed model: logarithms of Weber fractions "
-        "are normal over participants, whose likelihoods were integrated on a grid (compare "
-        "Moscatelli et al. 2012, 10.1167/12.11.26)."
+        "in 75 % of two intervals. "
+        f"{POPULATION}"
     ),
     counted="Right",
     assumed=(
         "The surface is named whose perceived period (or strength) is furthest from the other two; "
         "where a rhythm is felt on only one, or on only two, the one that differs in that.",
-        "A person who feels no rhythm guesses.",
+        UNFELT,
     ),
     in_plane=(CLEARER,),
     decides=_decides,
     model=DifferenceModel(
-        rate=lambda d_prime, _: np.asarray(correct_of_three(d_prime)),
+        difference=widest,
         criteria=np.zeros(1),
+        rate=lambda d_prime, _: np.asarray(correct_of_three(d_prime)),
         lapses=_CHANCE,
         d_prime=d_prime_of_three,
         counts=-1,

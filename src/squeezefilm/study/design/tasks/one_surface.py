@@ -7,6 +7,7 @@ from squeezefilm.study.design.tasks.task import CLEARER, StudyTask, nothing_is_r
 MATCH_TO_SAMPLE = StudyTask(
     name="match-to-sample",
     surfaces=1,
+    reference="",
     answers=(),
     question=lambda _: "Which of the gratings does the surface feel like?",
     conditions=one_each,
@@ -28,6 +29,7 @@ MATCH_TO_SAMPLE = StudyTask(
 MAGNITUDE_ESTIMATION = StudyTask(
     name="magnitude-estimation",
     surfaces=1,
+    reference="",
     answers=(),
     question=lambda _: "Give a number for how coarse the surface feels.",
     conditions=one_each,

@@ -16,6 +16,7 @@ from scipy.special import ndtr
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.tasks.task import (
+    POPULATION,
     Condition,
     Decision,
     DifferenceModel,
@@ -23,6 +24,7 @@ from squeezefilm.study.design.tasks.task import (
     Percepts,
     StudyTask,
     kinds_of,
+    widest,
 )
 
 _CRITERIA, _LARGEST_CRITERION = 81, 8.0
@@ -56,6 +58,7 @@ def _rate(d_prime: si.FloatArray, criteria: si.FloatArray) -> si.DimensionlessAr
 SAME_DIFFERENT = StudyTask(
     name="same-different",
     surfaces=2,
+    reference="presented",
     answers=("same", "different"),
     question=lambda _: "Were the two surfaces the same or different?",
     conditions=_conditions,
@@ -68,11 +71,10 @@ SAME_DIFFERENT = StudyTask(
     analysed=(
         "Each participant's answers were fitted by the differencing model of Macmillan and "
         "Creelman (2005), with a criterion and lapses; the Weber fraction is the difference with "
-        "d′ = 0.954, which is told in 75 % of two intervals. The population is a mixed model: "
-        "logarithms of Weber fractions are normal over participants, whose likelihoods were "
-        "integrated on a grid (compare Moscatelli et al. 2012, 10.1167/12.11.26)."
+        "d′ = 0.954, which is told in 75 % of two intervals. "
+        f"{POPULATION}"
     ),
-    counted="Different",
+    counted="Called different",
     assumed=(
         "Two surfaces are called different where their perceived periods (or strengths) differ by "
         "more than one standard deviation of that difference, the observer's criterion, or where "
@@ -84,13 +86,15 @@ SAME_DIFFERENT = StudyTask(
         "the mean square, whatever is judged.",
     ),
     adaptive=("bayesian",),
+    series=lambda number: (number % 4 < 2, ("different", "same")[number % 2]),
     decides=_decides,
     model=DifferenceModel(
-        rate=_rate,
+        difference=widest,
         criteria=_LARGEST_CRITERION * (np.arange(_CRITERIA) + 0.5) / _CRITERIA,
-        lapses=0.5,
-        d_prime=None,
+        rate=_rate,
         counts=1,
+        sensitivity="differencing",
+        criterion="criterion (standard deviations of a percept)",
     ),
 )
 """Two surfaces, the same or different?"""

@@ -6,6 +6,7 @@ new task is a module beside this one, and its name here and in `every_task`.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -14,15 +15,42 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.physics.perception.senses import D_PRIME_OF_75
+from squeezefilm.physics.perception.stimuli import Stimulus, Varied
 
 Task = Literal[
-    "match-to-sample", "same-different", "two-interval", "odd-one-out", "magnitude-estimation"
+    "match-to-sample",
+    "same-different",
+    "two-interval",
+    "odd-one-out",
+    "magnitude-estimation",
+    "yes-no",
+    "direction",
+    "detection",
 ]
 Condition = tuple[str, ...]
 """The names of what one trial presents, in their order."""
 Judged = Callable[[Stimulus], float]
 """Amount of what is judged that a surface has (SI)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Amount:
+    """Amount that may be judged: in words, its unit, and the unit and factor it is shown by."""
+
+    words: str
+    si_unit: str
+    factor: float
+    unit: str
+
+
+JUDGED: dict[Varied, Amount] = {
+    "spatial_period": Amount("spatial period", "m", 1e3, " mm"),
+    "friction_depth": Amount("friction change", "1", 1e2, " %"),
+    "ridge_share": Amount("ridge share", "1", 1e2, " %"),
+    "orientation": Amount("orientation", "rad", 180 / math.pi, " deg"),
+}
+"""Amounts that may be judged."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,12 +62,15 @@ class Percepts:
         felt: whether anything was, likewise; true where what is hardly felt can be judged too.
         deviation: standard deviation of one percept's level, shape (people,).
         criterion: from which a difference counts, in standard deviations of that difference.
+        reference: level of the reference as it is remembered, shape (people,); NaN where it is
+            presented.
     """
 
     level: si.FloatArray
     felt: NDArray[np.bool_]
     deviation: si.FloatArray
     criterion: si.Dimensionless
+    reference: si.FloatArray | float = math.nan
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,22 +85,44 @@ class Decision:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DifferenceModel:
-    """Chance that a difference of d′ is told, by a person who attends.
+    """Chance of an answer to a difference, by a person who attends.
 
     Attributes:
-        rate: of d′ and a person's criterion, which broadcast.
-        criteria: that are held possible, alike; a single 0 where answers have no criterion.
+        difference: of the levels of a trial's surfaces, shape (surfaces, trials), and of the
+            reference's; shape (trials,).
+        criteria: that are held possible, alike; a single 0 where answers have none. Without a
+            `rate` they are in parts of the greatest difference.
+        rate: of the difference in deviations of one percept, and a person's criterion, which
+            broadcast; None for the cumulative normal of the difference less the criterion.
+        threshold: difference told in 75 % of two intervals, in the deviations of the model (1).
         lapses: share of such answers among lapses (1).
         d_prime: of the share of such answers; None where it takes false alarms as well
             (`psychometric.discrimination`).
         counts: number of the answer that is counted; −1 counts whatever is right.
+        sensitivity: model of `psychometric.discrimination`.
+        criterion: what results call a person's mean criterion; "" where they do not tell it.
     """
 
-    rate: Callable[[si.FloatArray, si.FloatArray], si.DimensionlessArray]
+    difference: Callable[[si.FloatArray, float], si.FloatArray]
     criteria: si.FloatArray
-    lapses: si.Dimensionless
-    d_prime: Callable[[si.Dimensionless], float] | None
-    counts: int
+    rate: Callable[[si.FloatArray, si.FloatArray], si.DimensionlessArray] | None = None
+    threshold: si.Dimensionless = D_PRIME_OF_75
+    lapses: si.Dimensionless = 0.5
+    d_prime: Callable[[si.Dimensionless], float] | None = None
+    counts: int = 0
+    sensitivity: Literal["yes-no", "two-interval", "differencing"] = "yes-no"
+    criterion: str = ""
+
+
+def widest(levels: si.FloatArray, reference: float) -> si.FloatArray:
+    """Difference between the greatest and the least level of each trial."""
+    del reference
+    return np.asarray(levels.max(axis=0) - levels.min(axis=0))
+
+
+def from_reference(levels: si.FloatArray, reference: float) -> si.FloatArray:
+    """Signed difference of the only level of each trial from the reference."""
+    return np.asarray(levels[0] - reference)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +131,9 @@ class StudyTask:
 
     Attributes:
         name: as designs write it.
-        surfaces: presented in a trial, one after the other; from two on, one is the reference.
+        surfaces: presented in a trial, one after the other.
+        reference: whether one stimulus is what the others are compared with: "presented" in each
+            trial, "remembered", or "flat"; "" where they are not.
         answers: that may be given; empty for numbers, and for names of a design's own.
         question: of what is judged, as people are asked.
         conditions: of a repetition, from the reference and the other stimuli.
@@ -90,12 +145,16 @@ class StudyTask:
         assumed: what simulated answers assume beyond the observer, in sentences.
         in_plane: what they assume besides where surfaces are explored freely.
         adaptive: methods that may choose comparisons.
+        series: of the trial k of such a series: whether the reference comes first, and what is
+            right.
+        in_amounts: whether differences are of amounts, and not of their logarithms.
         decides: how simulated people answer; None where that takes more than the percepts.
         model: of the answers to a difference; None where the task has an analysis of its own.
     """
 
     name: Task
     surfaces: int
+    reference: Literal["", "presented", "remembered", "flat"]
     answers: tuple[str, ...]
     question: Callable[[str], str]
     conditions: Callable[[str, Sequence[str]], tuple[Condition, ...]]
@@ -107,8 +166,15 @@ class StudyTask:
     assumed: tuple[str, ...] = ()
     in_plane: tuple[str, ...] = ()
     adaptive: tuple[str, ...] = ()
+    series: Callable[[int], tuple[bool, str]] = lambda k: (k % 2 == 0, ("second", "first")[k % 2])
+    in_amounts: bool = False
     decides: Callable[[Percepts], Decision] | None = None
     model: DifferenceModel | None = None
+
+    @property
+    def ordered(self) -> bool:
+        """True where answers are a cumulative normal of the difference."""
+        return self.model is not None and self.model.rate is None
 
 
 def one_each(reference: str, others: Sequence[str]) -> tuple[Condition, ...]:
@@ -134,5 +200,16 @@ def kinds_of(surfaces: Sequence[Stimulus]) -> list[int]:
     ]
 
 
+FELT = "On a flat surface there is the noise of a percept alone."
+"""Assumption of tasks that detect a surface."""
+UNFELT = "A person who feels no rhythm guesses."
+"""Assumption of tasks on a scale."""
+POPULATION = (
+    "The population is a mixed model: logarithms of thresholds are normal over participants, lapse "
+    "rates have a mean over participants of their own, and all likelihoods were integrated on a "
+    "grid, so that intervals do not ask how differences were chosen (compare Moscatelli et al. "
+    "2012, 10.1167/12.11.26; Kuss et al. 2005, 10.1167/5.5.8)."
+)
+"""Sentence of a methods section about people together; a Weber fraction is a threshold."""
 CLEARER = "Of the two directions the one in which a rhythm is clearer decides."
 """Assumption of tasks on a scale about free exploration."""

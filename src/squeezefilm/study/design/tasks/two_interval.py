@@ -7,15 +7,23 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from squeezefilm.core import quantities as si
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.tasks.task import (
     CLEARER,
+    POPULATION,
     Condition,
     Decision,
+    DifferenceModel,
     Judged,
     Percepts,
     StudyTask,
 )
+
+QUARTILE: si.Dimensionless = 0.6744897501960817
+"""Quartile of a normal deviate: 75 % lie below."""
+BIASES: si.DimensionlessArray = np.linspace(-0.5, 0.5, 41)
+"""Biases for an answer that are held possible, in parts of the greatest difference (1)."""
 
 
 def _question(judged: str) -> str:
@@ -41,6 +49,7 @@ def _decides(given: Percepts) -> Decision:
 TWO_INTERVAL = StudyTask(
     name="two-interval",
     surfaces=2,
+    reference="presented",
     answers=("first", "second"),
     question=_question,
     conditions=_conditions,
@@ -53,11 +62,7 @@ TWO_INTERVAL = StudyTask(
     analysed=(
         "Each participant's answers were fitted with a cumulative Gaussian of the difference of "
         "logarithms, with a bias for an interval and lapses; the Weber fraction is what is told in "
-        "75 % of two intervals. The population is a mixed model: logarithms of Weber fractions are "
-        "normal over participants, lapse rates have a mean over participants of their own, and "
-        "all likelihoods were integrated on a grid, so that intervals do not ask how differences "
-        "were chosen (compare Moscatelli et al. 2012, 10.1167/12.11.26; Kuss et al. 2005, "
-        "10.1167/5.5.8). d′ follows Macmillan and Creelman (2005)."
+        f"75 % of two intervals. {POPULATION} d′ follows Macmillan and Creelman (2005)."
     ),
     counted="Has more",
     assumed=(
@@ -68,5 +73,11 @@ TWO_INTERVAL = StudyTask(
     in_plane=(CLEARER,),
     adaptive=("staircase", "bayesian"),
     decides=_decides,
+    model=DifferenceModel(
+        difference=lambda levels, _: np.asarray(levels[0] - levels[1]),
+        criteria=BIASES,
+        threshold=QUARTILE,
+        sensitivity="two-interval",
+    ),
 )
 """Two surfaces, which has more?"""

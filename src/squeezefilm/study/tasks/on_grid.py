@@ -1,0 +1,175 @@
+"""Each person's threshold by their answers to differences, integrated on a grid.
+
+A task's model says how often an answer is given to a difference Δ of levels (logarithms of what is
+judged, or amounts) by a person who attends (`design.tasks`). Each person's deviation σ, criterion
+(or bias) and lapse rate are integrated; how differences were chosen does not matter to that. The
+threshold is what is told in 75 % of two intervals by somebody without a bias: of logarithms the
+Weber fraction, of amounts an amount.
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.special import betaln
+
+from squeezefilm.core import quantities as si
+from squeezefilm.study.design.tasks.task import DifferenceModel
+from squeezefilm.study.psychometric import kernel
+from squeezefilm.study.psychometric.estimate import Estimate
+from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.tasks.findings import PersonEstimate, PersonFunction
+from squeezefilm.study.tasks.population import (
+    LAPSES,
+    PersonLikelihood,
+    Population,
+    lapse_weights,
+)
+
+# From 5 to 95 % of a normal distribution, which is what the kernel calls the width.
+_WIDTH = 2 * 1.6448536269514722
+_SPREADS = 101
+_MOST = 600.0
+
+
+@dataclass(frozen=True, eq=False)
+class PeopleOnGrid:
+    """Likelihoods of each person's answers.
+
+    Attributes:
+        names: of the people.
+        edges: of the cells of ln(threshold), shape (cells + 1,).
+        flat: prior probability of each cell, up to a factor, shape (cells,).
+        likelihood: of a person's answers under each mean lapse rate, shape (lapses, cells).
+        bias: mean of the person's bias or criterion.
+        lapse: mean of the person's lapse rate (1).
+        trials: of each person.
+        otherwise: likelihood of each one's answers from somebody who does not do the task.
+    """
+
+    names: list[str]
+    edges: si.FloatArray
+    flat: si.FloatArray
+    likelihood: list[si.FloatArray]
+    bias: list[float]
+    lapse: list[float]
+    trials: list[int]
+    otherwise: list[float]
+
+    @cached_property
+    def population(self) -> Population:
+        """All of them, put together once."""
+        middle, width = 0.5 * (self.edges[1:] + self.edges[:-1]), np.diff(self.edges)
+        return Population(
+            [
+                PersonLikelihood(middle, width, one, other)
+                for one, other in zip(self.likelihood, self.otherwise, strict=True)
+            ]
+        )
+
+    def estimates(self, level: si.Dimensionless) -> list[PersonEstimate]:
+        """Each person's threshold: the posterior's median and central interval, with the lapse
+        rates that all people's answers speak for."""
+        lapses = self.population.lapses()
+        people = []
+        tails = 0.5, 0.5 * (1 - level), 0.5 * (1 + level)
+        for name, likelihood, trials in zip(self.names, self.likelihood, self.trials, strict=True):
+            density = lapses @ (likelihood / likelihood.max())
+            heights = np.concatenate([[0.0], np.cumsum(density * self.flat)])
+            value, low, high = np.exp(np.interp(tails, heights / heights[-1], self.edges)).tolist()
+            unbounded = max(density[0], density[-1]) > 0.05 * density.max()
+            estimate = Estimate(value, low, high, level, "posterior")
+            people.append(PersonEstimate(name, estimate, trials, bool(unbounded)))
+        return people
+
+    def functions(self, level: si.Dimensionless) -> dict[str, PersonFunction]:
+        """Each person's threshold, bias and lapse rate, to be drawn."""
+        return {
+            estimate.person: PersonFunction(estimate.estimate.value, bias, lapse)
+            for estimate, bias, lapse in zip(
+                self.estimates(level), self.bias, self.lapse, strict=True
+            )
+        }
+
+
+def on_grid(main: Answers, tell: Callable[[str], None] = lambda _: None) -> PeopleOnGrid:
+    """Likelihoods of each person's threshold, of any task with a model; `tell` hears of each."""
+    model, apart, hit = main.model, main.differences, main.told
+    # From an eighth of the least difference that the design has to eight times the greatest.
+    ends = main.design.differences
+    edges = np.linspace(math.log(min(ends) / 8), math.log(8 * max(ends)), _SPREADS + 1)
+    deviations = np.exp(0.5 * (edges[1:] + edges[:-1]))
+    logs = _by_rate(model, deviations)
+    criteria = model.criteria
+    if model.rate is None:
+        criteria = model.criteria * float(np.abs(apart).max())
+        logs = _by_normal(criteria, deviations)
+    prior = lapse_weights()
+    thresholds = model.threshold * np.exp(edges)
+    thresholds = np.log(thresholds if main.design.in_amounts else np.expm1(thresholds))
+    people = PeopleOnGrid([], thresholds, np.diff(edges), [], [], [], [], [])
+    for person in np.unique(main.participant):
+        tell(f"psychometric function {len(people.names) + 1} of {len(main.people)}")
+        mine = main.participant == person
+        places, where = np.unique(apart[mine], return_inverse=True)
+        k = np.bincount(where, hit[mine].astype(float)).astype(np.float64)
+        n = np.bincount(where).astype(np.float64)
+        found = logs(places, k, n)
+        greatest = float(found.max())
+        whole = np.exp(found - greatest)
+        total = whole.sum()
+        people.names.append(main.people[person])
+        people.likelihood.append(prior @ whole.mean(axis=1))
+        anyhow = _anyhow(model, float(k.sum()), float(n.sum()), greatest)
+        if model.rate is None:
+            mixed_up = np.exp(np.minimum(logs(places, n - k, n) - greatest, _MOST))
+            anyhow = 0.5 * anyhow + 0.5 * float((prior[1] @ mixed_up.mean(axis=1)).mean())
+        people.otherwise.append(anyhow)
+        people.bias.append(float(whole.sum(axis=(0, 2)) @ criteria / total))
+        people.lapse.append(float(whole.sum(axis=(1, 2)) @ LAPSES / total))
+        people.trials.append(int(mine.sum()))
+    return people
+
+
+_Logs = Callable[[si.FloatArray, si.FloatArray, si.FloatArray], si.FloatArray]
+"""ln likelihood of k counted answers of n at places, shape (lapses, criteria, deviations)."""
+
+
+def _by_normal(biases: si.FloatArray, deviations: si.FloatArray) -> _Logs:
+    """P = λ/2 + (1 − λ) Φ((Δ − b)/s), with s the deviation of what is decided by."""
+    wide = np.log(deviations) + math.log(_WIDTH)
+    return functools.partial(kernel.guessing_log_likelihood, kernel.GAUSSIAN, biases, wide, LAPSES)
+
+
+def _by_rate(model: DifferenceModel, deviations: si.FloatArray) -> _Logs:
+    """P = g λ + (1 − λ) rate(Δ/σ, k), with g the share of such answers among lapses."""
+
+    @functools.cache
+    def both(place: float) -> tuple[si.FloatArray, si.FloatArray]:
+        assert model.rate is not None
+        rise = np.minimum(model.rate(place / deviations, model.criteria[:, None]), 1.0)
+        p = model.lapses * LAPSES[:, None, None] + (1 - LAPSES[:, None, None]) * rise
+        return np.log(p), np.log1p(-p)
+
+    def logs(places: si.FloatArray, k: si.FloatArray, n: si.FloatArray) -> si.FloatArray:
+        total = np.zeros((LAPSES.size, model.criteria.size, deviations.size))
+        for place, hits, trials in zip(places.tolist(), k, n, strict=True):
+            said, not_said = both(place)
+            total += hits * said + (trials - hits) * not_said
+        return total
+
+    return logs
+
+
+def _anyhow(model: DifferenceModel, hits: float, trials: float, greatest: float) -> float:
+    """Likelihood of answers that do not go by the surfaces, over one whose logarithm is `greatest`:
+    by chance, or one of two with a probability that may be anything (Jeffreys' prior)."""
+    logs = float(betaln(hits + 0.5, trials - hits + 0.5) - betaln(0.5, 0.5))
+    if model.counts < 0:
+        logs = hits * math.log(model.lapses) + (trials - hits) * math.log1p(-model.lapses)
+    return math.exp(min(logs - greatest, _MOST))
