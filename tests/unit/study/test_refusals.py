@@ -91,14 +91,11 @@ def test_the_cells_that_a_path_came_over_are_counted_once() -> None:
     assert coverage((), face, cell) == 0.0
 
 
-@pytest.mark.parametrize("interest", ["threshold and width", "all"])
 @pytest.mark.parametrize("axis", ["linear", "log"])
-def test_estimate_and_entropy_are_those_of_the_posterior(axis: Any, interest: Any) -> None:
+def test_the_estimate_is_that_of_the_posterior(axis: Any) -> None:
     """By Bayes, cell by cell, from the function that each cell stands for."""
     prior = PsychometricPrior((1.0, 4.0), (0.2, 2.0))
-    design = AdaptiveDesign(
-        (1.5, 2.0, 3.0), prior, axis=axis, cells=(6, 4, 3), interest=interest, guess_rate=0.25
-    )
+    design = AdaptiveDesign((1.5, 2.0, 3.0), prior, axis=axis, cells=(6, 4, 3), guess_rate=0.25)
     method = BayesianAdaptive(design)
     answers = ((2.0, True), (1.5, False), (3.0, True), (2.0, False))
     places, widths, lapses = method._nodes
@@ -118,8 +115,6 @@ def test_estimate_and_entropy_are_those_of_the_posterior(axis: Any, interest: An
     threshold, width = method.estimate()
     assert threshold == pytest.approx(math.exp(place) if axis == "log" else place)
     assert width == pytest.approx(math.exp(np.einsum("ijk,j->", weights, widths)))
-    whole = weights.sum(axis=2) if interest != "all" else weights
-    assert method.entropy == pytest.approx(-np.sum(whole * np.log(whole)))
 
 
 @pytest.mark.parametrize(("stimuli", "word"), [((0.0, 1.0), "intensity"), ((1.0,), "two or more")])

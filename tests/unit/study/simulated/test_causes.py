@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.study.simulated.causes import _causes, _ripple_share
+from squeezefilm.study.simulated.felt_surfaces import _causes, _ripple_share
 
 PLAIN = np.array([0.5, 0.7, 0.5, 0.7])
 
