@@ -11,7 +11,7 @@ from html import escape
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, Protocol
 
-from squeezefilm.core.kit import style
+from squeezefilm.core.kit import read_out, style
 from squeezefilm.core.kit.numbers import printable, unit_stays
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ figcaption {{ font-size: .92rem; margin-top: .5rem; max-width: 52rem; }}
 .scroll:focus-visible, summary:focus-visible {{ outline: 3px solid var(--blue); }}
 svg {{ display: block; width: 100%; height: auto; }}
 svg, .scroll img {{ min-width: 36rem; }}
+{read_out.STYLE}
 ul.verdict {{ list-style: none; margin: 0; padding: 0; }}
 ul.verdict li {{ display: flex; gap: .9rem; padding: .55rem .8rem; margin: .5rem 0;
   border-left: .4rem solid; }}

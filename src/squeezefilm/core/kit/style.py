@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from squeezefilm.core.kit.numbers import unit_stays
+from squeezefilm.core.kit.read_out import read_outs
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -339,6 +340,7 @@ def svg(figure: Figure, prefix: str, label: str) -> str:
         renderer = drawn_by(*figure.bbox.size, stream, image_dpi=dots)
         canvas.get_renderer = lambda: renderer
         figure.draw(renderer)
+        spots = read_outs(figure)
         renderer.finalize()
     text = stream.getvalue()
     text = text[text.index("<svg") :]
@@ -354,7 +356,7 @@ def svg(figure: Figure, prefix: str, label: str) -> str:
         text = text.replace(light, f"var(--{role})")
     box = re.search(r'viewBox="([^"]*)"', text)
     assert box is not None, "matplotlib's SVG has a viewBox"
-    body = text[text.index(">") + 1 :]
+    body = text[text.index(">") + 1 :].replace("</svg>", f"{spots}</svg>")
     return f'<svg viewBox="{box[1]}" role="img" aria-label="{escape(label)}">{body}'
 
 

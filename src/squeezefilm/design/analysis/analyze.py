@@ -25,6 +25,7 @@ from squeezefilm.physics.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.physics.uncertainty.uncertainty import (
     SAMPLES,
     interval_or_reason,
+    require_samples,
 )
 
 # What the interval takes (s), measured on the presets; a budget without room for it leaves it out.
@@ -67,6 +68,8 @@ def analyze(
         si.require("budget", budget, si.Unit("s"), above=0)
     if sensitivities is not None:
         si.require_one_of("sensitivities", sensitivities, get_args(Effort))
+    if samples:
+        require_samples(samples)
     tell = progress or (lambda _: None)
     deadline = Pace(budget).deadline()
     tell("resonance, amplitude and friction")

@@ -34,6 +34,7 @@ from squeezefilm.physics.uncertainty.uncertainty import (
     SAMPLES,
     UncertainFriction,
     interval_or_reason,
+    require_samples,
 )
 
 
@@ -173,6 +174,8 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
     no power of two.
     """
     tell, display = asked.progress or (lambda _: None), asked.display
+    if asked.samples:
+        require_samples(asked.samples)
     if asked.ambient_pressure is not None:
         gas = display.gas.at_pressure(asked.ambient_pressure)
         display = dataclasses.replace(display, gas=gas)

@@ -17,8 +17,7 @@ from squeezefilm.core.kept.computed_by import computed_by
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.design.sweep.tasks import A, K, Lost, computed, grouped, tried_again
 
-_LOOK: si.Second = 0.02
-"""Time between two looks for answers."""
+_LOOK: si.Second = 0.02  # between two looks for answers
 _ANSWERS: si.Second = 20.0
 _PATIENCE: si.Second = 120.0
 """Longest silence of a scheduler, and longest wait for the first worker of a cluster."""

@@ -142,6 +142,15 @@ class UncertainFriction:
         }
 
 
+def require_samples(samples: int) -> None:
+    """Raise `InputError` for base samples that are no power of two from 8 to 65 536."""
+    if samples < 8 or samples > 65536 or samples & (samples - 1):
+        raise InputError(
+            f"samples = {samples} cannot be used: take a power of two from 8 to 65536, like 128",
+            quantity="samples",
+        )
+
+
 def uncertain_friction(
     display: Display,
     prediction: Prediction,
@@ -161,10 +170,7 @@ def uncertain_friction(
     Raises `InputError` for `samples` that are no power of two, `OutOfRangeError` where more than
     2 % of the draws have no friction or the drive does not bend the plate.
     """
-    if samples < 8 or samples > 65536 or samples & (samples - 1):
-        raise InputError(
-            f"samples = {samples} cannot be used: take a power of two from 8 to 65536, like 128"
-        )
+    require_samples(samples)
     require_bent(display, prediction)
     mixture = mixture_of(display, prediction)
     count = POINTS * samples

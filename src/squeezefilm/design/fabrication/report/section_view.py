@@ -35,9 +35,9 @@ class Cut:
 
 
 @si.checked_numbers
-def stretch_for(height: si.Metre, scale: si.Dimensionless, room: float = 34.0) -> int:
-    """Factor by which thicknesses are drawn larger so that a height (m) fits the room (mm)."""
-    fits = (stretch for stretch in _STRETCHES if 1e3 * height * scale * stretch <= room)
+def stretch_for(height: si.Metre, scale: si.Dimensionless) -> int:
+    """Factor by which thicknesses are drawn larger so that a height (m) fits 34 mm."""
+    fits = (stretch for stretch in _STRETCHES if 1e3 * height * scale * stretch <= 34.0)
     return next(fits, 1)
 
 
