@@ -382,6 +382,7 @@ if TYPE_CHECKING:
         amplitude_per_pickup: MetrePerVolt | str | None = ...,
         bench_only: bool = ...,
         hold: bool = ...,
+        sweep: str | Path | None = ...,
         out: str | Path | None = ...,
         seed: int = ...,
         show: Callable[[PlayView], None] | None = ...,

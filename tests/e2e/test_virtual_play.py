@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 from squeezefilm.instruments.bench.played_session import PlayedSession, judge_session
 from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
+from squeezefilm.instruments.control.gains import identified_plate
 from squeezefilm.instruments.session.play import simulated as bench
 from squeezefilm.instruments.session.play.plan import Ending
 from squeezefilm.instruments.session.play.player import Player
@@ -68,11 +70,19 @@ def played(
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("swept", [False, True])
 def test_loops_hold_what_is_played_and_the_record_says_how(
-    display: Display, point: WorkingPoint, tmp_path: Path
+    display: Display, point: WorkingPoint, tmp_path: Path, swept: bool
 ) -> None:
-    """A grating under a finger: the plate is searched for, locked, and stays so."""
+    """A grating under a finger: the plate is searched for, locked, and stays so, with gains of the
+    plate as predicted and of one that was swept, with noise."""
     known = KnownDevice(amplitude_per_pickup=1 / settings().pickup.sensitivity)
+    if swept:
+        free = point.identified(settings())
+        f = free.frequency + free.half_bandwidth * np.linspace(-4, 4, 81)
+        response = free.ratio / (1 + 1j * np.linspace(-4, 4, 81))
+        disturbed = response + 0.005 * free.ratio * np.random.default_rng(1).standard_normal(81)
+        known = dataclasses.replace(known, identified=identified_plate(f, disturbed))
     setup = play_setup(display, load_texture("biet2008-square-4mm"), device=known, hold=True)
     assert setup.plan.hold is not None
     # What is played is compensated for the loops' slowness, and not for the plate's.

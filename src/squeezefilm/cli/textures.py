@@ -170,6 +170,7 @@ class PlayOptions:
     hold: Annotated[
         bool, typer.Option("--hold", help="The device's loops hold resonance and amplitude.")
     ] = False
+    sweep: Annotated[Path | None, typer.Option(help="Sweep of its pickup, for --hold.")] = None
     out: Annotated[
         Path | None, written_to("Folder for the record, numbers, figures and a page.")
     ] = None

@@ -9,7 +9,7 @@ import contextlib
 import tempfile
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -20,6 +20,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.formats.traces import table_from_csv
 from squeezefilm.core.hard_limits import TABLE_BYTES
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.regular_file import read_regular_text
@@ -30,6 +31,7 @@ from squeezefilm.instruments.bench.conversation import Conversation
 from squeezefilm.instruments.bench.loop_check import check_loop, waited_time
 from squeezefilm.instruments.bench.played_session import PlayedSession, judge_session, tile_summary
 from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
+from squeezefilm.instruments.control.gains import IdentifiedPlate, identified_plate
 from squeezefilm.instruments.device.ports import ReplaySensor
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.play.plan import PlayView
@@ -102,6 +104,7 @@ class PlayRequest:
     amplitude_per_pickup: si.MetrePerVolt | None = None
     bench_only: bool = False
     hold: bool = False
+    sweep: str | Path | None = None
     out: str | Path | None = None
     seed: int = 0
     show: Callable[[PlayView], None] | None = None
@@ -131,6 +134,8 @@ def play_texture(asked: PlayRequest) -> PlayResult:
         bench_only: whether a drive that does not stop by itself may be used.
         hold: whether the device's loops shall hold resonance and amplitude; one that has none
             plays without, and the outcome says so.
+        sweep: a CSV of what its free plate's pickup shows, for `hold`: frequency_Hz, drive_V,
+            pickup_in_phase_V, pickup_ahead_V; without, the plate is held as predicted.
         out: where the record (trace.sqft) and a twin's truth (truth.csv) go; thrown away without.
         seed: of the twin's noise.
         show: is told what there is to see.
@@ -152,6 +157,10 @@ def play_texture(asked: PlayRequest) -> PlayResult:
     device = KnownDevice(eyes, asked.amplitude_per_pickup)
     if asked.drive == "twin":
         device = KnownDevice(eyes, 1 / pickup.sensitivity, _way(display, asked.stroke), twin=True)
+    if asked.sweep is not None:
+        if not asked.hold:
+            raise InputError("a sweep is for loops that hold the plate; add hold", quantity="sweep")
+        device = replace(device, identified=_identified(asked.sweep))
     kept = None if asked.out is None else Path(asked.out)
     if kept is not None and (kept / TRACE_NAME).exists():
         raise InputError(
@@ -175,6 +184,16 @@ def play_texture(asked: PlayRequest) -> PlayResult:
         tell(JUDGING)
         judged = judge_session(setup, read_trace(outcome.trace), truth)
     return PlayResult(outcome, judged, kept)
+
+
+def _identified(sweep: str | Path) -> tuple[IdentifiedPlate, si.Volt]:
+    """The plate by a sweep's file, and the noise of each quadrature of its pickup (V)."""
+    table = table_from_csv(Path(sweep))
+    names = ("drive_V", "pickup_in_phase_V", "pickup_ahead_V")
+    drive, in_phase, ahead = (table.column(name) for name in names)
+    response = np.asarray((in_phase + 1j * ahead) / drive, dtype=np.complex128)
+    plate, noise = identified_plate(table.column("frequency_Hz"), response)
+    return plate, noise * float(np.sqrt(np.mean(drive**2)))
 
 
 def _way(display: Display, stroke: str) -> tuple[si.Metre, si.Metre]:

@@ -46,12 +46,15 @@ class KnownDevice:
         amplitude_per_pickup: of its pickup (m/V), if known.
         way: x that a tile covers (m), from and to; 0 to 10 cm, or what 512 amplitudes span.
         twin: whether it is a twin, where an assumed insulation counts.
+        identified: its plate by a sweep, and the noise of each quadrature of its pickup (V); as
+            predicted, and assumed, without.
     """
 
     sensor: SensorModel = LVDT_10_KHZ
     amplitude_per_pickup: si.MetrePerVolt | None = None
     way: tuple[si.Metre, si.Metre] | None = None
     twin: bool = False
+    identified: tuple[IdentifiedPlate, si.Volt] | None = None
 
 
 _NOTHING_KNOWN = KnownDevice()
@@ -137,7 +140,7 @@ def play_setup(
     tau = float(envelope_time_constant(loaded.quality_factor, loaded.resonance_frequency))
     held, per_volt = None, largest / p.voltage
     if hold:
-        held, per_volt = _held(p, device, limits), p.mode.amplitude_per_volt
+        held, per_volt = _held(p, device, limits)
         tau = held[1].amplitude_time
     loop = LoopPlan(
         program=lowered(texture, p, p.inverse),
@@ -165,28 +168,29 @@ def play_setup(
     return PlaySetup(display, texture, p, p.inverse, device.sensor, plan, assumed)
 
 
-def _held(p: Prediction, device: KnownDevice, limits: Limits) -> tuple[IdentifiedPlate, LoopAims]:
-    """The free plate as predicted, and aims within the limits; the search begins just above it."""
+def _held(
+    p: Prediction, device: KnownDevice, limits: Limits
+) -> tuple[tuple[IdentifiedPlate, LoopAims], si.MetrePerVolt]:
+    """The free plate as identified or predicted, aims within the limits, and its amplitude per
+    volt (m/V); the search begins just above it."""
     if device.amplitude_per_pickup is None:
         raise InputError(
             "to hold its amplitude a device needs a pickup that is known; give "
             "amplitude_per_pickup, or do not hold",
             quantity="amplitude_per_pickup",
         )
-    mode = p.mode
-    plate = IdentifiedPlate(
-        mode.resonance_frequency,
-        mode.quality_factor,
-        mode.amplitude_per_volt / device.amplitude_per_pickup,
-    )
+    mode, per_pickup = p.mode, device.amplitude_per_pickup
+    ratio = mode.amplitude_per_volt / per_pickup
+    predicted = IdentifiedPlate(mode.resonance_frequency, mode.quality_factor, ratio)
+    plate, noise = device.identified or (predicted, _PICKUP_NOISE)
     aims = LoopAims(
         limits.lowest_frequency,
         min(limits.highest_frequency, plate.frequency + _SEARCHED * plate.half_bandwidth),
         limits.voltage,
         _SEARCH_SHARE * limits.voltage,
-        noise=_PICKUP_NOISE,
+        noise=noise,
     )
-    return plate, aims
+    return (plate, aims), plate.ratio * per_pickup
 
 
 def _tile(loop: LoopPlan, way: tuple[si.Metre, si.Metre] | None, p: Prediction) -> TextureTile:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
+from scipy.optimize import least_squares
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
@@ -18,6 +19,7 @@ _TURN = 1 << 32
 _SWEEP_STEPS = 3  # of a half-bandwidth while the plate answers, in time constants
 _FASTEST_SWEEP = 20e3  # Hz/s
 _JITTER = 0.2  # of a half-bandwidth; noise moves the frequency by half of that at most
+_MOST_LEFT = 0.1  # of a sweep's peak
 _MOST_SOFT = 16.0  # V, what the step can square
 
 
@@ -140,6 +142,65 @@ def calibrated_phase(
     slope, offset = np.polyfit(frequency - middle, whole, 1)
     rest = whole - offset - slope * (frequency - middle)
     return middle, float(offset), float(-slope / (2 * math.pi)), float(np.abs(rest).max())
+
+
+@si.checked_numbers
+def identified_plate(
+    frequency: si.HertzArray, response: si.ComplexArray
+) -> tuple[IdentifiedPlate, si.Dimensionless]:
+    """What a sweep of a free plate says of it, and the noise of each quadrature of `response` (1).
+
+    `response` is the pickup's complex amplitude over the drive's (V/V) at each `frequency` (Hz),
+    both shape (n,), n ≥ 8: one resonance, K e^{i(φ − 2π τ (f − f0))}/(1 + i δ), by least squares,
+    with δ in half-bandwidths. Raises `InputError` for other shapes, a resonance at the sweep's end,
+    and a response that is no single resonance (more than a tenth of K is left, RMS).
+    """
+    size = np.abs(response)
+    if frequency.ndim != 1 or frequency.shape != response.shape or frequency.size < 8:
+        raise InputError(
+            f"a sweep needs one response at each of at least eight frequencies; the shapes are "
+            f"{response.shape} and {frequency.shape}",
+            quantity="response",
+        )
+    order = np.argsort(frequency)
+    f, h, top = frequency[order], response[order], int(np.argmax(size[order]))
+    if top in (0, f.size - 1):
+        raise InputError(
+            f"the response is largest at the sweep's end, {f[top]:g} Hz; sweep over the resonance",
+            quantity="frequency",
+        )
+    wide = f[np.abs(h) > abs(h[top]) / math.sqrt(2)]
+    half = max(float(np.ptp(wide)), float(f[top + 1] - f[top - 1])) / 2
+    middle, phase, delay, _ = calibrated_phase(f, np.angle(h * (1 + 1j * (f - f[top]) / half)))
+    phase -= 2 * math.pi * delay * (f[top] - middle)
+
+    def model(p: si.FloatArray) -> si.ComplexArray:
+        off = (f - f[top]) / half - p[0]
+        turned = np.exp(1j * (p[3] - p[4] * off))
+        return np.asarray(p[2] * turned / (1 + 1j * off * np.exp(p[1])))
+
+    def left(p: si.FloatArray) -> si.FloatArray:
+        rest = (model(p) - h) / abs(h[top])
+        return np.concatenate([rest.real, rest.imag])
+
+    start = [0.0, 0.0, abs(h[top]), phase, 2 * math.pi * delay * half]
+    fit = least_squares(left, start, x_scale=[1.0, 1.0, abs(h[top]), 1.0, 1.0])
+    noise = math.sqrt(2 * fit.cost / (2 * f.size - 5))
+    if noise > _MOST_LEFT:
+        raise InputError(
+            f"the response is no single resonance: {100 * noise:.0f} % of its peak is left, and "
+            f"at most {100 * _MOST_LEFT:g} % may be; sweep nearer to it, or with more voltage",
+            quantity="response",
+        )
+    resonance = float(f[top] + half * fit.x[0])
+    plate = IdentifiedPlate(
+        resonance,
+        resonance / (2 * half * math.exp(-fit.x[1])),
+        float(fit.x[2]),
+        float(fit.x[3]),
+        max(float(fit.x[4]) / (2 * math.pi * half), 0.0),
+    )
+    return plate, noise * float(abs(h[top]))
 
 
 @si.checked_numbers

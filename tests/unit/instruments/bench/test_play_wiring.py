@@ -189,6 +189,29 @@ def test_a_drive_that_is_none_is_refused_and_a_port_is_passed_on() -> None:
         pass
 
 
+def test_a_sweep_of_the_pickup_is_what_the_loops_are_told(bench: Bench, tmp_path: Path) -> None:
+    """A plate of Q 120 at 29.9 kHz, swept at 2 V, with 1 % of noise."""
+    f = np.linspace(29.4e3, 30.4e3, 60)
+    random = np.random.default_rng(3)
+    noise = 1e-4 * (random.standard_normal(60) + 1j * random.standard_normal(60))
+    pickup = 2.0 * (0.005 * np.exp(0.7j) / (1 + 1j * (f - 29.9e3) / (29.9e3 / 240))) + noise
+    rows = np.stack([f, np.full(60, 2.0), pickup.real, pickup.imag], axis=1)
+    file = tmp_path / "sweep.csv"
+    names = "frequency_Hz,drive_V,pickup_in_phase_V,pickup_ahead_V"
+    np.savetxt(file, rows, delimiter=",", header=names, comments="")
+    play_texture(DISPLAY, TEXTURE, hold=True, sweep=file)
+    plate, volts = bench.setup[-1]["identified"]
+    assert plate.frequency == pytest.approx(29.9e3, abs=2.0)
+    assert plate.quality_factor == pytest.approx(120.0, rel=0.02)
+    assert plate.ratio == pytest.approx(0.005, rel=0.02)
+    assert plate.phase == pytest.approx(0.7, abs=0.02)
+    assert volts == pytest.approx(1e-4, rel=0.2)
+    play_texture(DISPLAY, TEXTURE, hold=True)
+    assert bench.setup[-1]["identified"] is None
+    with pytest.raises(InputError, match="a sweep is for loops"):
+        play_texture(DISPLAY, TEXTURE, sweep=file)
+
+
 def test_a_twins_process_gets_its_settings_by_file(monkeypatch: pytest.MonkeyPatch) -> None:
     from squeezefilm.instruments.twin.settings import load_settings
 
