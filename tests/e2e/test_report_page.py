@@ -60,6 +60,22 @@ def test_the_page_is_quiet_whole_and_fits(
     page.close()
 
 
+def test_the_cursor_reads_the_values_of_a_line(browser: Browser, report: Path) -> None:
+    page = browser.new_page(viewport={"width": 1280, "height": 900})
+    page.goto(report.as_uri())
+    page.evaluate(OPEN)
+    spots = page.locator("#figure-band g.read")
+    spot = spots.nth(spots.count() // 2)
+    text = spot.locator("text")
+    assert not text.is_visible()
+    spot.locator("circle").hover(force=True)
+    assert text.is_visible()
+    assert re.fullmatch(
+        r"vibration amplitude.*: [\d.]+, relative friction.*: [\d.]+", text.inner_html()
+    )
+    page.close()
+
+
 def test_a_narrow_window_scrolls_figures_and_not_the_page(browser: Browser, report: Path) -> None:
     page = browser.new_page(viewport={"width": 400, "height": 800})
     page.goto(report.as_uri())
