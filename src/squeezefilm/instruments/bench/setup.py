@@ -33,7 +33,8 @@ _FINEST_PITCH: si.Metre = 1e-6
 _SEARCHED, _SEARCH_SHARE = 8.0, 0.1
 """Half-bandwidths above the resonance from which a search comes; of the voltage in it."""
 _PICKUP_NOISE: si.Volt = 1e-3
-"""Noise of each quadrature in a tick (assumed); the loops learn less at amplitudes near it."""
+"""Noise of each quadrature in a tick (assumed); the loops learn less at amplitudes near it. A sweep
+that averages over more than a tick shows less, which is not believed."""
 _LONGEST_TILE_WAY: si.Metre = 0.1
 
 
@@ -46,8 +47,8 @@ class KnownDevice:
         amplitude_per_pickup: of its pickup (m/V), if known.
         way: x that a tile covers (m), from and to; 0 to 10 cm, or what 512 amplitudes span.
         twin: whether it is a twin, where an assumed insulation counts.
-        identified: its plate by a sweep, and the noise of each quadrature of its pickup (V); as
-            predicted, and assumed, without.
+        identified: its plate by a sweep, and the noise of each quadrature of its pickup (V), where
+            that is more than is assumed; as predicted without.
     """
 
     sensor: SensorModel = LVDT_10_KHZ
@@ -182,13 +183,13 @@ def _held(
     mode, per_pickup = p.mode, device.amplitude_per_pickup
     ratio = mode.amplitude_per_volt / per_pickup
     predicted = IdentifiedPlate(mode.resonance_frequency, mode.quality_factor, ratio)
-    plate, noise = device.identified or (predicted, _PICKUP_NOISE)
+    plate, noise = device.identified or (predicted, 0.0)
     aims = LoopAims(
         limits.lowest_frequency,
         min(limits.highest_frequency, plate.frequency + _SEARCHED * plate.half_bandwidth),
         limits.voltage,
         _SEARCH_SHARE * limits.voltage,
-        noise=noise,
+        noise=max(noise, _PICKUP_NOISE),
     )
     return (plate, aims), plate.ratio * per_pickup
 
