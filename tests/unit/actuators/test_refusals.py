@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.actuators.described import actuator_kind, load_actuator
-from squeezefilm.actuators.motor.description import MotorDescription
+from squeezefilm.actuators.motor.description import MotorDescription, preset_motor
 from squeezefilm.actuators.skin_stretch.array import held_forces
 from squeezefilm.actuators.skin_stretch.bimorph import MOST_SLENDER, solid_bender
 from squeezefilm.actuators.skin_stretch.elastic_layer import together
@@ -65,3 +65,10 @@ def test_a_voltage_against_the_poling_has_its_limit() -> None:
             actuator.require_voltage(volts)
         field = 1.01 * actuator.depolarising_field / 1e6
         assert f"puts {field:.3g} kV/mm on a" in str(refused.value)
+
+
+def test_a_preset_of_a_motor_is_the_described_one() -> None:
+    found = preset_motor("biet2008-motor")
+    described: Any = load_actuator("biet2008-motor")
+    assert found.motor == described.motor
+    assert found.name == "biet2008-motor"

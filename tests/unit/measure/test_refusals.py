@@ -13,7 +13,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.measure.calibration.blind import Predicted, _scored, predict_blind
 from squeezefilm.measure.fits.ceramic.constants import compliances
 from squeezefilm.measure.fits.circuit.branches import poles
-from squeezefilm.measure.fits.estimate import Observation
+from squeezefilm.measure.fits.estimate import Estimate, Observation
 from squeezefilm.measure.fits.friction.friction_bench import _straight
 from squeezefilm.measure.fits.least_squares import fit_nonlinear
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
@@ -98,3 +98,7 @@ def test_a_smoothed_line_is_the_cubic_that_it_was() -> None:
     gap = (x < 30e-3) | (x > 50e-3)
     places, _ = LinePoints(x[gap], cubic(x[gap]), 10e-3)._smooth
     assert not np.any((places > 34e-3) & (places < 46e-3))
+
+
+def test_an_estimate_is_told_with_its_error_in_its_own_unit() -> None:
+    assert str(Estimate(33214.56, 12.3, (33190.0, 33239.0), "Hz")) == "33.2146 kHz ± 12 Hz"

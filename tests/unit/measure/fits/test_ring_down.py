@@ -5,7 +5,13 @@ import pytest
 from tests.made_bench.duffing import SofteningResonance
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.vibration.ring_down import _strongest_line, fit_ring_down
+from squeezefilm.measure.fits.least_squares import fit_separable
+from squeezefilm.measure.fits.vibration.ring_down import (
+    _Bent,
+    _Decay,
+    _strongest_line,
+    fit_ring_down,
+)
 from squeezefilm.measure.recordings.kinds import RingDown
 
 T = np.arange(1500) / 500e3
@@ -82,3 +88,16 @@ def test_the_first_guess_lies_between_the_lines_of_the_spectrum(between: float) 
     frequency = (40 + between) * spacing
     found = _strongest_line(t, np.sin(2 * np.pi * frequency * t))
     assert found == pytest.approx(frequency, abs=0.05 * spacing)
+
+
+def test_the_chance_of_a_bend_is_that_of_two_numbers_more() -> None:
+    """The F distribution of 2 and ν degrees of freedom in closed form: (after/before)^(ν/2)."""
+    decay_of = _Decay(T, decay(noise=0.05) / A)
+    reach = np.array([decay_of.wide, 30.0 * decay_of.rate])
+    straight = fit_separable(decay_of.columns, decay_of.w, decay_of.start, reach=reach)
+    bent = _Bent.of(decay_of, straight)
+    before, after = (np.sum(row**2) for row in (straight.residual, bent.fit.residual))
+    assert after < before
+    assert bent.fit.freedom == T.size - 8
+    assert bent.chance == pytest.approx((after / before) ** (bent.fit.freedom / 2), rel=1e-6)
+    assert bent.model - decay_of.w == pytest.approx(bent.fit.residual)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +22,7 @@ from squeezefilm.study.tasks.by_condition import comparisons, false_alarms
 from squeezefilm.study.tasks.findings import TaskAnalysis
 from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions
 from squeezefilm.study.tasks.methods import methods_text
-from squeezefilm.study.tasks.on_grid import on_grid
+from squeezefilm.study.tasks.on_grid import PeopleOnGrid, on_grid
 
 SHARP = Person(0.02, 0.9, 0.0)
 
@@ -257,3 +259,25 @@ def test_people_without_a_line_are_counted() -> None:
     lenient = dataclasses.replace(few.design, exclusion=None)
     (found,) = analyze_answers(dataclasses.replace(few, design=lenient), "few").values()
     assert any(note.startswith("1 person has no line of their own") for note in found.notes)
+
+
+def test_a_persons_interval_holds_the_middle_of_the_posterior() -> None:
+    """Two rows of likelihood, for two lapse rates, weighed 3 to 1; cells of unlike widths."""
+    edges = np.array([-3.0, -2.0, -1.0, 0.0, 2.0])
+    flat = np.diff(edges)
+    one = np.array([[0.0, 0.4, 0.2, 0.0], [0.0, 0.0, 0.8, 0.0]])
+    edge = np.array([[1.0, 0.2, 0.1, 0.0]] * 2)
+    people = PeopleOnGrid(
+        ["a", "b"], edges, flat, [one, edge], [0.0] * 2, [0.0] * 2, [40, 41], [1.0] * 2
+    )
+    weighed: Any = SimpleNamespace(lapses=lambda: np.array([0.75, 0.25]))
+    vars(people)["population"] = weighed
+    first, second = people.estimates(0.8)
+    # 0.3 and 0.35 in the second and the third cell, nothing beside them.
+    for value, share in ((first.estimate.value, 0.5), (first.estimate.low, 0.1),
+                         (first.estimate.high, 0.9)):  # fmt: skip
+        below = share * 0.65
+        at = -2.0 + below / 0.3 if below < 0.3 else -1.0 + (below - 0.3) / 0.35
+        assert math.log(value) == pytest.approx(at)
+    assert (first.person, first.trials, first.unbounded) == ("a", 40, False)
+    assert (second.person, second.trials, second.unbounded) == ("b", 41, True)
