@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import write_whole
 from squeezefilm.study.design.plan import StudyPlan
 from squeezefilm.study.design.trials import Trial
-from squeezefilm.study.record.tables import COLUMNS, Cell, Column, csv_text, surface_cells
+from squeezefilm.study.record.tables import COLUMNS, SURFACES, Cell, Column, csv_text, surface_cells
 
 _OWN = (
     Column("reference_first", "Whether a series presents the reference first", kind="truth"),
@@ -17,14 +18,12 @@ _OWN = (
     Column("pause_s", "Rest before the trial", "s", "number"),
 )
 _KNOWN = {column.name: column for column in (*COLUMNS, *_OWN)}
-_SURFACE = ("period_m", "friction_depth", "second_period_m", "surface", "surface_sha256")
 ORDER_COLUMNS = tuple(
     _KNOWN[name]
     for name in (
         *("participant_number", "trial", "display", "block", "phase"),
-        *("stimulus", *(f"stimulus_{key}" for key in _SURFACE)),
-        *("second_stimulus", *(f"second_stimulus_{key}" for key in _SURFACE)),
-        *("third_stimulus", "adaptive_series", "reference_first", "alternatives", "answer"),
+        *(name for name in _KNOWN if name.startswith(SURFACES)),
+        *("adaptive_series", "reference_first", "alternatives", "answer"),
         *("pause_s", "seed"),
     )
 )
@@ -70,8 +69,7 @@ def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
         "pause_s": trial.pause,
         "seed": trial.seed,
     }
-    *names, row["third_stimulus"] = (*trial.stimuli, "", "", "")[:3]
-    for prefix, name in zip(("stimulus", "second_stimulus"), names, strict=True):
+    for prefix, name in itertools.zip_longest(SURFACES, trial.stimuli, fillvalue=""):
         felt = trial.phase == "familiarisation" and name in gratings
         surface = gratings[name] if felt else (design.stimulus(name) if name else None)
         row[prefix] = name

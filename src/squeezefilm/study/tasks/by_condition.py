@@ -56,10 +56,11 @@ def condition_findings(
     findings = []
     for surface in sorted(np.unique(other), key=lambda k: -math.inf if k < 0 else main.values[k]):
         rows = other == surface
-        is_same = surface < 0
-        name = "the same" if is_same else main.surfaces[surface].name
-        value = main.design.reference_value if is_same else float(main.values[surface])
-        d = None if is_same else _d_prime(main, rows, level, seed)
+        name, value = "the same", main.design.reference_value
+        if surface >= 0:
+            name, value = main.surfaces[surface].name, float(main.values[surface])
+        is_other = surface >= 0 and name != main.design.reference
+        d = _d_prime(main, rows, level, seed) if is_other else None
         findings.append(_finding(main, name, value, rows, hit, level, d))
     return tuple(findings)
 

@@ -66,7 +66,7 @@ def _stimuli(design: StudyDesign) -> str:
         for stimulus in design.stimuli
         if not design.adaptive or stimulus.name == design.reference
     ]
-    simple = all(one.kind in ("square grating", "sine grating", "constant") for one in every)
+    simple = all(one.kind in ("square grating", "sine grating") for one in every)
     listed = []
     for stimulus in every:
         period, depth = si.format_quantity(stimulus.period, si.Unit("m")), _depth(stimulus)

@@ -122,7 +122,8 @@ def on_grid(main: Answers, tell: Callable[[str], None] = lambda _: None) -> Peop
         found = logs(places, k, n)
         greatest = float(found.max())
         whole = np.exp(found - greatest)
-        total = whole.sum()
+        likely = whole * prior.mean(axis=0)[:, None, None]
+        likely /= likely.sum()
         people.names.append(main.people[person])
         people.likelihood.append(prior @ whole.mean(axis=1))
         anyhow = _anyhow(model, float(k.sum()), float(n.sum()), greatest)
@@ -130,8 +131,8 @@ def on_grid(main: Answers, tell: Callable[[str], None] = lambda _: None) -> Peop
             mixed_up = np.exp(np.minimum(logs(places, n - k, n) - greatest, _MOST))
             anyhow = 0.5 * anyhow + 0.5 * float((prior[1] @ mixed_up.mean(axis=1)).mean())
         people.otherwise.append(anyhow)
-        people.bias.append(float(whole.sum(axis=(0, 2)) @ criteria / total))
-        people.lapse.append(float(whole.sum(axis=(1, 2)) @ LAPSES / total))
+        people.bias.append(float(likely.sum(axis=(0, 2)) @ criteria))
+        people.lapse.append(float(likely.sum(axis=(1, 2)) @ LAPSES))
         people.trials.append(int(mine.sum()))
     return people
 

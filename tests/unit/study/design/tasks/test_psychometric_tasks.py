@@ -236,3 +236,11 @@ def _preset(name: str) -> Path:
     from squeezefilm.core import presets
 
     return Path(str(presets.resolve_study(name)))
+
+
+def test_a_flat_surface_is_described_by_its_name_and_has_no_d_prime() -> None:
+    found = analysed(made_up(DEPTHS, 2, 0.02, 0.03, 4))
+    assert "“flat” (constant" in found.methods
+    assert "nan" not in found.methods
+    assert found.conditions[0].name == "flat"
+    assert found.conditions[0].d_prime is None
