@@ -58,8 +58,8 @@ _FAILED = re.compile(r"^(?:FAILED|ERROR) (.+)$", re.MULTILINE)
 
 @dataclass(frozen=True)
 class Answer:
-    """What tests said: passed, failed, empty (nothing to run), or slow (cut off), and in how many
-    seconds of processor time."""
+    """What tests said: passed, failed, empty (nothing to run), or slow (cut off), by which of them
+    (empty where that is not known, as after a crash), and in how many seconds of processor time."""
 
     said: str
     test: str
@@ -146,7 +146,7 @@ class Copy:
         }
         command = [sys.executable, "-m", "pytest", "-x", "-q", "-rfE", "-p", "no:cacheprovider"]
         command += ["-p", "tests.costs", "--within", str(budget), "-m", MARKS[marks], *tests]
-        test = tests[0] if len(tests) == 1 else f"{tests[0]} and {len(tests) - 1} others"
+        test = ""
         started, limit = processor_time(), round(_CUT_OFF * budget)
         limits = resource.RLIMIT_CPU, (limit, limit)
         with tempfile.TemporaryFile() as output:
@@ -322,7 +322,7 @@ class Trial:
         answer = self._copy.ask(tests, marks, self._budgets[marks], mutant)
         if answer.said not in ("failed", "slow"):
             return None
-        suspect = [answer.test] if answer.said == "failed" else tests
+        suspect = [answer.test] if answer.test else tests
         return answer if self._passes(suspect, marks, mutant) else None
 
     def run(self, mutant: Mutant) -> dict[str, Any]:
@@ -414,7 +414,11 @@ def main() -> None:
             break
         line = trial.run(mutant)
         report.write(line)
-        end = f"noticed by {line['test']}" if line["noticed"] else f"SURVIVED ({line['said']})"
+        end = (
+            f"noticed by {line['test'] or line['said']}"
+            if line["noticed"]
+            else f"SURVIVED ({line['said']})"
+        )
         print(
             f"{number}/{len(chosen)} {mutant.id} {where(mutant)} {mutant.site.kind}: {end}",
             flush=True,

@@ -52,11 +52,15 @@ def test_a_run_finds_what_survives_and_leaves_the_source_as_it_was(
         "src/squeezefilm/__init__.py": '"""A package."""\n',
         "src/squeezefilm/core/quantities/units.py": "",
         "tests/costs.py": (ROOT / "tests" / "costs.py").read_text(),
-        "src/squeezefilm/gap.py": "def half(a: int) -> float:\n    b = a + 0\n    return b / 2\n",
+        "src/squeezefilm/gap.py": "def half(a: int) -> float:\n    b = a + 0\n    return b / 2\n"
+        "\n\ndef seven() -> int:\n    return 7\n",
         # What a failing test logged stands as ERROR before the summary.
-        "tests/unit/test_gap.py": "import logging\nfrom squeezefilm.gap import half\n\n\n"
+        "tests/unit/test_gap.py": "import logging\nimport os\n"
+        "from squeezefilm.gap import half, seven\n\n\n"
         "def test_half():\n    logging.error('no test')\n    assert half(0) == 0\n"
-        "    assert half(4) == 2\n",
+        "    assert half(4) == 2\n\n\n"
+        # Nobody says which test it was that ended the process.
+        "def test_seven():\n    seven() == 7 or os._exit(9)\n",
     }
     for name, text in files.items():
         (root / name).parent.mkdir(parents=True, exist_ok=True)
@@ -67,7 +71,7 @@ def test_a_run_finds_what_survives_and_leaves_the_source_as_it_was(
     answers, work = tmp_path / "answers.jsonl", tmp_path / "work"
     monkeypatch.setattr(mutants, "ROOT", root)
     words = ["--file", str(answers), "--work", str(work)]
-    monkeypatch.setattr(sys, "argv", ["mutants.py", *words, "--count", "9"])
+    monkeypatch.setattr(sys, "argv", ["mutants.py", *words, "--count", "12"])
     mutants.main()
     lines = [json.loads(line) for line in answers.read_text().splitlines()]
     found = {(line["before"], line["after"]): line for line in lines if line["type"] == "mutant"}
@@ -75,8 +79,10 @@ def test_a_run_finds_what_survives_and_leaves_the_source_as_it_was(
     assert found["/", "*"]["test"] == "tests/unit/test_gap.py::test_half"
     assert found["2", "3"]["noticed"]
     assert found["0", "1"]["noticed"]
+    assert found["7", "8"]["noticed"]
+    assert found["7", "8"]["test"] == ""
     assert not found["+", "-"]["noticed"]  # a + 0 is a - 0
-    assert "noticed, but for ties: 4 of 5" in capsys.readouterr().out
+    assert "noticed, but for ties: 6 of 7" in capsys.readouterr().out
     assert (work / "tree/src/squeezefilm/gap.py").read_text() == files["src/squeezefilm/gap.py"]
     # A second run has nothing left to ask.
     before = answers.read_text()
