@@ -190,6 +190,15 @@ def test_a_study_is_rehearsed_by_simulated_people(
         ("period-jnd", "Weber fraction"),
         ("period-same-different", "Weber fraction"),
         ("coarseness-magnitude", "Exponent"),
+        *(
+            pytest.param(design, measure, marks=pytest.mark.slow)
+            for design, measure in (
+                ("period-odd-one-out", "Weber fraction"),
+                ("period-direction", "Weber fraction"),
+                ("friction-yes-no", "Threshold"),
+                ("friction-detection", "Threshold"),
+            )
+        ),
     ],
 )
 def test_every_task_goes_from_its_plan_to_its_results(

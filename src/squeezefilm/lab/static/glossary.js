@@ -159,6 +159,7 @@ export const RESULTS = {
   information_transfer: { name: "information transfer", symbol: "I", text: "How much an answer tells of the stimulus, in bit. Few trials bias it upwards; the estimator named beside it corrects for that.", source: "Garner & Hake 1951 (10.1037/h0054482)" },
   total_sensitivity: { name: "total sensitivity", symbol: "Δ′", text: "d′ of the two outermost stimuli, summed over neighbours.", source: "Braida & Durlach 1972 (10.1121/1.1912868)" },
   weber_fraction: { name: "Weber fraction", text: "The difference, in parts of the reference, that a typical person tells in 75 % of two intervals.", source: "mixed model over people; Moscatelli et al. 2012 (10.1167/12.11.26)" },
+  threshold: { name: "threshold", text: "The amount that a typical person tells from the flat surface, or the difference from the reference, in 75 % of two intervals; d′ is then 0.954.", source: "mixed model over people; Macmillan and Creelman 2005" },
   exponent: { name: "exponent", text: "The power of the stimulus with which the numbers that people give grow.", source: "Stevens 1957 (10.1037/h0046162)" },
   drift: { name: "drift", text: "Change from a person's first trial to their last, over people: learning, or tiring.", source: "least squares for each person, t over people" },
   catch_trials: { name: "catch trials", text: "Trials whose answer is plain to whoever attends; doubtful is who missed more than somebody who gets 95 % right would.", source: "binomial test; the 95 % are assumed" },
