@@ -109,6 +109,7 @@ def test_a_known_threshold_comes_back_to_its_page(
     assert person_values(answers.main(0))[0] == measure
 
 
+@pytest.mark.slow
 def test_yes_no_agrees_with_a_probit_model_of_all_answers() -> None:
     api = pytest.importorskip("statsmodels.api")
     design = dataclasses.replace(DEPTHS, repetitions=30)
