@@ -79,6 +79,7 @@ def test_the_table_says_what_theory_says() -> None:
         assert not key.endswith(("_mm", "_ms", "_um")), key
 
 
+@pytest.mark.slow
 def test_compensation_and_sensor_change_what_they_should() -> None:
     plain = rendered(GRATING, *STATOR)
     inverse = rendered(GRATING, *STATOR, "--compensate", "inverse")
@@ -106,6 +107,7 @@ def test_what_the_display_cannot_reach_is_counted(tmp_path: Path) -> None:
     assert result["friction_rms_error"] > 0.95 * least
 
 
+@pytest.mark.slow
 def test_the_wave_is_felt_and_made_up_for() -> None:
     at = ("island-map", "--display", "winfield2007-tpad")
     done = run("render", *at, "--wave", "felt", "--stroke", "60 mm/s over 2 cm")

@@ -156,6 +156,7 @@ def test_a_device_that_was_in_fault_is_checked_all_the_same() -> None:
     assert checked(machine).passed
 
 
+@pytest.mark.slow
 def test_no_sensor_and_a_slow_link_are_told() -> None:
     assert failed(checked(Machine())) == {"finger sensor"}
     assert "round trip" in failed(checked(latency=30e-3))
@@ -166,6 +167,7 @@ def test_a_device_that_says_nothing_is_an_error() -> None:
         checked(spoil=lambda _: b"")
 
 
+@pytest.mark.slow
 def test_noise_on_the_wire_is_counted() -> None:
     count = 0
 
@@ -294,6 +296,7 @@ def test_a_sensor_that_is_not_as_believed_is_found_out(
     assert result.advice
 
 
+@pytest.mark.slow
 def test_what_no_finger_showed_is_in_doubt() -> None:
     still = checked(Machine(sensor=lambda: (1000, 0, True)))
     assert (failed(still), doubtful(still)) == (set(), {"sensor rate"})
@@ -301,6 +304,7 @@ def test_what_no_finger_showed_is_in_doubt() -> None:
     assert (failed(down), doubtful(down)) == (set(), {"sensor silence"})
 
 
+@pytest.mark.slow
 def test_a_slow_device_is_judged_by_its_own_clock() -> None:
     """An emulated one: its watchdog, readings and sensor are right, and its clock is slow."""
     for waited, fails, doubts in (
@@ -331,6 +335,7 @@ def stalls(*times: float) -> Callable[[float], float]:
     return held_up
 
 
+@pytest.mark.slow
 def test_a_host_that_fell_silent_itself_checks_again() -> None:
     """The device rightly stops it; what it asks then is refused for the wrong reason."""
     for moment in np.arange(3.2, 3.36, 0.02):
@@ -340,6 +345,7 @@ def test_a_host_that_fell_silent_itself_checks_again() -> None:
     assert doubtful(always)
 
 
+@pytest.mark.slow
 def test_no_violation_is_excused_by_a_busy_computer() -> None:
     for kind, name in BREAKS:
         check = checked(

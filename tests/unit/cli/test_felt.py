@@ -40,6 +40,7 @@ def design(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_path_in_words_is_felt_drawn_and_told(design: Path, tmp_path: Path) -> None:
     done = program(
         "study", "felt", design, "--path", STROKE, "--stimulus", "grooves", "--force", "0.6 N",

@@ -12,6 +12,7 @@ import mutants
 ROOT = Path(__file__).parents[3]
 
 
+@pytest.mark.slow
 def test_the_tests_of_a_module_come_first_then_those_that_name_it() -> None:
     nearness = mutants.Nearness(ROOT)
     files = nearness.tests("squeezefilm.physics.film.gap")

@@ -30,6 +30,7 @@ def test_a_layout_is_fitted_once_from_the_poles_of_a_sweep(monkeypatch: pytest.M
     assert {layout.branches for layout, _ in known} == {1}
 
 
+@pytest.mark.slow
 def test_a_capacitor_has_no_circuit_with_a_branch() -> None:
     capacitor = ImpedanceSweep(FREQUENCY, 2j * np.pi * FREQUENCY * 3e-9 * (1 - 0.01j))
     with pytest.raises(InputError, match="a resonance could not be found"):

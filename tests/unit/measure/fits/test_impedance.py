@@ -193,7 +193,12 @@ def test_a_wrong_phase_is_refused_with_what_to_do(turn: object, said: str) -> No
         (FREQUENCY[:9], PLAIN.admittance[:9], "at least 16"),
         (FREQUENCY[::-1], PLAIN.admittance, "do not rise"),
         (FREQUENCY, np.where(FREQUENCY > 30e3, np.nan, PLAIN.admittance), "not finite"),
-        (FREQUENCY, 2j * np.pi * FREQUENCY * 3e-9 * (1 - 0.01j), "could not be found"),
+        pytest.param(
+            FREQUENCY,
+            2j * np.pi * FREQUENCY * 3e-9 * (1 - 0.01j),
+            "could not be found",
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_what_cannot_be_fitted_is_refused(

@@ -98,6 +98,7 @@ def test_numbers_are_in_proportion_to_clear_periods() -> None:
     assert [float(one) for one in digits] == pytest.approx(main.estimate[:50].tolist())
 
 
+@pytest.mark.slow
 def test_nobody_feels_anything_and_answers_are_guesses() -> None:
     main = simulate_judgements(PERIODS, EXACT, 100, 1, tables(PERIODS, -np.inf)).main(0)
     assert main.correct.mean() == pytest.approx(0.5, abs=0.03)
@@ -105,7 +106,7 @@ def test_nobody_feels_anything_and_answers_are_guesses() -> None:
 
 @pytest.mark.parametrize(
     "design",
-    [PERIODS, pytest.param(ALIKE, marks=pytest.mark.slow), NUMBERS],
+    [*(pytest.param(design, marks=pytest.mark.slow) for design in (PERIODS, ALIKE)), NUMBERS],
     ids=lambda one: one.task,
 )
 def test_people_do_not_depend_on_how_many_there_are(design: StudyDesign) -> None:
