@@ -145,7 +145,7 @@ def test_noise(firmware: Library | Sanitized) -> None:
 
 @pytest.mark.slow
 def test_mauled_sessions(firmware: Library | Sanitized) -> None:
-    recording = mauled(10, 520_000)
+    recording = mauled(10, 540_000)
     assert firmware.record(recording) == recording.record
     assert min(recording.twin.damaged, recording.twin.accepted) > 1_000
     # With the streams above it is a million bytes.

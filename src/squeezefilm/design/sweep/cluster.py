@@ -84,13 +84,13 @@ class Cluster:
         self._require_workers()
         keys: dict[Any, K] = {}
         for group in groups:
-            # Dask gives a task to who has what it needs: here, nothing but the name of its group.
-            near = self._client.submit(len, (), pure=False) if len(group) > 1 else None
+            # Dask gives a task to who has what it needs: here, the first answer of its group.
+            first = None
             for key in group:
                 future = self._client.submit(
-                    _work, _code_here(), near, function, tasks[key], pure=False
+                    _work, _code_here(), first, function, tasks[key], pure=False
                 )
-                keys[future] = key
+                first, keys[future] = first or future, key
         # An answer is fetched as soon as it is there, so that it outlives its worker.
         coming: Any = self._dask.as_completed(
             list(keys), loop=self._client.loop, with_results=True, raise_errors=False
@@ -99,8 +99,9 @@ class Cluster:
             while keys:
                 done = coming.next_batch(block=False)
                 for future, result in done:
-                    key = keys.pop(future)
-                    yield key, self._answer(future, result)
+                    key, answer = keys.pop(future), self._answer(future, result)
+                    future.release()  # nobody does it again when its worker dies
+                    yield key, answer
                 # An answer that was on its way when the scheduler ended would never come.
                 if not done and self._client.status != "running":
                     raise self._gone()
@@ -151,8 +152,10 @@ def _code_here() -> str:
     return f"{__version__} (code {computed_by()[:8]})"
 
 
-def _work(asked_by: str, near: object, function: Callable[..., A], arguments: tuple[Any, ...]) -> A:
-    """Do one task at a worker, whose code must be that of who asks; `near` ties it to a group."""
+def _work(
+    asked_by: str, first: object, function: Callable[..., A], arguments: tuple[Any, ...]
+) -> A:
+    """Do one task at a worker, whose code must be that of who asks, after the `first` like it."""
     from distributed import get_worker
 
     worker, there = get_worker(), _code_here()

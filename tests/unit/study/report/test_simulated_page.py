@@ -100,10 +100,10 @@ def test_every_answer_is_a_row(written: tuple[Path, list[Any], list[str]]) -> No
     assert len(rows) == 9
     kept = [(*row[:6], row[10], row[12], row[13]) for row in rows]
     assert kept[1:3] == [
-        ("simulated", "0", "1", "biet2008-stator", "main", "2 mm", "4 mm", "0.0", "1.5"),
-        ("simulated", "0", "2", "biet2008-stator", "main", "4 mm", "4 mm", "1.0", "2.0"),
+        ("simulated", "0", "biet2008-stator", "1", "main", "2 mm", "4 mm", "0.0", "1.5"),
+        ("simulated", "0", "biet2008-stator", "2", "main", "4 mm", "4 mm", "1.0", "2.0"),
     ]
-    assert kept[6] == ("simulated", "1", "2", "<b>plate", "main", "2 mm", "2 mm", "1.0", "0.75")
+    assert kept[6] == ("simulated", "1", "<b>plate", "2", "main", "2 mm", "2 mm", "1.0", "0.75")
 
 
 def test_confusions_are_shares_of_a_column_with_their_counts() -> None:
