@@ -36,7 +36,7 @@ def present(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         yield
     assert not is_present()
     for child in set(multiprocessing.active_children()) - others:
-        child.join(5.0)  # it was told to end, and counts its lines when they are counted
+        child.join(30.0)  # it was told to end, and counts its lines when they are counted
     assert not set(multiprocessing.active_children()) - others
 
 
