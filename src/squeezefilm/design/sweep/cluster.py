@@ -7,7 +7,6 @@ import functools
 import logging
 import time
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
-from types import TracebackType
 from typing import Any
 
 from squeezefilm import __version__
@@ -52,12 +51,7 @@ class Cluster:
         self._tell(f"scheduler at {self._address}{where}")
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         # One that is gone is not waited for.
         with contextlib.suppress(Exception):
             self._client.close(timeout=2)
