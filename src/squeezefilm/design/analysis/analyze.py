@@ -22,10 +22,10 @@ from squeezefilm.physics.chain.wanted_voltage import WantedFriction
 from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.plate.working_mode import PlateTheory
 from squeezefilm.physics.render.resonator.envelope import envelope_bandwidth
+from squeezefilm.physics.uncertainty.drawn import require_samples
 from squeezefilm.physics.uncertainty.uncertainty import (
     SAMPLES,
     interval_or_reason,
-    require_samples,
 )
 
 # What the interval takes (s), measured on the presets; a budget without room for it leaves it out.

@@ -30,11 +30,11 @@ from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.wanted_voltage import WantedFriction
 from squeezefilm.physics.contact.sharing.pad import FrictionRipple
 from squeezefilm.physics.display import Display, NamedDisplay
+from squeezefilm.physics.uncertainty.drawn import require_samples
 from squeezefilm.physics.uncertainty.uncertainty import (
     SAMPLES,
     UncertainFriction,
     interval_or_reason,
-    require_samples,
 )
 
 

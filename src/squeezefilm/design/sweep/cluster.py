@@ -84,7 +84,8 @@ class Cluster:
                 future = self._client.submit(
                     _work, _code_here(), first, function, tasks[key], pure=False
                 )
-                first, keys[future] = first or future, key
+                first = first or future
+                keys[future] = key
         # An answer is fetched as soon as it is there, so that it outlives its worker.
         coming: Any = self._dask.as_completed(
             list(keys), loop=self._client.loop, with_results=True, raise_errors=False

@@ -19,7 +19,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.config.write import text_of
-from squeezefilm.core.errors import InputError
+from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.core.formats.traces import table_from_csv
 from squeezefilm.core.hard_limits import TABLE_BYTES
 from squeezefilm.core.progress import SayProgress
@@ -297,7 +297,10 @@ class _Truth:
             text = read_regular_text(self.file, TABLE_BYTES, "the twin's truth")
             lines = text[: text.rfind("\n")].splitlines()[1:]
             rows = np.array([line.split(",") for line in lines], dtype=float, ndmin=2)
-            if time.monotonic() > end or (lines and rows[-1, 0] >= when.max()):
+            late = time.monotonic() > end
+            if late and not lines:
+                raise DeviceError("the twin did not write where its finger was; check it again")
+            if lines and (late or rows[-1, 0] >= when.max()):
                 place: si.MetreArray = np.interp(when, rows[:, 0], rows[:, COLUMNS.index("x_m")])
                 return place
             time.sleep(0.1)

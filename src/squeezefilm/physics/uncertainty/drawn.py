@@ -1,4 +1,4 @@
-"""Many draws of a mixture, kept on disk.
+"""Many draws of a mixture, how many there may be, and kept on disk.
 
 Whoever analyses a display again, with another texture or report, asks for the same draws again.
 """
@@ -16,7 +16,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import to_json
@@ -129,3 +129,12 @@ def _drawn_now(
         except SqueezefilmError as error:
             tally.refuse(draw.heights, error)
     return found, tally
+
+
+def require_samples(samples: int) -> None:
+    """Raise `InputError` for base samples that are no power of two from 8 to 65 536."""
+    if samples < 8 or samples > 65536 or samples & (samples - 1):
+        raise InputError(
+            f"samples = {samples} cannot be used: take a power of two from 8 to 65536, like 128",
+            quantity="samples",
+        )

@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError, OutOfRangeError, SqueezefilmError
+from squeezefilm.core.errors import OutOfRangeError, SqueezefilmError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Interval, to_json
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.uncertainty.drawn import KeptDraws, evaluate
+from squeezefilm.physics.uncertainty.drawn import KeptDraws, evaluate, require_samples
 from squeezefilm.physics.uncertainty.draws import (
     Mixture,
     Outcome,
@@ -140,15 +140,6 @@ class UncertainFriction:
                 for item in self.influences
             ],
         }
-
-
-def require_samples(samples: int) -> None:
-    """Raise `InputError` for base samples that are no power of two from 8 to 65 536."""
-    if samples < 8 or samples > 65536 or samples & (samples - 1):
-        raise InputError(
-            f"samples = {samples} cannot be used: take a power of two from 8 to 65536, like 128",
-            quantity="samples",
-        )
 
 
 def uncertain_friction(

@@ -9,6 +9,7 @@ from typing import Literal
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
+from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.design.tasks.task import StudyTask
 
 MatchedWith = Literal["real gratings", "stimuli"]
@@ -125,9 +126,9 @@ def require_comparison(
             quantity="stimuli",
         )
     if is_adaptive and not task.adaptive:
+        taking = ", ".join(name for name, other in TASKS.items() if other.adaptive)
         raise InputError(
-            "adaptive series compare with a reference, in task = 'two-interval' or "
-            f"'same-different'; '{task.name}' does not",
+            f"adaptive series compare with a reference, in task = {taking}; '{task.name}' does not",
             quantity="adaptive",
         )
     if task.reference and practice and stimuli < 2:

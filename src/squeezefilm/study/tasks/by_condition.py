@@ -150,9 +150,10 @@ def _counts(main: Answers, rows: NDArray[np.bool_]) -> dict[int, tuple[int, int,
 
 def _over_trials(main: Answers, counts: Sequence[int], level: float, seed: int) -> Estimate:
     hits, signals, alarms, noises = counts
-    model = main.model.sensitivity
-    one = sensitivity(hits, signals, alarms, noises, model, level=level, seed=seed)
-    return Estimate(one.sensitivity.d_prime, *one.interval, level, "Jeffreys, over trials")
+    told = sensitivity(
+        hits, signals, alarms, noises, main.model.sensitivity, level=level, seed=seed
+    )
+    return Estimate(told.sensitivity.d_prime, *told.interval, level, "Jeffreys, over trials")
 
 
 def _is_reference(main: Answers, other: si.IntArray) -> NDArray[np.bool_]:

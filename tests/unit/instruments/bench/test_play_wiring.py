@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.core.errors import InputError
+from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.bench import play as module
 from squeezefilm.instruments.bench.play import JUDGING, PlayResult, device_stream, play_texture
 from squeezefilm.instruments.session.play.plan import Ending
@@ -251,3 +251,12 @@ def test_a_folder_that_cannot_be_made_is_said(bench: Bench, tmp_path: Path) -> N
     with pytest.raises(InputError, match="cannot make the folder"):
         play_texture(DISPLAY, TEXTURE, out=tmp_path / "file" / "inside")
     assert bench.runs == []
+
+
+def test_a_twin_that_wrote_no_truth_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "_TRUTH_LIMIT", 0.0)
+    (tmp_path / "truth.csv").write_text("time_s,x_m\n0.0")
+    with pytest.raises(DeviceError, match="did not write where its finger was"):
+        module._Truth(tmp_path / "truth.csv").place(np.array([0.1]))

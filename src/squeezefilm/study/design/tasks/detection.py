@@ -8,16 +8,12 @@ from __future__ import annotations
 
 import dataclasses
 
-import numpy as np
-
 from squeezefilm.study.design.tasks.task import FELT, POPULATION, Decision, Percepts
 from squeezefilm.study.design.tasks.two_interval import TWO_INTERVAL
 
 
 def _decides(given: Percepts) -> Decision:
-    apart = (given.level[0] - given.level[1]) / given.deviation
-    everybody = np.ones(apart.shape, dtype=bool)
-    return Decision((apart <= 0).astype(np.int64), np.exp(-np.abs(apart)), everybody)
+    return Decision.by_sign((given.level[0] - given.level[1]) / given.deviation)
 
 
 DETECTION = dataclasses.replace(

@@ -7,8 +7,6 @@ told in 75 % of the trials by somebody whose middle is the reference.
 
 from __future__ import annotations
 
-import numpy as np
-
 from squeezefilm.study.design.tasks.task import (
     CLEARER,
     POPULATION,
@@ -32,8 +30,7 @@ _QUESTIONS = {
 
 
 def _decides(given: Percepts) -> Decision:
-    apart = (given.level[0] - given.reference) / given.deviation
-    return Decision((apart <= 0).astype(np.int64), np.exp(-np.abs(apart)), given.felt[0])
+    return Decision.by_sign((given.level[0] - given.reference) / given.deviation, given.felt[0])
 
 
 DIRECTION = StudyTask(

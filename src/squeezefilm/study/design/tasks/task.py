@@ -82,6 +82,13 @@ class Decision:
     doubt: si.DimensionlessArray
     decided: NDArray[np.bool_]
 
+    @classmethod
+    def by_sign(cls, apart: si.FloatArray, decided: NDArray[np.bool_] | bool = True) -> Decision:
+        """The first answer where a difference (in deviations) is above 0, in less doubt the larger
+        it is; everybody decides, unless it is said who."""
+        who = np.broadcast_to(decided, apart.shape)
+        return cls(np.where(apart > 0, 0, 1), np.exp(-np.abs(apart)), who)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DifferenceModel:

@@ -42,8 +42,7 @@ def _right(surfaces: Sequence[Stimulus], judged: Judged) -> str:
 
 def _decides(given: Percepts) -> Decision:
     apart = (given.level[0] - given.level[1]) / (math.sqrt(2.0) * given.deviation)
-    both = given.felt[0] & given.felt[1]
-    return Decision(np.where(apart > 0, 0, 1), np.exp(-np.abs(apart)), both)
+    return Decision.by_sign(apart, given.felt[0] & given.felt[1])
 
 
 TWO_INTERVAL = StudyTask(

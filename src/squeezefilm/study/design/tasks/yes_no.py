@@ -34,9 +34,7 @@ def _right(surfaces: Sequence[Stimulus], judged: Judged) -> str:
 
 
 def _decides(given: Percepts) -> Decision:
-    above = given.level[0] / given.deviation - given.criterion
-    everybody = np.ones(above.shape, dtype=bool)
-    return Decision((above <= 0).astype(np.int64), np.exp(-np.abs(above)), everybody)
+    return Decision.by_sign(given.level[0] / given.deviation - given.criterion)
 
 
 YES_NO = StudyTask(
