@@ -17,6 +17,7 @@ from collections.abc import Iterator
 from types import SimpleNamespace
 
 import pytest
+from tests.children import children_left
 
 from squeezefilm.core import second_process as room
 from squeezefilm.core.second_process import Piece, is_present, later, second_process, values
@@ -35,9 +36,7 @@ def present(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         assert is_present()
         yield
     assert not is_present()
-    for child in set(multiprocessing.active_children()) - others:
-        child.join(30.0)  # it was told to end, and counts its lines when they are counted
-    assert not set(multiprocessing.active_children()) - others
+    assert not children_left(others)
 
 
 def elsewhere(function: object, *arguments: object) -> Piece:

@@ -1,12 +1,11 @@
 """Processes of this machine: each answers one task at a time; one that dies costs its own task."""
 
-import contextlib
 import multiprocessing
-import os
 import time
 from pathlib import Path
 
 import pytest
+from tests.children import children_left
 from tests.counted_tasks import counted, deadly, lines, refused, whose
 
 from squeezefilm.design.sweep.tasks import Lost
@@ -71,7 +70,7 @@ def test_what_a_task_raises_is_raised_and_no_process_is_left() -> None:
         with pytest.raises(ZeroDivisionError, match="by three"):
             list(pool.answers(refused, {k: (k,) for k in range(6)}))
         assert dict(pool.answers(refused, {7: (7,)})) == {7: 7}
-    assert set(multiprocessing.active_children()) <= before
+    assert not children_left(before)
 
 
 def test_no_process_is_left_where_the_asking_is_stopped(tmp_path: Path) -> None:
@@ -83,17 +82,4 @@ def test_no_process_is_left_where_the_asking_is_stopped(tmp_path: Path) -> None:
         begun = set(multiprocessing.active_children()) - before
         assert len(begun) == 2
         coming.close()  # type: ignore[attr-defined]
-        # The pool's own thread waits for them too; which of the two learns the end, the other does
-        # not (`multiprocessing` is not made for that), so the system is asked.
-        until = time.monotonic() + 20
-        while any(runs(process.pid) for process in begun) and time.monotonic() < until:
-            time.sleep(0.01)
-        assert not [process for process in begun if runs(process.pid)]
-
-
-def runs(pid: int | None) -> bool:
-    assert pid is not None
-    with contextlib.suppress(ProcessLookupError):
-        os.kill(pid, 0)
-        return True
-    return False
+        assert not children_left(before)
