@@ -141,11 +141,11 @@ def test_what_is_wrong_is_said_with_its_line_before_anything_is_computed(
     page, complaints = opened(chromium, shared_lab, "search")
     page.locator(".asked li").first.wait_for(state="attached", timeout=SOLVED)
     text = page.locator("#requirements")
-    text.fill(TEXT.replace('length = "83 mm"', 'length = "83"'))
+    text.fill(TEXT.replace('length = "73 mm"', 'length = "73"'))
     page.locator("#requirements-error", has_text="line 11: workspace.length").wait_for()
     page.get_by_role("button", name="Go to line 11").click()
     picked = "e => e.value.slice(e.selectionStart, e.selectionEnd)"
-    assert text.evaluate(picked) == 'length = "83"'
+    assert text.evaluate(picked) == 'length = "73"'
     keep(page, "lab-search-wrong")
     start = page.get_by_role("button", name="Start the search")
     start.click()

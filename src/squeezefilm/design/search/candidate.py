@@ -129,7 +129,7 @@ def display_of(requirements: Requirements, design: Design) -> Display:
     shape, settings = requirements.shapes[design.shape], design.settings
     base = requirements.base
     body = shape.body(
-        settings, requirements.own, requirements.assembly_quality, requirements.workspace.room
+        settings, requirements.own, requirements.assembly_quality, requirements.room_of(shape)
     )
     return replace(
         base,

@@ -4,6 +4,7 @@ be built from."""
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Literal
@@ -14,7 +15,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.design.search.shapes import AnyShape, shape_called
+from squeezefilm.design.search.shapes import AnyShape, Ring, shape_called
 from squeezefilm.design.search.space import VOLTAGE, Space, number
 from squeezefilm.design.search.stock import OWN, Body, Room
 from squeezefilm.measure.fits.friction.person import with_finger
@@ -38,19 +39,37 @@ _SHARE = (si.Above(0.0), si.AtMost(1.0))
 @si.checked_numbers
 @dataclass(frozen=True)
 class Workspace:
-    """Workspace of a finger: `length` along the wave and `width` (m); a plate may be up to
-    `largest_length` and `largest_width` (as large as the workspace if not given)."""
+    """Workspace of a finger: `length` along the wave and `width` (m) that the centre of its contact
+    explores; a plate may be up to `largest_length` and `largest_width` (no larger than that needs,
+    if not given)."""
 
     length: Annotated[si.Metre, hard.SIDE]
     width: Annotated[si.Metre, hard.SIDE]
     largest_length: Annotated[si.Metre, hard.SIDE] | None = None
     largest_width: Annotated[si.Metre, hard.SIDE] | None = None
 
-    @property
-    def room(self) -> Room:
-        """The least and the most of a plate's sides."""
-        most = self.largest_length or self.length, self.largest_width or self.width
-        return Room((self.length, self.width), most)
+    def room(self, contact: si.Metre) -> Room:
+        """The least and the most of a plate's sides under a contact that is so long (m), half of
+        which lies beyond the workspace at either end. Raises `InputError` where most is less."""
+        asked = {"length": self.length, "width": self.width}
+        # To 0.1 mm, as sides are chosen; a rounding error is no step.
+        least = {
+            name: math.ceil(1e4 * (side + contact) - 1e-6) / 1e4 for name, side in asked.items()
+        }
+        most = {name: getattr(self, f"largest_{name}") or side for name, side in least.items()}
+        for name, side in asked.items():
+            if most[name] < least[name]:
+                allowed, needed, wanted, beyond = (
+                    si.format_quantity(metres, si.Unit("m"), 4)
+                    for metres in (most[name], least[name], side, contact / 2)
+                )
+                raise InputError(
+                    f"largest_{name} is {allowed}; a finger's centre that explores {wanted} needs "
+                    f"{needed}, {beyond} more at either end for half its contact. Allow more, or "
+                    f"ask for less {name}",
+                    quantity=f"largest_{name}",
+                )
+        return Room((least["length"], least["width"]), (most["length"], most["width"]))
 
 
 @si.checked_numbers
@@ -259,6 +278,12 @@ class Requirements:
         """The quality factor that every design is taken to have."""
         return self.own.quality_factor if self.quality_factor is None else self.quality_factor
 
+    def room_of(self, shape: AnyShape) -> Room:
+        """Room that a shape must give and may take: half the finger's contact more than the
+        workspace at every edge; round a ring, whose track the finger follows, the workspace."""
+        contact = math.sqrt(self.base.finger.contact_area())
+        return self.workspace.room(0.0 if isinstance(shape, Ring) else contact)
+
     @functools.cached_property
     def spaces(self) -> tuple[Space, ...]:
         """Choices that there are, shape by shape. Raises `InputError` for ranges that are none."""
@@ -268,7 +293,7 @@ class Requirements:
         return tuple(
             Space(
                 name if names.count(name) == 1 else f"{name} {1 + names[:k].count(name)}",
-                (*shape.variables(self.workspace.room), volts),
+                (*shape.variables(self.room_of(shape)), volts),
             )
             for k, (name, shape) in enumerate(zip(names, self.shapes, strict=True))
         )

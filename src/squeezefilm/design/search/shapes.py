@@ -252,8 +252,8 @@ def _rim(gasket: Gasket, length: si.Metre, width: si.Metre) -> tuple[FoamSupport
 @dataclass(frozen=True)
 class Disc(Shape):
     """A disc on a ceramic disc of `least_cover` to all of its diameter, in a mode of
-    `least_circles` to `most_circles` nodal circles. The workspace's longer side is its least
-    diameter."""
+    `least_circles` to `most_circles` nodal circles. The workspace's longer side, with half a
+    contact beyond either end, is its least diameter."""
 
     least_circles: Annotated[int, si.AtLeast(1), si.AtMost(20)] = 1
     most_circles: Annotated[int, si.AtLeast(1), si.AtMost(20)] = 1
@@ -296,7 +296,7 @@ class Disc(Shape):
 class Ring(Shape):
     """A ring on a ceramic ring of sectors poled in turn, in a mode of `least_diameters` to
     `most_diameters` nodal diameters. The workspace's length goes once round its mean circumference,
-    its width across the track."""
+    its width is the track's, which a finger follows."""
 
     least_diameters: Annotated[int, si.AtLeast(2), si.AtMost(40)] = 3
     most_diameters: Annotated[int, si.AtLeast(2), si.AtMost(40)] = 12

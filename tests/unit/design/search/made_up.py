@@ -18,7 +18,7 @@ name = "small"
 title = "A small search"
 start_from = "biet2008-plate"
 compare_with = ""
-workspace = { length = "60 mm", width = "30 mm", largest_length = "90 mm" }
+workspace = { length = "50 mm", width = "20 mm", largest_length = "90 mm" }
 drive = { voltage = "15 V", least_voltage = "5 V" }
 
 [limits]

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 
 import pytest
 from tests.unit.design.search.made_up import TEXT, drawn, requirements
@@ -140,3 +141,15 @@ def test_people_can_tell_shapes_of_one_type_apart() -> None:
     assert names == ["strips on one face", "strips on both faces"]
     (glass,) = load_requirements("touchpad-glass").spaces
     assert glass.shape == "edge strips"
+
+
+@pytest.mark.parametrize("name", ["biet2008-plate", "touchpad-glass"])
+def test_a_fingers_centre_explores_the_workspace(name: str) -> None:
+    """Whatever is drawn, half of the contact is on the plate beyond the workspace."""
+    wanted = load_requirements(name)
+    contact = math.sqrt(wanted.base.finger.contact_area())
+    plates = drawn(wanted, 0)
+    assert plates
+    for plate in plates:
+        assert plate.length - contact >= wanted.workspace.length - 1e-9
+        assert plate.width - contact >= wanted.workspace.width - 1e-9

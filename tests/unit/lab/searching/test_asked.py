@@ -49,7 +49,7 @@ def test_what_is_asked_for_is_said_before_anything_is_computed(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("old", "new", "line", "says"),
     [
-        ('length = "83 mm"', 'length = "83"', 11, "has no unit"),
+        ('length = "73 mm"', 'length = "73"', 11, "has no unit"),
         ('voltage = "15 V"', 'voltage = "-15 V"', 21, "voltage"),
         ("[limits]", "[limits", 23, "limits"),
         ("least_lines = 5", "least_line = 5", 34, "least_line"),
@@ -75,7 +75,7 @@ def test_a_display_of_the_lab_is_found_and_its_lines_stay(tmp_path: Path) -> Non
         assert found.base.name == load_display(tmp_path / "mine.toml").name == "mine"
         assert asked_of(text, tmp_path)["start_from"] == "mine"
     with pytest.raises(ConfigError, match="line 11"):
-        requirements_of(MINE.replace('length = "83 mm"', 'length = "83"'), tmp_path)
+        requirements_of(MINE.replace('length = "73 mm"', 'length = "73"'), tmp_path)
 
 
 @pytest.mark.parametrize("name", ["/etc/passwd", "../mine", "a/b", ".hidden", "x" * 300, "a\\b"])

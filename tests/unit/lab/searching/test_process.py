@@ -171,7 +171,7 @@ def test_requirements_that_cannot_be_are_said_with_their_line(tmp_path: Path) ->
     pipe: Any = Pipe()
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(process, "prepare", lambda: None)
-        wrong = TEXT.replace('length = "83 mm"', 'length = "83"')
+        wrong = TEXT.replace('length = "73 mm"', 'length = "73"')
         search(pipe, wrong, tmp_path, tmp_path / "out", **HOW)
     signal.signal(signal.SIGINT, before)
     (said,) = pipe.said

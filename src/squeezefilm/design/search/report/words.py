@@ -21,7 +21,7 @@ from squeezefilm.design.search.reasons import (
 )
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.space import Choice, Variable
-from squeezefilm.design.search.stock import OWN
+from squeezefilm.design.search.stock import OWN, Room
 
 ALWAYS = ("resonance_frequency", "vibration_amplitude", "temperature_rise")
 """Criteria told of every plate beside its objectives."""
@@ -82,15 +82,24 @@ def _chosen(requirements: Requirements, design: Design) -> Iterator[str]:
             yield f"{name.replace('_', ' ')} {text}"
 
 
+def _sides(sides: tuple[si.Metre, si.Metre]) -> str:
+    return " × ".join(shown(side, si.Unit("m")) for side in sides)
+
+
+def _size(room: Room) -> str:
+    """Sides that a plate may have."""
+    least, most = _sides(room.least), _sides(room.most)
+    return least if least == most else f"at least {least} and at most {most}"
+
+
 def asked_sentences(requirements: Requirements) -> list[str]:
     """Sentences on what was asked for: finger, workspace, drive, objectives, limits, shapes."""
-    touch, room, drive = requirements.touch, requirements.workspace.room, requirements.drive
+    touch, drive = requirements.touch, requirements.drive
+    space = requirements.workspace
     finger = requirements.base.finger
     surface = requirements.base.surfaces[0].name
-    least, most = (
-        " × ".join(shown(side, si.Unit("m")) for side in sides) for sides in (room.least, room.most)
-    )
-    size = least if least == most else f"at least {least} and at most {most}"
+    rooms = (requirements.room_of(shape) for shape in requirements.shapes)
+    sizes = " or ".join(dict.fromkeys(_size(room) for room in rooms))
     volts = shown(drive.voltage, si.Unit("V"))
     if drive.least_voltage not in (None, drive.voltage):
         volts = f"{shown(float(drive.least_voltage or 0), si.Unit('V'))} to {volts}"
@@ -101,8 +110,8 @@ def asked_sentences(requirements: Requirements) -> list[str]:
     shapes = ", ".join(space.shape for space in requirements.spaces)
     return [
         f"A finger at {shown(touch.speed, si.Unit('m/s'))} with "
-        f"{shown(finger.normal_force, si.Unit('N'))} on '{surface}'; a plate of {size}, driven "
-        f"with {volts}.",
+        f"{shown(finger.normal_force, si.Unit('N'))} on '{surface}', whose centre "
+        f"explores {_sides((space.length, space.width))}; a plate of {sizes}, driven with {volts}.",
         f"As small as possible: {goals}.",
         f"Limits: {'; '.join(bounds) if bounds else 'none'}.",
         f"Shapes: {shapes}. Where a material is '{OWN}', it is that of {requirements.start_from}.",

@@ -195,5 +195,6 @@ def test_a_voltage_that_may_be_chosen_and_a_larger_plate_are_told() -> None:
         workspace=replace(own.workspace, largest_length=0.1),
     )
     first = words.asked_sentences(wide)[0]
+    assert "whose centre explores 73 mm × 39 mm" in first
     assert "at least 83 mm × 49 mm and at most 100 mm × 49 mm" in first
     assert "driven with 5 V to 15 V" in first
