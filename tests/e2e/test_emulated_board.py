@@ -106,10 +106,13 @@ def stroke(when: si.SecondArray) -> si.MetreArray:
     return 0.08 * np.minimum(part, 1.0 - part)
 
 
-@pytest.mark.slow
-def test_the_device_check_passes_whole_three_times_in_a_row(image: Path) -> None:
+@pytest.mark.parametrize(
+    "times",
+    [pytest.param(1, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.nightly)],
+)
+def test_the_device_check_passes_whole_however_often(image: Path, times: int) -> None:
     """On an idle computer nothing is in doubt; on a busy one what QEMU was held up in may be."""
-    for _ in range(3):
+    for _ in range(times):
         with powered(image, WALL) as talk:
             check = check_device(talk, 30e3, drive="an emulated board", sensor=FINGER, truth=stroke)
         for result in check.results:

@@ -187,15 +187,15 @@ def test_a_study_is_rehearsed_by_simulated_people(
     ("design", "measure"),
     [
         ("friction-jnd", "Weber fraction"),
-        ("period-jnd", "Weber fraction"),
-        ("period-same-different", "Weber fraction"),
         ("coarseness-magnitude", "Exponent"),
+        ("friction-yes-no", "Threshold"),
         *(
-            pytest.param(design, measure, marks=pytest.mark.slow)
+            pytest.param(design, measure, marks=pytest.mark.nightly)
             for design, measure in (
+                ("period-jnd", "Weber fraction"),
+                ("period-same-different", "Weber fraction"),
                 ("period-odd-one-out", "Weber fraction"),
                 ("period-direction", "Weber fraction"),
-                ("friction-yes-no", "Threshold"),
                 ("friction-detection", "Threshold"),
             )
         ),

@@ -69,11 +69,6 @@ def test_fuzzed_connections_neither_hang_nor_fill_the_memory(
     _stormed(serve(), 300, 1)
 
 
-@pytest.mark.slow
-def test_fuzzed_connections_by_tls(serve: Callable[..., Served]) -> None:
-    _stormed(serve(lan=ADDRESS), 100, 1, tablets=True)
-
-
 @pytest.mark.nightly
 @pytest.mark.parametrize("tablets", [False, True])
 def test_ten_thousand_fuzzed_connections(serve: Callable[..., Served], tablets: bool) -> None:
