@@ -36,11 +36,11 @@ class Described(Protocol):
 
     @property
     def provenance(self) -> Mapping[str, Provenance]:
-        """Where each value is from."""
+        """Sources of the values, by their paths."""
 
 
 class ActuatorAnalysis(Protocol):
-    """What every analysis of an actuator has."""
+    """Fields of every analysis of an actuator."""
 
     @property
     def described(self) -> Any:
@@ -55,7 +55,7 @@ class ActuatorAnalysis(Protocol):
 
 
 def assumed_words(provenance: Mapping[str, Provenance]) -> str:
-    """How many of an actuator's values are assumed, in a sentence."""
+    """A sentence with the number of an actuator's values that are assumed."""
     assumed = sum(one.evidence == "assumed" for one in provenance.values())
     return (
         f"{assumed} of {len(provenance)} values with a source are assumed, and the numbers hang on "
@@ -99,7 +99,7 @@ def write_page(
 
 
 def _sources(provenance: Mapping[str, Provenance]) -> str:
-    """Where values are from, those of the same place side by side: seven ceramics alike take as
+    """Sources of values, those of the same place side by side: seven ceramics alike take as
     many rows as one."""
     rows: dict[tuple[str, str, str], list[str]] = {}
     for path, one in provenance.items():
@@ -123,7 +123,7 @@ def with_interval(found: DrawnAnswers, value: float, name: str, unit: si.Unit) -
 
 
 def drawn_words(found: DrawnAnswers) -> str:
-    """What the intervals are, in sentences."""
+    """Sentences that say what the intervals are."""
     given = sum(value.origin == "given" for value in found.drawn)
     guessed = len(found.drawn) - given
     many = "all" if guessed == len(found.drawn) else f"{guessed} of them"

@@ -241,7 +241,7 @@ def strain_figure(found: SkinStretchAnalysis) -> Figure:
 
 
 def _contactors(axes: Axes, found: SkinStretchAnalysis, frame: int) -> None:
-    """Where each contactor's skin has gone, drawn larger, and which slip."""
+    """Places of each contactor's skin, drawn larger, and which slip."""
     slips = found.wave.slips[frame]
     x, y = (1e3 * place for place in found.array.cradle.places)
     moved = _DRAWN_TIMES * 1e3 * found.wave.displacements[frame]

@@ -71,12 +71,12 @@ class Conversation:
 
     @property
     def held_up(self) -> si.Second:
-        """For how long this computer, or a device that runs on it, was held up since `watch` (s):
+        """Time for which this computer, or a device that runs on it, was held up since `watch` (s):
         the longest time in which nobody listened, or all in which programs waited."""
         return max(self._silent, self.waited() - self._before if self.waited else 0.0)
 
     def excuse(self, said: m.Status | m.Reading | None) -> si.Second:
-        """For how long this computer must have been held up for a device to say nothing, or to
+        """Time for which this computer must have been held up for a device to say nothing, or to
         have stopped by itself (s); 0 where that is no reason."""
         if said is None:
             return _ANSWERS_WITHIN

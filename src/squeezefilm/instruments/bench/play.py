@@ -291,7 +291,7 @@ class _Truth:
     file: Path
 
     def place(self, when: si.SecondArray) -> si.MetreArray:
-        """Where the finger was (m) at times of the twin (s); waits for them to be written."""
+        """Places of the finger (m) at times of the twin (s); waits for them to be written."""
         end = time.monotonic() + _TRUTH_LIMIT
         while True:
             text = read_regular_text(self.file, TABLE_BYTES, "the twin's truth")

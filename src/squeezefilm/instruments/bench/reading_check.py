@@ -86,7 +86,7 @@ def reading_checks(talk: Conversation, duration: si.Second = 0.5) -> list[CheckR
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Watched:
-    """What a sensor showed while the device followed it, arrays of shape (readings,): times by the
+    """Readings of a sensor while the device followed it, arrays of shape (readings,): times by the
     device's clock (s), places (m), whether it was touched, the output (V), and where it was moved
     at more than half of its greatest speed. `excuse` is that of a device that stopped (s)."""
 
@@ -146,7 +146,7 @@ def sensor_checks(
 def _watched(
     talk: Conversation, frequency: si.Hertz, volts: si.Volt, duration: si.Second
 ) -> _Watched | None:
-    """What the sensor showed; None of one that was not touched."""
+    """Readings of the sensor; None where it was not touched."""
     talk.arm()
     talk.start(frequency)
     # Wherever a place can be.

@@ -26,7 +26,7 @@ _MOST_SOFT = 16.0  # V, what the step can square
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class IdentifiedPlate:
-    """What a sweep of a free plate says of it.
+    """Properties of a free plate as a sweep shows them.
 
     Args:
         frequency: of its resonance (Hz).
@@ -60,7 +60,7 @@ class IdentifiedPlate:
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class LoopAims:
-    """What the loops shall do, and what they may.
+    """Aims of the loops, and their limits.
 
     Args:
         lowest_frequency, highest_frequency: of the carrier (Hz); a search begins at the highest.
@@ -148,7 +148,7 @@ def calibrated_phase(
 def identified_plate(
     frequency: si.HertzArray, response: si.ComplexArray
 ) -> tuple[IdentifiedPlate, si.Dimensionless]:
-    """What a sweep of a free plate says of it, and the noise of each quadrature of `response` (1).
+    """Properties of a free plate by its sweep, and the noise of each quadrature of `response` (1).
 
     `response` is the pickup's complex amplitude over the drive's (V/V) at each `frequency` (Hz),
     both shape (n,), n ≥ 8: one resonance, K e^{i(φ − 2π τ (f − f0))}/(1 + i δ), by least squares,

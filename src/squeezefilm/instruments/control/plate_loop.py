@@ -85,7 +85,7 @@ class LoopGains(NamedTuple):
 
 
 class LoopState(NamedTuple):
-    """What the loops remember.
+    """State of the loops between their steps.
 
     The mode; frequency (mHz/256), its rate (mHz/256 a step); the load D (2^20) and the detuning
     last seen (half-bandwidths, 2^16); the envelope (µV/16); whether a search may lock; for how many

@@ -22,7 +22,7 @@ _RESOLUTION: si.Second = 2e-6
 
 @dataclass(slots=True)
 class DeviceClock:
-    """What is known of the offset host − device. Not thread-safe.
+    """Estimate of the offset host − device. Not thread-safe.
 
     Times of the device are unwrapped: seconds since the first message, on from the device's own
     clock then. They may come out of order by less than 35 minutes.
@@ -41,7 +41,7 @@ class DeviceClock:
 
     @property
     def error(self) -> si.Second:
-        """How far the offset may be off (s); infinite before a round trip."""
+        """Largest error of the offset (s); infinite before a round trip."""
         return (self.highest - self.lowest) / 2
 
     @property

@@ -20,7 +20,7 @@ from squeezefilm.core.errors import InputError
 
 @dataclass(frozen=True, slots=True)
 class FingerSample:
-    """Where the finger was (m, in the plate's axes), when (s, device clock), if it touched."""
+    """Place of the finger (m, in the plate's axes), its time (s, device clock), and contact."""
 
     time: si.Second
     x: si.Metre
@@ -37,7 +37,7 @@ class Sensor(Protocol):
 
 
 class Drive(Protocol):
-    """What turns drive amplitudes into voltage on the plate."""
+    """Converter of drive amplitudes into voltage on the plate."""
 
     @property
     def stops_by_itself(self) -> bool:

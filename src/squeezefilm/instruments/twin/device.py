@@ -88,7 +88,7 @@ class TwinDevice:
 
     @property
     def truth(self) -> TruthRecord:
-        """What really happened up to now."""
+        """True motion and output up to now."""
         self.plant.drain()
         return self.plant.truth
 
@@ -145,7 +145,7 @@ class TwinDevice:
                 self._outgoing += self.machine.outgoing()
 
     def _next_tick(self, last: int) -> int:
-        """When the machine must be ticked next: at the next tick, or, where it gives no output and
+        """Time of the machine's next tick: the next tick, or, where it gives no output and
         a later one finds the same state, as late as that is so."""
         now = self._held[0]
         soon = (now // self._tick + 1) * self._tick

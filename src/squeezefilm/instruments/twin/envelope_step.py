@@ -59,7 +59,7 @@ class Limits(NamedTuple):
 
 @compiled()
 def table_place(force: float, amplitude: float, fingers: Fingers) -> Any:
-    """Where a force (N) and an amplitude (m) stand in the tables: indices and shares of both, and
+    """Place of a force (N) and an amplitude (m) in the tables: indices and shares of both, and
     whether the amplitude is beyond."""
     forces, highest, points = fingers.forces, fingers.highest, fingers.load.shape[1]
     i = 0
@@ -151,7 +151,7 @@ def voltage_given(
 
 
 class FrictionTables(NamedTuple):
-    """What a skin's friction is made of.
+    """Tables of a skin's friction.
 
     `speed` (k,) rises from 0 (m/s), and is one place where friction does not depend on it.
     `relative` is µ′/µ, shape (forces, points, k), the speeds side by side in memory; `coefficient`

@@ -34,7 +34,7 @@ _BUFFER = 2000  # rows between two visits to Python
 
 @dataclass(frozen=True, slots=True)
 class PlantCounts:
-    """How often something was not as wanted, in steps of the plant since it began.
+    """Numbers of steps of the plant, since it began, in which something was not as wanted.
 
     `at_rail`, `at_slew`, `at_current`: the amplifier's limits held the voltage back. `beyond`: the
     amplitude left the tables. `failed`: the skin chattered without end. `lost`: sensor samples.
@@ -83,7 +83,7 @@ class TruthRecord:
 
     @property
     def written(self) -> int:
-        """How many rows there have been."""
+        """Number of rows up to now."""
         return self._written
 
     @property
@@ -214,17 +214,17 @@ class Plant:
 
     @property
     def amplitude(self) -> si.Metre:
-        """Of the vibration (m, zero-to-peak, at an antinode)."""
+        """Amplitude of the vibration (m, zero-to-peak, at an antinode)."""
         return abs(self.envelope)
 
     @property
     def resonance_frequency(self) -> si.Hertz:
-        """Where the plate's own resonance is now, without the finger (Hz)."""
+        """Resonance frequency of the plate now, without the finger (Hz)."""
         return float(self._s[k.RESONANCE])
 
     @property
     def temperature_rise(self) -> si.Kelvin:
-        """How much warmer than the room its own losses have made the plate (K)."""
+        """Temperature rise of the plate above the room by its own losses (K)."""
         return float(self._s[k.WARMTH])
 
     @property
@@ -234,17 +234,17 @@ class Plant:
 
     @property
     def tangential_force(self) -> si.Newton:
-        """Of the friction between skin and surface (N), positive while the skin goes to +x."""
+        """Force of friction between skin and surface (N), positive while the skin goes to +x."""
         return float(self._s[k.FRICTION])
 
     @property
     def counts(self) -> PlantCounts:
-        """What was not as wanted."""
+        """Numbers of steps in which something was not as wanted."""
         which = (k.AT_RAIL, k.AT_SLEW, k.AT_CURRENT, k.BEYOND, k.FAILED, k.LOST_SAMPLES)
         return PlantCounts(*(int(self._n[i]) for i in which))
 
     def sensed(self) -> tuple[int, int, bool]:
-        """What the device's position sensor shows now: x and y (µm), and whether it is touched."""
+        """Reading of the device's position sensor now: x and y (µm), and contact."""
         x, y = self._s[k.SEEN_X], self._s[k.SEEN_Y]
         return round(x * 1e6), round(y * 1e6), bool(self._n[k.SEEN_TOUCHING])
 
@@ -254,7 +254,7 @@ class Plant:
         return self.point.pickup_calibration(self.settings.pickup)
 
     def phases(self) -> tuple[int, int]:
-        """What the pickup shows now (µV): in phase with the drive, and 90° ahead, with noise."""
+        """Reading of the pickup now (µV): in phase with the drive, and 90° ahead, with noise."""
         signal = heard(self._rest[0], self._ear)
         return round(signal.real * 1e6), round(signal.imag * 1e6)
 
@@ -279,7 +279,7 @@ def _path(hand: Hand | None, tick: int) -> tuple[si.FloatArray, NDArray[np.int64
 
 
 def _friction(point: WorkingPoint) -> FrictionTables:
-    """What the kernel reads of friction, the speeds side by side."""
+    """Friction tables for the kernel, the speeds side by side."""
     display = point.display
     surface, finger = display.surface(), display.finger
     rest = [

@@ -135,7 +135,7 @@ class Path(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """Where skin and surface meet, over one step: kept, so that no step allocates it.
+    """Contact of skin and surface over one step, kept so that no step allocates it.
 
     `tables` are what its friction is read from. `limit` (2,) is the friction force (N) for each of
     a row's units, at the start and the end of the step, and `rows` (2, k) µ′/µ over the skin's
@@ -235,8 +235,8 @@ def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: si.Array, c
 
 @compiled()
 def lagged(felt: float, before: float, after: float, h: float, lag: float) -> float:
-    """What follows an amplitude (m) with a time constant `lag` (s; 0: at once), after a step h (s)
-    in which the amplitude goes straight from `before` to `after`."""
+    """Value that follows an amplitude (m) with a time constant `lag` (s; 0: at once), after a step
+    h (s) in which the amplitude goes straight from `before` to `after`."""
     if lag <= 0.0 or (after == 0.0 and felt < _LEAST):
         return after
     behind = lag * (after - before) / h

@@ -139,7 +139,7 @@ class PtyServer:
         self._device.close()
 
     def _flags(self, wait: float) -> int:
-        """What the port has to say, within `wait` (ms)."""
+        """Events of the port within `wait` (ms)."""
         return dict(self._poll.poll(wait)).get(self._master, 0)
 
     def _excuse_silence(self, wall: int) -> None:
@@ -151,8 +151,8 @@ class PtyServer:
             self._excused_to = wall
 
     def _unread_since(self, wall: int) -> int:
-        """Since when the host leaves unread what it was told, or now: one that is silent on purpose
-        reads on."""
+        """Time since which the host leaves unread what it was told, or now: one that is silent on
+        purpose reads on."""
         if not self._connected:
             return wall
         unread = self._unread()
@@ -193,7 +193,7 @@ class PtyServer:
 
 
 class _Way:
-    """How long the system takes to carry a byte through a pseudo-terminal: one is sent again and
+    """Measures the time that a byte takes through a pseudo-terminal: one is sent again and
     again. Linux carries them in a worker of ordinary priority, which a busy machine holds up for
     hundreds of milliseconds while both programs run before ordinary work.
     """
@@ -207,7 +207,7 @@ class _Way:
         self._sent_at: int | None = None
 
     def held_up_since(self, wall: int) -> int:
-        """When the byte was sent that is still on its way, or now."""
+        """Time at which the byte was sent that is still on its way, or now."""
         if self._sent_at is not None:
             try:
                 os.read(self._near, 1)

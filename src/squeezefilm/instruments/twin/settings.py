@@ -30,7 +30,7 @@ PickupKind = Literal["motional_current", "sensing_patch", "none"]
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class PlateDrift:
-    """How a plate's resonance departs from the predicted one, f0 (1 + offset + …).
+    """Departure of a plate's resonance from the predicted one, f0 (1 + offset + …).
 
     Args:
         offset: relative, from the start (1): tolerance of the making.
@@ -59,7 +59,7 @@ class PlateDrift:
     evidence: str = ASSUMED
 
     def on(self, thermal: Thermal) -> Thermal:
-        """What a display says of its warmth, with what is given here in its place."""
+        """Warmth that a display states, replaced by what is given here."""
         names = ("temperature_coefficient", "thermal_resistance", "thermal_time")
         given = {name: getattr(self, name) for name in names if getattr(self, name) is not None}
         return replace(thermal, **given)
@@ -68,7 +68,7 @@ class PlateDrift:
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Amplifier:
-    """What an amplifier can give to the plate's capacitance and motional branch.
+    """Limits of an amplifier at the plate's capacitance and motional branch.
 
     Args:
         gain: voltage on the plate over the voltage asked for (1); above 0.
@@ -116,7 +116,7 @@ class Arm:
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class PickupModel:
-    """How the device hears the vibration, as an amplitude at its input.
+    """Model of the pickup by which the device hears the vibration.
 
     Args:
         kind: the motional current over a shunt, a sensing patch, or none.

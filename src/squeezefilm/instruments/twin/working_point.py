@@ -66,7 +66,7 @@ class WorkingPoint:
 
     @property
     def amplitudes(self) -> si.FloatArray:
-        """Of the tables' columns (m)."""
+        """Amplitudes of the tables' columns (m)."""
         count = self.load.shape[1]
         return np.asarray(self.highest_amplitude * (np.arange(count) / (count - 1)) ** 2)
 
@@ -78,7 +78,7 @@ class WorkingPoint:
         return 1 / (omega * self.force_factor * pickup.shunt)
 
     def identified(self, settings: TwinSettings) -> IdentifiedPlate:
-        """What a sweep would say of the twin's plate before it drifts, for `loop_gains`.
+        """Plate that a sweep of the twin before its drift would identify, for `loop_gains`.
 
         Raises `InputError` for a plate or a pickup that no loop can use.
         """

@@ -91,7 +91,7 @@ class Machine:
 
     @property
     def damaged(self) -> int:
-        """How many frames were no frames."""
+        """Number of frames that were damaged."""
         return self._deframer.damaged
 
     @property
@@ -101,7 +101,7 @@ class Machine:
 
     @property
     def reading_due(self) -> int | None:
-        """When the next reading is due (32 bits of µs), or None if none is asked for."""
+        """Time at which the next reading is due (32 bits of µs); None if none is asked for."""
         return self._reports.due if self._reports.period else None
 
     def receive(self, data: bytes, now: int) -> bytes:

@@ -117,11 +117,11 @@ class HeldPlate:
         return self.command.level
 
     def capabilities(self) -> m.Capabilities:
-        """What the device can, of what not every one can."""
+        """Capabilities of the device that not every device has."""
         return m.Capabilities(self.revision, int(self.phases is not None))
 
     def report(self, now: int) -> m.Loops:
-        """How they are."""
+        """Report of the loops."""
         assert self.gains is not None
         state, command = self.state, self.command
         target = min(self.gains.ratio * self.wanted >> 24, MOST_PICKUP)

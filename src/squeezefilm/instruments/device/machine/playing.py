@@ -33,7 +33,7 @@ Finger = tuple[int, int, bool]
 
 
 class Mode(Enum):
-    """What is played."""
+    """Kind of output that is played."""
 
     NOTHING = auto()
     ENVELOPE = auto()
@@ -121,7 +121,7 @@ class Reports:
 
 @dataclass(slots=True)
 class Playing:
-    """What is played, and what is left of it. Not thread-safe.
+    """Output that is played, and the rest of it. Not thread-safe.
 
     `dry`: a timed envelope's last amplitude was held past its period. `late`: one of its
     amplitudes arrived after its time. Both stay until `take_marks`.

@@ -45,7 +45,7 @@ def cobs_encode(data: bytes) -> bytes:
 
 
 def cobs_decode(data: bytes) -> bytes:
-    """What was encoded.
+    """Bytes that were encoded.
 
     Raises:
         InputError: a zero inside, or a code that points past the end.

@@ -121,7 +121,7 @@ class Link:
 
     @property
     def statistics(self) -> LinkStatistics:
-        """What was sent, answered, lost and damaged up to now."""
+        """Numbers of frames sent, answered, lost and damaged up to now."""
         self._statistics.damaged = self._deframer.damaged
         return self._statistics
 
@@ -159,7 +159,7 @@ class Link:
             self.send(m.KeepAlive())
 
     def poll(self) -> list[m.Answer]:
-        """What came since the last call, in order. Raises `DeviceError` if the stream is gone."""
+        """Messages since the last call, in order. Raises `DeviceError` if the stream is gone."""
         self._hear()
         came, self._unpolled = self._unpolled, []
         return came

@@ -202,7 +202,7 @@ class TileData(_Levels):
 
 @_message(0x0A)
 class Position(Message):
-    """Where the finger is (µm): plays the tile there. While PLAYING."""
+    """Place of the finger (µm): plays the tile there. While PLAYING."""
 
     x: I32
 
@@ -309,7 +309,7 @@ class Status(Message):
 
 @_message(0x82, ANSWERS)
 class Reading(Message):
-    """What the device measures: its clock (µs), the finger (µm), its output (µV), its pickup (µV).
+    """Readings of the device: its clock (µs), the finger (µm), its output (µV), its pickup (µV).
 
     `flags`: bit 0 a sensor is there, 1 a pickup is there, 2 a timed envelope ran dry since the
     last reading, 3 some of it came late. `late_ticks` counts since boot.
@@ -356,7 +356,7 @@ class Capabilities(Message):
 
 @_message(0x85, ANSWERS)
 class Loops(Message):
-    """How the loops are: the device's clock (µs), mode, flags, locks lost and false (modulo 256),
+    """State of the loops: the device's clock (µs), mode, flags, locks lost and false (modulo 256),
     carrier (mHz), detuning (half-bandwidths, 2^16), the pickup's amplitude as asked for and what
     it has above that (µV), the drive's reserve (µV), the finger's loss over the plate's own (2^16),
     the plate's temperature (1/1000 °C)."""

@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class State(IntEnum):
-    """What the device is doing."""
+    """State of the device."""
 
     OFF = 0
     ARMED = 1
@@ -15,7 +15,7 @@ class State(IntEnum):
 
 
 class Fault(IntEnum):
-    """Why it faulted."""
+    """Reason of a fault."""
 
     NONE = 0
     WATCHDOG = 1
@@ -26,7 +26,7 @@ class Fault(IntEnum):
 
 
 class Reason(IntEnum):
-    """What became of a frame."""
+    """Answer of the device to a frame."""
 
     ACCEPTED = 0
     VERSION = 1

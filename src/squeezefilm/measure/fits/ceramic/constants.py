@@ -226,7 +226,7 @@ class CeramicConstants:
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """None: constants of a material are no answers of a display."""
+        """No observations: constants of a material are no answers of a display."""
         return ()
 
 

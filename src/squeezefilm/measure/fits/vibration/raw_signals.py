@@ -55,7 +55,7 @@ class RawSignalsFit(FitResult):
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """None of the display: fit the `response`, which has them."""
+        """No observations of the display: fit the `response`, which has them."""
         return ()
 
 
