@@ -6,6 +6,7 @@ import asyncio
 import os
 import signal
 import sys
+import threading
 import time
 from collections.abc import Coroutine
 from pathlib import Path
@@ -27,6 +28,37 @@ def busy() -> Any:
     one = Busy(LONG)
     yield one
     one.close()
+
+
+class InThread:
+    """A process of work without a process: what is asked runs in the thread that asks."""
+
+    def __init__(self) -> None:
+        self.ended = threading.Event()
+
+    def ask(self, work: Any, arguments: Any, told: Any) -> tuple[bool, Any]:
+        if work is endless:
+            Path(arguments[0]).write_text(str(id(self)))
+            self.ended.wait(LONG)
+        if work is ends_itself or self.ended.is_set():
+            raise EOFError
+        return True, id(self)
+
+    def end(self) -> None:
+        self.ended.set()
+
+
+@pytest.fixture(params=["thread", pytest.param("process", marks=pytest.mark.slow)])
+def started(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What answers: threads of this process, or processes."""
+    begun: list[InThread] = []
+
+    def start() -> InThread:
+        begun.append(InThread())  # kept, so that none gets the number of one before
+        return begun[-1]
+
+    if request.param == "thread":
+        monkeypatch.setattr(worker._Process, "started", start)
 
 
 def play(work: Coroutine[Any, Any, None]) -> None:
@@ -83,11 +115,12 @@ def test_work_says_how_far_it_is_to_whom_it_was_asked_for(busy: Busy) -> None:
     worker.tell("outside such a process nothing is said", 0.5)
 
 
-@pytest.mark.slow
+@pytest.mark.usefixtures("started")
 def test_work_that_takes_too_long_is_ended_and_the_next_is_done(tmp_path: Path) -> None:
     async def work() -> None:
-        busy = Busy(1.0)
-        with pytest.raises(SqueezefilmError, match=r"more than 1 s.*ask for less"):
+        longest = 0.2
+        busy = Busy(longest)
+        with pytest.raises(SqueezefilmError, match=rf"more than {longest:g} s.*ask for less"):
             await busy.do("slot", endless, str(tmp_path / "a"))
         busy._longest = LONG
         first = await busy.do(None, where)
@@ -121,7 +154,7 @@ def test_what_work_raises_keeps_its_type_and_place(busy: Busy) -> None:
     play(work())
 
 
-@pytest.mark.slow
+@pytest.mark.usefixtures("started")
 def test_newest_wins_and_cancel_ends_what_runs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -162,7 +195,7 @@ def test_newest_wins_and_cancel_ends_what_runs(
     play(work())
 
 
-@pytest.mark.slow
+@pytest.mark.usefixtures("started")
 def test_work_ends_with_its_page_unless_it_writes(tmp_path: Path) -> None:
     async def work() -> None:
         busy = Busy(LONG)
@@ -176,8 +209,8 @@ def test_work_ends_with_its_page_unless_it_writes(tmp_path: Path) -> None:
             if gives_way:
                 assert await busy.do(None, where) != process
             else:
-                os.kill(process, 0)
-                os.kill(process, signal.SIGTERM)
+                assert busy._running is not None
+                assert busy._running.ended_because is None
         busy.close()
 
     play(work())
