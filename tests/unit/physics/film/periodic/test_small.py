@@ -10,7 +10,7 @@ import pytest
 
 from squeezefilm.core.errors import ConvergenceError
 from squeezefilm.physics.film.closed import relative_damping, relative_stiffness
-from squeezefilm.physics.film.gas import slip_law
+from squeezefilm.physics.film.gas import Gas, slip_law
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.profile import flexural_profile, profile_from_function
@@ -19,10 +19,11 @@ from squeezefilm.physics.film.periodic.small import (
     enlarged,
     flow_factor,
     reduced,
+    small_film,
     small_pressure,
     small_vibration,
 )
-from squeezefilm.physics.film.periodic.solution import NO_FIELD, Field, Found
+from squeezefilm.physics.film.periodic.solution import NO_FIELD, Asked, Field, Found
 
 
 @pytest.mark.parametrize("shape", ["strip", "disc"])
@@ -81,6 +82,22 @@ def test_the_pressure_in_closed_form_is_that_of_the_force(shape: str) -> None:
     assert np.abs(swing - first).max() < 2e-3 * np.abs(first).max()
     level = solved.mean_pressure - 1.0
     assert np.abs(mean - level).max() < 2e-3 * np.abs(level).max()
+
+
+@pytest.mark.parametrize("shape", ["strip", "disc"])
+def test_the_field_of_a_film_that_hardly_moves_has_its_force(shape: str) -> None:
+    asked = Asked(shape, 20.0, 1e-3, 1.2, 0.0, "first", 1e-2, None)
+    found, field = small_film(asked, Gas(1.2, 0.0, slip_law("first", 0.0)))
+    assert found.met
+    x, T = field.position, field.time
+    assert pytest.approx(2 * np.pi * np.arange(T.size) / T.size) == T
+    np.testing.assert_allclose(field.gap, np.tile(1 + 1e-3 * np.cos(T), (x.size, 1)))
+    # The mean over a strip is along x; a disc's rings count by their radius.
+    weight = np.ones(x.size) if shape == "strip" else 2 * x
+    force = np.trapezoid(field.over * weight[:, None], x, axis=0)
+    harmonics = np.fft.rfft(force) / T.size
+    assert 2 * harmonics[1] == pytest.approx(found.harmonics[1], rel=2e-3)
+    assert harmonics[0].real == pytest.approx(found.over, rel=5e-3)
 
 
 @pytest.mark.parametrize("shape", ["strip", "disc"])
