@@ -12,6 +12,7 @@ import secrets
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -88,6 +89,42 @@ def test_there_is_a_good_call_of_every_one_that_is_attacked() -> None:
             owner = CALLS[name].owner
             if owner is not None and owner not in MADE and "self" not in given:
                 constructor_of(owner)
+
+
+# Calls that check their numbers in words of their own, in place of `checked_numbers`.
+CHECK_THEMSELVES = (
+    "core.quantities.rules.Rule",
+    "core.quantities.units.percent",
+    "measure.recordings.kinds.RawSignals",
+    "measure.recordings.kinds.RingDown",
+    "physics.chain.pad_place.",
+    "physics.chain.prediction.predict",
+    "physics.contact.finger.fingerpad.FingerpadDynamics.pressed",
+    "physics.film.gas.require_film",
+    "physics.plate.beam.pieces.Piece",
+    "physics.plate.solid.resonances.Neighbour",
+    "physics.render.motion.stroke.Stroke",
+    "physics.render.program.renderer.",
+    "physics.render.texture.",
+)
+
+
+def is_guarded(function: Any) -> bool:
+    """True for a function, method or class under `checked_numbers`."""
+    if isinstance(function, type):
+        function = function.__new__ if issubclass(function, tuple) else function.__init__
+    code = getattr(function, "__code__", None)
+    return code is not None and code.co_qualname == "_guarded.<locals>.guarded"
+
+
+def test_every_call_checks_its_numbers() -> None:
+    """So that one that does not is noticed here, and not first at night."""
+    attacked = CALLS.keys() - NAMES_NOT_CALLED
+    open_to_anything = {name for name in attacked if not is_guarded(CALLS[name].function)}
+    theirs = {name for name in open_to_anything if name.startswith(CHECK_THEMSELVES)}
+    assert open_to_anything == theirs
+    for prefix in CHECK_THEMSELVES:
+        assert any(name.startswith(prefix) for name in theirs), f"{prefix} is guarded"
 
 
 def test_a_sample_of_hostile_calls_ends_in_a_typed_error_or_finite_numbers() -> None:

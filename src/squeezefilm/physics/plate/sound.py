@@ -196,6 +196,7 @@ class SoundField:
     model: str = "baffled_rayleigh"
 
 
+@si.checked_numbers
 def sound_field(
     surface: RadiatingSurface, distances: tuple[si.Metre, ...] = DISTANCES
 ) -> SoundField:

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import OutOfRangeError
+from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.physics.plate.beam.response import BeamResponse
 from squeezefilm.physics.plate.layout import Actuator, AnnularStator
 from squeezefilm.physics.plate.ring.body import surface_profile
@@ -94,9 +94,16 @@ class SurfaceShape(ABC):
         self, x: si.MetreArray, y: si.MetreArray, length: si.MetreArray, width: si.MetreArray
     ) -> tuple[si.DimensionlessArray, si.DimensionlessArray]:
         """Motion as by `under` on the grid of `x` × `y` (m), of cells with a length for each x and
-        a width for each y (m), both of shape (x, y); for very many points, and quickly."""
-        si.require("x", x, si.Unit("m"), axes=1)
-        si.require("y", y, si.Unit("m"), axes=1)
+        a width for each y (m), both of shape (x, y); for very many points, and quickly. Raises
+        `InputError` for a place without its length or width."""
+        for name, along, size, places in (("x", x, "length", length), ("y", y, "width", width)):
+            si.require(name, along, si.Unit("m"), axes=1)
+            if np.shape(places) != np.shape(along):
+                raise InputError(
+                    f"{size} has the shape {np.shape(places)} and {name} {np.shape(along)}; give "
+                    f"one for each {name}",
+                    quantity=size,
+                )
         covered = self._covered(x[:, None], y[None, :], length[:, None], width[None, :])
         return self._between(*self._nearest(x, y)), covered
 

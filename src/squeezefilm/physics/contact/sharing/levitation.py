@@ -87,6 +87,7 @@ def _table(rest_gap: float) -> tuple[si.FloatArray, si.FloatArray]:
     return np.log(amplitude), np.log(_LIFT)
 
 
+@si.checked_numbers
 @functools.lru_cache(maxsize=16)
 def ridge_films(frequency: si.Hertz, width: si.Metre, gas: Gas, slip: str) -> FilmTable:
     """The films of a plateau for `ridge_friction`, in a table of their own: they reach gaps that no

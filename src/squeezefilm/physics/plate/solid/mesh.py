@@ -224,8 +224,9 @@ def _require_thick(plate: RectangularPlate, frequency: float, wave: float) -> No
         )
 
 
+@si.checked_numbers
 def require_thin(
-    plate: RectangularPlate, frequency: float, asked: str = "a mesh for modes up to"
+    plate: RectangularPlate, frequency: si.Hertz, asked: str = "a mesh for modes up to"
 ) -> None:
     """Refuse a frequency (Hz, told as `asked`) of waves across a layer: see `require_half_wave`."""
     substrate, ceramic = plate.substrate, plate.ceramic
