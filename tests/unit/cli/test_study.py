@@ -166,6 +166,63 @@ def test_power_compares_two_displays(stands_in: StandsIn) -> None:
     assert asked.calls[-1][0][2:] == ("winfield2007-tpad", "biet2008-plate")
 
 
+def test_power_asks_for_a_precision_of_the_whole_design(stands_in: StandsIn) -> None:
+    asked = stands_in("study.simulated.planned_precision:planned_precision", ANSWER)
+    shown = stands_in("study.report.terminal_analysis:show_precision")
+    stands_in("study.report.terminal_analysis:show_power", tells=False)
+    run("power", PRESET, "--precision", "20 %", "--studies", "50")
+    assert asked.given == (load_design(PRESET), load_observer("fingertip"), pytest.approx(0.2))
+    assert asked.named == {
+        "display": None, "target": 0.8, "studies": 50, "seed": 0, "finger": "new",
+    }  # fmt: skip
+    assert shown.given == (ANSWER,)
+
+
+@pytest.mark.parametrize(
+    ("question", "says"),
+    [
+        (("--precision", "20%", "--against", "biet2008-plate"), "ask two things"),
+        (("8 mm", "--precision", "20%"), "--precision asks of the whole design"),
+        (("8 mm", "--against", "biet2008-plate"), "--against asks of the whole design"),
+        (("8 mm",), "name two stimuli of 'biet2008-gratings'"),
+        ((), 'told apart ("0.4 mm", "2 mm"'),
+    ],
+)
+def test_power_refuses_two_questions_and_none(question: tuple[str, ...], says: str) -> None:
+    done = run("power", PRESET, *question)
+    assert done.returncode == 2
+    assert says in done.stderr
+    assert done.stdout == ""
+
+
+def test_people_are_simulated_on_another_display(stands_in: StandsIn) -> None:
+    tables = stands_in("study.simulated.chain_tables:chain_tables", "the tables")
+    people = stands_in("study.simulated.answers:simulate_participants", ANSWER)
+    shown = stands_in("study.report.terminal_analysis:show_simulated")
+    asked = ("--participants", "2", "--seed", "3", "--finger", "mean")
+    done = run("simulate", PRESET, "--display", "winfield2007-tpad", *asked)
+    design, observer, *rest = people.given[:5]
+    assert design.displays == ("winfield2007-tpad",)
+    assert (observer, *rest) == (load_observer("fingertip"), 2, 3, "the tables")
+    assert (tables.given[0], tables.named["finger"]) == (design, "mean")
+    assert shown.given == (ANSWER,)
+    assert (done.returncode, done.stdout) == (0, "")
+    found = run("simulate", PRESET, *asked, "--json")
+    assert people.calls[-1][0][0] == load_design(PRESET)
+    assert json.loads(found.stdout) == {"found": 1}
+
+
+def test_the_boards_of_a_study_are_written_and_listed(stands_in: StandsIn, tmp_path: Path) -> None:
+    written = stands_in("study.report.boards:write_boards", tmp_path / "boards.html", tells=False)
+    done = run("gratings", PRESET, "--out", tmp_path, "--tolerance", "50 um")
+    assert written.given == (load_design(PRESET), tmp_path, pytest.approx(50e-6))
+    lines = [" ".join(line.split()) for line in done.stdout.splitlines()]
+    assert "Boards to be made" in lines
+    assert lines[-1] == f"page: {tmp_path / 'boards.html'}"
+    run("gratings", PRESET, "--out", tmp_path)
+    assert written.calls[-1][0][2] == pytest.approx(20e-6)
+
+
 def test_a_rehearsal_makes_the_file_and_says_what_comes_next(
     stands_in: StandsIn, tmp_path: Path
 ) -> None:
