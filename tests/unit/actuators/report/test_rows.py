@@ -27,7 +27,7 @@ DESCRIBED = SimpleNamespace(
 
 
 def intervals(**of: tuple[float, float, float]) -> DrawnAnswers:
-    return DrawnAnswers(of, {name: (1.0,) for name in of}, 64, 0, "", 3, (DRAWN,))
+    return DrawnAnswers(of, dict.fromkeys(of, (1.0,)), 64, 0, "", 3, (DRAWN,))
 
 
 def motor(**other: Any) -> Any:

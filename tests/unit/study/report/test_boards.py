@@ -10,11 +10,12 @@ import pytest
 from ezdxf.filemanagement import readfile
 
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.formats.drawing import Dimension, Polyline, Text
 from squeezefilm.core.formats.dxf import MILLIMETRES
 from squeezefilm.physics.perception.stimuli import Grating
 from squeezefilm.study.design.boards import board_of, boards
 from squeezefilm.study.design.study_design import load_design
-from squeezefilm.study.report.boards import draw_boards, write_boards
+from squeezefilm.study.report.boards import draw_boards, drawing_of, write_boards
 
 DESIGN = load_design("biet2008-gratings-as-widths")
 
@@ -96,3 +97,27 @@ def test_what_cannot_be_made_is_refused_before_anything_is_written(tmp_path: Pat
     with pytest.raises(InputError, match="tolerance"):
         write_boards(DESIGN, tmp_path / "a", 0.3e-3)
     assert not (tmp_path / "a").exists()
+
+
+def test_each_board_is_drawn_above_the_one_before_with_three_dimensions() -> None:
+    made = board_of(Grating("a", 4e-3, "period", length=0.02, width=0.03, ridge_height=50e-6))
+    other = board_of(Grating("b", 8e-3, "groove width", length=0.05, width=0.01))
+    drawing = drawing_of((made, other))
+    assert drawing.layers.keys() == {"BOARD", "RIDGES"}
+    boards_drawn = [item for item in drawing.items if getattr(item, "layer", "") == "BOARD"]
+    lower = [item.points[0] for item in boards_drawn if isinstance(item, Polyline)]
+    # Three dimensions of 3 mm each, one's own 4 mm, a text below: they have room between boards.
+    (_, first), (_, second) = lower
+    assert first == 0.0
+    dimensions = [item for item in drawing.items if isinstance(item, Dimension)]
+    assert [one.measured for one in dimensions] == pytest.approx(
+        [2e-3, 2e-3, 20e-3, 8e-3, 8e-3, 50e-3]
+    )
+    assert [one.x_from for one in dimensions] == pytest.approx([0, 2e-3, 0, 0, 8e-3, 0], abs=1e-12)
+    highest = max(one.at for one in dimensions[:3])
+    texts = [item for item in drawing.items if isinstance(item, Text)]
+    assert [one.text for one in texts] == ["a: ridges 50 um high", "b: ridges 70 um high"]
+    assert 30e-3 < highest < texts[1].y < second
+    assert texts[0].y < first
+    assert [one.at - one.y_from for one in dimensions[:3]] == pytest.approx([4e-3] * 3)
+    assert all(one.text_x == (one.x_from + one.x_to) / 2 for one in dimensions)

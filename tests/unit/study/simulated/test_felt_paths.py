@@ -7,6 +7,7 @@ import json
 import math
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -167,3 +168,62 @@ def test_an_answer_that_is_not_there_says_which_are(
     store = SimpleNamespace(participants=lambda: people, path=Path("s.sqlite"))
     with pytest.raises(InputError, match=says):
         felt_in_trial(store, participant, trial)  # type: ignore[arg-type]
+
+
+def store_of(monkeypatch: pytest.MonkeyPatch, row: dict[str, object], paths: int) -> Any:
+    """A study's file with one answer and so many paths of it, each felt as what it is asked by."""
+    t = np.linspace(0, 0.5, 51)
+    tables = [Table({"time_s": t, "x_m": 0.01 * k + 0.08 * t, "y_m": 0 * t}) for k in range(paths)]
+    asked: list[str] = []
+    read = SimpleNamespace(paths=lambda names: asked.extend(names) or tables)
+    monkeypatch.setattr(felt_trials, "trial_table", lambda _: [row])
+    monkeypatch.setattr(felt_trials, "ExploredTrials", lambda _: read)
+    monkeypatch.setattr(felt_trials, "felt_on_path", lambda *given, **named: (given, named))
+    monkeypatch.setattr(felt_trials, "origin_of", lambda _: "people")
+    return SimpleNamespace(
+        design="the design", asked=asked, path=Path("s.sqlite"), traces=Path("s.traces")
+    )
+
+
+ROW = {
+    "participant_id": "p", "trial": 4, "phase": "main", "adaptive_series": "",
+    "stimulus": "bars", "second_stimulus": "checks", "third_stimulus": "", "traces": "a.csv b.csv",
+    "mean_normal_force_N": 0.7, "display": "biet2008-plate", "choice": None, "answer": "first",
+}  # fmt: skip
+
+
+def test_each_surface_of_a_trial_is_felt_along_its_own_path(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    store, told = store_of(monkeypatch, ROW, 2), print
+    found: Any = felt_in_trial(store, "p", 4, progress=told)
+    assert store.asked == ["a.csv", "b.csv"]
+    for place, (name, (given, named)) in enumerate(zip(("bars", "checks"), found, strict=True)):
+        design, stimulus, (path,) = given
+        assert (design, stimulus) == ("the design", name)
+        assert path.x[0] == pytest.approx(0.01 * place, abs=1e-12)
+        assert named.pop("display").name == "biet2008-plate"
+        assert named == {
+            "observer": None, "normal_force": 0.7, "source": "trial 4 of p (people)",
+            "choice": "", "answer": "first", "progress": told,
+        }  # fmt: skip
+
+
+@pytest.mark.parametrize("known", [None, math.nan])
+def test_a_force_that_was_not_measured_is_not_known(
+    known: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = store_of(monkeypatch, ROW | {"mean_normal_force_N": known, "choice": "second"}, 2)
+    found: Any = felt_in_trial(store, "p", 4)
+    assert [named["normal_force"] for _, named in found] == [None, None]
+    assert found[0][1]["choice"] == "second"
+
+
+@pytest.mark.parametrize("paths", [0, 1, 3])
+def test_a_trial_without_a_path_of_each_surface_is_refused(
+    paths: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = store_of(monkeypatch, ROW, paths)
+    says = f"presented 2 surfaces and has {paths} paths beside s.sqlite; .* in s.traces"
+    with pytest.raises(InputError, match=says):
+        felt_in_trial(store, "p", 4)

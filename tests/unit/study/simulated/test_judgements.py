@@ -16,6 +16,9 @@ from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.perceived import Perceived
 from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75, Candidates
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.simulated.answers import (
@@ -187,3 +190,87 @@ def test_alike_in_the_plane_is_within_the_criterion_of_noise_alone() -> None:
         assert given.doubt[k] == pytest.approx(1.0 if blind else math.exp(-abs(apart - 0.8)))
     assert np.isnan(given.estimate).all()
     assert given.estimate.shape == (count,)
+
+
+class Varied(ChainTables):
+    """Tables that feel what an adaptive series chooses, too: each period alone, as evident."""
+
+    def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
+        """The period that the stimulus has."""
+        assert (display, finger) == (0, 0)
+        return Candidates(np.array([stimulus.period]), np.array([1e6]))
+
+
+def varied(design: StudyDesign) -> ChainTables:
+    one = tables(design)
+    return Varied(**{field.name: getattr(one, field.name) for field in dataclasses.fields(one)})
+
+
+SERIES = dataclasses.replace(
+    load_design("period-jnd"), practice=0, catch=(),
+    adaptive=(AdaptiveCondition("stairs", "staircase", start=0.4, step=0.08, count=30),),
+)  # fmt: skip
+PAIRS = dataclasses.replace(
+    load_design("period-same-different"), practice=0, catch=(), repetitions=1,
+    adaptive=(AdaptiveCondition("pairs", "bayesian", count=6),),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("design", [SERIES, PAIRS], ids=lambda one: one.task)
+def test_a_series_asks_next_what_its_answers_make_it_ask(design: StudyDesign) -> None:
+    """Each person's answers, told to the method again, choose the differences that were asked."""
+    found = simulate_judgements(design, EXACT, 2, 3, varied(design))
+    for person in range(2):
+        mine = found.take((found.participant == person) & (found.series == 0))
+        assert len(mine.intensity) == design.adaptive[0].count
+        method = adaptive_method(design.adaptive[0], task=design.task)
+        trials_asked = zip(
+            mine.intensity, mine.first, mine.second, mine.choice, mine.right, strict=True
+        )
+        for intensity, first, second, choice, right in trials_asked:
+            shown = [mine.surfaces[place] for place in (first, second)]
+            if design.task == "same-different" and design.answers[right] == "same":
+                assert intensity == 0.0
+                assert [one.name for one in shown] == [design.reference] * 2
+            else:
+                assert intensity == method.next_stimulus()
+                here = design.stimulus(design.reference).period
+                periods = sorted(one.period for one in shown)
+                assert periods == pytest.approx([here, here * (1 + intensity)])
+            if design.task == "two-interval":
+                finer = shown[0].period > shown[1].period
+                assert design.answers[right] == ("first" if finer else "second")
+            method.update(float(intensity), bool(choice == right))
+    # People differ, so that one's series is not the other's.
+    one, other = (found.intensity[found.participant == person] for person in range(2))
+    assert not np.array_equal(one, other)
+
+
+def test_progress_is_told_of_people() -> None:
+    told: list[str] = []
+    simulate_judgements(NUMBERS, EXACT, 3, 1, tables(NUMBERS), told.append)
+    assert told == ["3 of 3 simulated participants"]
+
+
+def test_the_noise_of_a_percept_of_nothing_is_a_guess() -> None:
+    """Depths are judged though nothing is felt: half of the answers are right."""
+    main = simulate_judgements(DEPTHS, EXACT, 12, 1, tables(DEPTHS, -np.inf)).main(0)
+    error = 0.5 / math.sqrt(main.trials)
+    assert main.correct.mean() == pytest.approx(0.5, abs=4 * error)
+
+
+def test_a_depth_is_a_number_in_proportion_to_what_is_felt_of_it() -> None:
+    """Twice the reference's strength is given more, half of it less, the reference its modulus."""
+    design = dataclasses.replace(
+        DEPTHS, task="magnitude-estimation", reference="30 %", modulus=10.0, repetitions=3
+    )
+    levels = {one.name: one.friction_depth / 0.3 for one in design.stimuli}
+    strengths = [40.0 * levels[one.name] for one in design.stimuli]
+    answers = simulate_judgements(design, EXACT, 20, 1, tables(design, strengths)).main(0)
+    middle = {
+        one.name: float(np.median(answers.estimate[answers.first == k]))
+        for k, one in enumerate(design.stimuli)
+    }
+    assert middle["30 %"] == pytest.approx(10.0, rel=0.1)
+    order = sorted(levels, key=lambda name: levels[name])
+    assert sorted(middle, key=lambda name: middle[name]) == order

@@ -11,6 +11,7 @@ import pytest
 from scipy import stats
 
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.kept.store import Kept
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.simulated import planned_contrast as module
 from squeezefilm.study.simulated.chain_tables import ChainTables
@@ -84,3 +85,35 @@ def test_the_p_is_students_and_of_people_on_both_displays(monkeypatch: pytest.Mo
         name, found = module.within_people(answers)
         assert name == said
         assert found == pytest.approx(expected)
+
+
+def test_a_plan_has_what_people_do_otherwise_and_the_power_to_show_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Simulated once, kept by what it follows from, and tested as often as is asked."""
+    apart = np.random.default_rng(2).normal(0.3, 0.1, 24)
+    simulated: list[int] = []
+
+    def answers(_tables: Any, people: int, *_: Any) -> str:
+        simulated.append(people)
+        return "answers"
+
+    monkeypatch.setattr(module, "simulated_answers", answers)
+    monkeypatch.setattr(module, "within_people", lambda _: ("exponent", apart))
+    monkeypatch.setattr(module, "_DIFFERENCES", Kept("differences-of-a-test", tuple[str, Any]))
+    told: list[str] = []
+    found = planned_contrast(
+        NUMBERS, EXACT, HERE, THERE, participants=(3, 12), studies=40, people=24, seed=2,
+        progress=told.append,
+    )  # fmt: skip
+    assert (found.measure, found.difference) == ("exponent", pytest.approx(apart.mean()))
+    assert (found.first, found.second, found.display) == (HERE, THERE, "")
+    assert (found.design, found.seed, found.origin) == (NUMBERS.name, 2, "simulated")
+    # A mean of three standard deviations is shown by twelve people in every study.
+    assert found.curve.power[1] == 1.0
+    assert simulated == [24]
+    assert "each person's fits" in told
+    planned_contrast(
+        NUMBERS, EXACT, HERE, THERE, participants=(3, 12), studies=10, people=24, seed=3
+    )
+    assert simulated == [24, 24]
