@@ -31,6 +31,9 @@ class Loose:
     bare: object = 1.5
 
 
+DEEP = ".".join(["a"] * 60)
+
+
 def nested(depth: int) -> str:
     return "name = " + "[" * depth + "]" * depth
 
@@ -39,6 +42,8 @@ def nested(depth: int) -> str:
     ("build", "word"),
     [
         (lambda: load_text(Named, nested(120)), "nested"),
+        # A table's head may be as deep as its keys again: each alone is read.
+        (lambda: load_text(Named, f"[{DEEP}]\n{DEEP} = 1"), "is nested 120 deep; at most"),
         (lambda: load_text(Named, 'length = { value = "1 mm", source = 3 }'), "no text"),
         (lambda: text_of(Named("\ud800")), "half a character"),
         (lambda: text_of("a"), "no dataclass"),

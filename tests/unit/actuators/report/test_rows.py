@@ -58,7 +58,7 @@ MOTOR = [
     "Best efficiency 12 % at 100 mm/s against 0.5 N: 50 mW out of 400 mW, of which 200 mW are "
     "lost in the plate",
     "Best of the map 30 % under 10 N at 1 µm, of what was looked at",
-    "The same in time 700 mN of thrust, where the mean over a period gives 750 mN",
+    "The same in time 0.7 N of thrust, where the mean over a period gives 0.75 N",
     "Held without a voltage 3 N by friction under a preload of 20 N",
     "Amplitude 1.5 µm zero to peak, under the slider: 75 % of that without it",
     "Feet in contact 25 % of each period, at rest",

@@ -6,13 +6,14 @@ import dataclasses
 import math
 from types import SimpleNamespace
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.progress import Pace
-from squeezefilm.design.plate import ring
+from squeezefilm.design.plate import ring, ring_pair
 from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring, mode_row, modes_in_band
 from squeezefilm.design.plate.solved import ALONE, ModeRow
 from squeezefilm.physics.display import load_display
@@ -390,3 +391,61 @@ def test_the_sound_of_every_fourth_radius_is_that_of_all() -> None:
 def test_a_plate_is_no_ring() -> None:
     with pytest.raises(InputError, match="'biet2008-plate' has a rectangular_plate; no disc"):
         analyze_ring(load_display("biet2008-plate"))
+
+
+MOVING = {
+    "node_height": np.array([0.0, 0.0, 1e-3, 1e-3, 1e-3]),
+    "displacement": np.array([[0, 9, 1], [0, 9, 1], [0, 0.2, 0.5], [0, 0.3, -1.5], [0, 1, 1]]),
+}
+"""Of the nodes on top, that at 25 mm moves most: 0.3 along for 1.5 across."""
+
+
+@pytest.mark.parametrize("split", [None, 0.0, 100.0, 800.0])
+def test_a_pair_is_what_its_split_makes_of_one_channel(split: float | None) -> None:
+    display = load_display("winfield2007-tpad")
+    volts = display.drive.voltage
+    working = mode(**MOVING)
+    driven: Any = SimpleNamespace(section=None, drive=ALL_ROUND)
+    with mock.patch.object(ring_pair, "electrode_split", return_value=2e-3) as open_ones:
+        found = ring_pair.ring_pair(display, driven, working, split)
+    assert open_ones.call_args.args == (None, working, ALL_ROUND)
+    amplitude = volts * working.amplitude_per_volt(ALL_ROUND)
+    along = 2 * math.pi * 40e3 * 0.2
+    assert (found.label, found.frequency, found.quality_factor) == ("B(1,2)", 40e3, 100.0)
+    assert found.amplitude == pytest.approx(amplitude)
+    assert found.two_channels == pytest.approx(along * amplitude)
+    assert found.electrode_split == pytest.approx(80.0)
+    # Half-bandwidths are f/2Q = 200 Hz; both numbers of a split follow from its share of them.
+    shares = {0.1: 0.05 / 1.0025, 0.5: 0.25 / 1.0625, 2.0: 0.5}
+    assert [one.half_bandwidths for one in found.splits] == pytest.approx(list(shares))
+    for one in found.splits:
+        s = one.half_bandwidths
+        assert one.split == pytest.approx(200 * s)
+        assert one.standing_wave_ratio == pytest.approx(2 / s)
+        assert one.travelling == pytest.approx(shares[round(s, 9)])
+        assert one.crest_speed == pytest.approx(one.travelling * along * amplitude)
+    if split is None:
+        assert found.measured is None
+        return
+    assert found.measured is not None
+    s = split / 200
+    ratio = None if s == 0 else max(2 / s, 1.0)
+    assert found.measured.standing_wave_ratio == (ratio if ratio is None else pytest.approx(ratio))
+    expected = {0.0: 0.0, 100.0: shares[0.5], 800.0: 0.25}[split]
+    assert found.measured.travelling == pytest.approx(expected)
+    said = found.sentences[-1]
+    assert said.startswith("Measured: ")
+    assert ("infinite" in said) is (s == 0)
+    assert ("not noticeably" in said) is (s == 0)
+
+
+def test_a_stator_s_amplitude_is_in_proportion_to_its_reference() -> None:
+    display = load_display("biet2008-stator")
+    stator: Any = display.actuator
+    driven: Any = SimpleNamespace(section=None, drive=ALL_ROUND)
+    with mock.patch.object(ring_pair, "electrode_split", return_value=0.0):
+        found = ring_pair.ring_pair(display, driven, mode(**MOVING))
+        with pytest.raises(InputError, match="split = -1"):
+            ring_pair.ring_pair(display, driven, mode(**MOVING), -1.0)
+    expected = stator.reference_amplitude * display.drive.voltage / stator.reference_voltage
+    assert found.amplitude == pytest.approx(expected)

@@ -11,7 +11,10 @@ import pytest
 
 import squeezefilm as sf
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.results import config_hash
 from squeezefilm.design.sweep import sweep as sweeps
+from squeezefilm.design.sweep.answers import FOLLOWED, Asked
+from squeezefilm.design.sweep.followed import FollowedMode
 from squeezefilm.design.sweep.points import Answer, answered
 from squeezefilm.design.sweep.sweep import Run, SweepRequest, sweep, sweep_until_stopped
 from squeezefilm.design.sweep.swept import NOT_YET, counted
@@ -251,3 +254,43 @@ def test_an_option_of_another_verb_is_refused_with_who_takes_it() -> None:
         InputError, match=r"asked of predict; it goes with render: ask .* render\.N"
     ):
         sweep(STATOR, vary={"texture": "sine-3mm"}, ask="predict.relative_friction")
+
+
+def test_a_table_says_of_which_descriptions_it_is() -> None:
+    """One hash of one display; a list where there are several, each with its own."""
+    one, other = (dataclasses.replace(sf.load_display(STATOR), name=name) for name in "ab")
+    asked: dict[str, Any] = {"vary": VOLTS, "ask": "relative_friction"}
+    alone = Run(SweepRequest(one, **asked)).result()
+    both = Run(SweepRequest([one, other], **asked)).result()
+    hashes = [config_hash(display) for display in (one, other)]
+    assert alone.provenance["config_sha256"] == hashes[0]
+    assert both.provenance["config_sha256"] == hashes
+    assert both.provenance["finger"] == one.whose_finger
+    # Nothing was computed of either.
+    assert both.reasons == (NOT_YET,) * 6
+    assert (both.computed, both.kept, both.warnings) == (0, 0, ())
+    assert np.isnan(both.column("relative_friction")).all()
+
+
+def test_modes_that_nothing_drives_have_two_columns(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those that are driven have what is asked; of the others frequency and Q are known."""
+    rows = [
+        {"frequency_Hz": 30e3 + volts, "quality_factor": 90.0, "modal_mass_kg": 1e-3 * volts}
+        for volts in (50, 75, 100)
+    ]
+    follows = [
+        FollowedMode(label, (0, 0, 0), np.ones(3), driven)
+        for label, driven in (("moved", True), ("still", False))
+    ]
+    run = Run(SweepRequest(sf.load_display(STATOR), vary=VOLTS, ask="relative_friction"))
+    monkeypatch.setattr(Run, "_modes", lambda _: [{"modes": [row]} for row in rows])
+    for key, labels in (
+        ("modes.0.modal_mass_kg", ["moved"]),
+        ("modes.0.frequency_Hz", ["moved", "still"]),
+        ("modes.0.quality_factor", ["moved", "still"]),
+    ):
+        quantity = key.rpartition(".")[2]
+        columns = list(run._columns(Asked(FOLLOWED, key), follows))
+        assert [one.name for one in columns] == [f"followed.{label}.{quantity}" for label in labels]
+        for column in columns:
+            assert column.values.tolist() == [row[quantity] for row in rows]

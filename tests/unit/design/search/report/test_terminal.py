@@ -1,6 +1,7 @@
 """What the terminal shows of a search: whole sentences, nothing clipped at 80 columns."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 from tests.unit.design.search.report.made_search import made_search
@@ -57,3 +58,20 @@ def test_the_presets_are_listed_with_what_to_do(printed: Printed) -> None:
     shown = one_line(printed())
     assert "biet2008-plate" in shown
     assert "squeezefilm design NAME" in shown
+
+
+def test_of_the_reasons_why_nothing_can_be_built_the_three_most_common_are_said(
+    printed: Printed,
+) -> None:
+    found = made_search(limits={"most_temperature_rise": 20.5})
+    reasons = ["too short", "too wide", "too deep", "too thin"]
+    feasible = [one for one in found.screened if not one.reason]
+    odd = [
+        replace(feasible[k], reason=reason)
+        for k, reason in enumerate(reason for n, reason in enumerate(reasons) for _ in range(5 - n))
+    ]
+    show_design(replace(found, screened=(*odd, *feasible[len(odd) :])))
+    shown = one_line(printed())
+    for count, reason in zip((5, 4, 3), reasons, strict=False):
+        assert f"! {count} designs cannot be built: {reason}" in shown
+    assert "too thin" not in shown
