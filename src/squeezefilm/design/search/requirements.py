@@ -166,6 +166,16 @@ class Tolerances:
     quality_factor: Annotated[si.Dimensionless, si.AtLeast(0.0), si.Below(0.5)] = 0.1
 
 
+def toleranced(body: Body) -> dict[str, str]:
+    """Dotted paths of the lengths that a workshop makes of a body, each with its tolerance's name
+    in `Tolerances`. All ceramics are of one batch."""
+    if isinstance(body, DiscPlate):
+        own = {"ceramic_thickness": "ceramic_thickness", "diameter": "sides"}
+    else:
+        own = {"patches.*.thickness": "ceramic_thickness", "length": "sides", "width": "sides"}
+    return {"thickness": "thickness", **own}
+
+
 # Frozen, so that all requirements may share them.
 _TOUCH, _LIMITS, _TOLERANCES = Touch(), Limits(), Tolerances()
 

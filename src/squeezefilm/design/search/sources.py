@@ -8,11 +8,13 @@ from collections.abc import Iterator, Mapping
 from squeezefilm.core import presets
 from squeezefilm.core.config.provenance import Provenance, distribution_of, split_provenance
 from squeezefilm.core.config.schema import Leaf, leaves
+from squeezefilm.core.distributions import Normal
 from squeezefilm.core.presets.materials import Kind
-from squeezefilm.design.search.requirements import Requirements
+from squeezefilm.design.search.requirements import Requirements, toleranced
 from squeezefilm.design.search.space import VOLTAGE, Setting
 from squeezefilm.design.search.stock import OWN
 from squeezefilm.physics.display import Display
+from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.physics.uncertainty.parameters import value_at
 
 _PARTS: Mapping[str, Kind] = {"substrate": "substrate", "ceramic": "ceramic"}
@@ -41,6 +43,7 @@ def plate_sources(
             sources[path] = _quality(requirements, given)
         elif name not in _PARTS:
             sources[path] = chosen
+    sources |= _tolerances(requirements, display, sources)
     base = requirements.started_from
     for part, kind in _PARTS.items():
         sources |= _of_material(base, part, str(settings[part]), kind, display)
@@ -85,6 +88,22 @@ def _kept(requirements: Requirements, base: Display) -> Iterator[tuple[str, Prov
         if head == "surfaces":
             rest[0] = places[rest[0]]
         yield ".".join([head, *rest]), one
+
+
+def _tolerances(
+    requirements: Requirements, display: Display, sources: Mapping[str, Provenance]
+) -> Iterator[tuple[str, Provenance]]:
+    """The sources of what a workshop makes, with how well it does."""
+    body = display.actuator
+    assert isinstance(body, RectangularPlate | DiscPlate), "shapes make no others"
+    for path, of in toleranced(body).items():
+        deviation, (value, _) = getattr(requirements.tolerances, of), value_at(body, path)
+        # A description's value stays above 0 within three standard deviations.
+        if 0 < 3 * deviation < value:
+            for at in (f"actuator.{path.replace('*', str(n))}" for n in range(len(sources))):
+                if at in sources:
+                    spread = Normal(value, deviation)
+                    yield at, dataclasses.replace(sources[at], distribution=spread)
 
 
 def _quality(requirements: Requirements, given: Provenance) -> Provenance:

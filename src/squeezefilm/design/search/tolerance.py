@@ -22,10 +22,11 @@ from squeezefilm.design.search.candidate import (
 )
 from squeezefilm.design.search.correction import CORRECTED
 from squeezefilm.design.search.criteria import breaches, criterion_of
-from squeezefilm.design.search.requirements import Requirements, Tolerances
+from squeezefilm.design.search.requirements import Requirements, Tolerances, toleranced
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate, turned
+from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate, resized
 from squeezefilm.physics.plausibility.checks import checked_before
+from squeezefilm.physics.uncertainty.parameters import value_at, with_values
 
 log = logging.getLogger(__name__)
 
@@ -150,51 +151,7 @@ def as_made(
     ceramic = body.ceramic.scaled(
         stiffness=1 + off["ceramic_stiffness"], charge=1 + off["charge_coefficient"]
     )
-    body = replace(
-        body,
-        substrate=sheet,
-        ceramic=ceramic,
-        thickness=body.thickness + off["thickness"],
-        quality_factor=body.quality_factor * (1 + off["quality_factor"]),
-    )
-    made_body = (
-        _disc_resized(body, off) if isinstance(body, DiscPlate) else _plate_resized(body, off)
-    )
-    return replace(display, actuator=made_body)
-
-
-def _disc_resized(body: DiscPlate, off: Mapping[str, float]) -> DiscPlate:
-    larger = 1 + off["sides"] / body.diameter
-    return replace(
-        body,
-        diameter=body.diameter * larger,
-        inner_diameter=body.inner_diameter * larger,
-        ceramic_outer_diameter=body.ceramic_outer_diameter * larger,
-        ceramic_inner_diameter=body.ceramic_inner_diameter * larger,
-        ceramic_thickness=body.ceramic_thickness + off["ceramic_thickness"],
-    )
-
-
-def _plate_resized(body: RectangularPlate, off: Mapping[str, float]) -> RectangularPlate:
-    """Sides and ceramics of a plate that came out longer: all along its wave in proportion."""
-    turn = body.lines_across == "width"
-    plate = turned(body) if turn else body
-    longer = 1 + off["sides"] / plate.length
-    made = replace(
-        plate,
-        length=plate.length * longer,
-        patches=tuple(
-            replace(
-                patch,
-                x=patch.x * longer,
-                length=patch.length * longer,
-                thickness=patch.thickness + off["ceramic_thickness"],
-            )
-            for patch in plate.patches
-        ),
-        supports=tuple(
-            replace(support, x=support.x * longer, length=support.length * longer)
-            for support in plate.supports
-        ),
-    )
-    return turned(made) if turn else made
+    quality = body.quality_factor * (1 + off["quality_factor"])
+    body = replace(body, substrate=sheet, ceramic=ceramic, quality_factor=quality)
+    lengths = {path: value_at(body, path)[0] + off[of] for path, of in toleranced(body).items()}
+    return replace(display, actuator=with_values(resized(body, lengths), lengths))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated, Literal, TypeVar
 
@@ -253,6 +253,29 @@ def turned(plate: RectangularPlate) -> RectangularPlate:
         supports=tuple(swapped(support) for support in plate.supports),
         clamped_edges=tuple(other[edge] for edge in plate.clamped_edges),
         lines_across="width" if plate.lines_across == "length" else "length",
+    )
+
+
+def resized(
+    body: RectangularPlate | DiscPlate, sides: Mapping[str, si.Metre]
+) -> RectangularPlate | DiscPlate:
+    """The same plate or disc with another `length`, `width` or `diameter` (m, by these names), and
+    what lies on it in proportion."""
+    if isinstance(body, DiscPlate):
+        larger = sides.get("diameter", body.diameter) / body.diameter
+        every = ("diameter", "inner_diameter", "ceramic_outer_diameter", "ceramic_inner_diameter")
+        return replace(body, **{name: larger * getattr(body, name) for name in every})
+    length, width = sides.get("length", body.length), sides.get("width", body.width)
+    x, y = length / body.length, width / body.width
+
+    def scaled(part: _Part) -> _Part:
+        return replace(
+            part, x=x * part.x, y=y * part.y, length=x * part.length, width=y * part.width
+        )
+
+    patches, supports = map(scaled, body.patches), map(scaled, body.supports)
+    return replace(
+        body, length=length, width=width, patches=tuple(patches), supports=tuple(supports)
     )
 
 

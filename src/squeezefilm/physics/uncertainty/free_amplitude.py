@@ -14,7 +14,13 @@ from squeezefilm.core import quantities as si
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.beam.response import beam_response
-from squeezefilm.physics.plate.layout import Actuator, AnnularStator, RectangularPlate
+from squeezefilm.physics.plate.layout import (
+    Actuator,
+    AnnularStator,
+    DiscPlate,
+    RectangularPlate,
+    resized,
+)
 from squeezefilm.physics.plate.working_mode import working_mode
 from squeezefilm.physics.uncertainty.parameters import number_paths, with_values
 
@@ -99,7 +105,7 @@ class FreeAmplitude:
             return 1.0 if isinstance(actuator, AnnularStator) else value / nominal
         if path not in self._curves:
             less, more = (
-                math.log(self._per_volt(with_values(actuator, {path: share * nominal})))
+                math.log(self._per_volt(self._with(path, share * nominal)))
                 - math.log(self.reference)
                 for share in (1 / _APART, _APART)
             )
@@ -108,6 +114,13 @@ class FreeAmplitude:
         slope, bend = self._curves[path]
         off = math.log(value / nominal)
         return math.exp(slope * off + bend * off**2)
+
+    def _with(self, path: str, value: float) -> Actuator:
+        """The actuator with another number; a disc's ceramic goes with its diameter."""
+        actuator = self.nominal.actuator
+        if isinstance(actuator, DiscPlate) and path == "diameter":
+            return resized(actuator, {path: value})
+        return with_values(actuator, {path: value})
 
     @staticmethod
     # Every question of an analysis asks for the same discs.
@@ -124,16 +137,19 @@ def _values(
     here: Actuator, nominal: Actuator, paths: tuple[str, ...]
 ) -> Iterator[tuple[str, float]]:
     """The values at paths. Of a ceramic's full constants what went along with its in-plane
-    stiffness or its d31 counts with these."""
+    stiffness or its d31 counts with these, and what of a disc went along with its diameter."""
     with_it = {"compliance": 1.0, "charge": 1.0}
     if any(path.startswith(_CONSTANTS) for path in paths):
         now, then = (attrgetter("ceramic")(one) for one in (here, nominal))
         with_it["compliance"] = then.in_plane_stiffness / now.in_plane_stiffness
         with_it["charge"] = now.charge_coefficient / then.charge_coefficient
+    if isinstance(here, DiscPlate) and isinstance(nominal, DiscPlate):
+        with_it["diameter"] = here.diameter / nominal.diameter
     for path in paths:
         value, own = attrgetter(path)(here), attrgetter(path)(nominal)
-        if path.startswith(_CONSTANTS):
-            kind = path.removeprefix(_CONSTANTS).split("_")[0]
+        is_diameter = path.endswith("_diameter")
+        if path.startswith(_CONSTANTS) or is_diameter:
+            kind = "diameter" if is_diameter else path.removeprefix(_CONSTANTS).split("_")[0]
             alone = own if value is None else value / with_it.get(kind, 1.0)
             value = own if math.isclose(alone, own, rel_tol=1e-9) else alone
         yield path, value

@@ -174,6 +174,7 @@ def uncertain_parameters(
         if path == FORCE and force != own:
             continue
         nominal, unit = value_at(display, path)
+        path = _of_batch(display, path)
         found[path] = Parameter(
             path, nominal, unit, origin.distribution, "given", origin.source, steps=_STEPS.get(path)
         )
@@ -205,6 +206,20 @@ def uncertain_parameters(
         "unknown",
     )
     return tuple(found.values())
+
+
+def _of_batch(display: Display, path: str) -> str:
+    """The path, with ``*`` for the number of a ceramic whose thickness all have, as sure: they are
+    of one batch, and each draw is of all."""
+    ceramics = f"{path.rpartition('.patches.')[0]}.patches."
+    alike = [
+        (value_at(display, other)[0], display.provenance[other].distribution)
+        for other in (path, *display.provenance)
+        if other.startswith(ceramics) and other.endswith(".thickness")
+    ]
+    is_whole = len(alike) - 1 == len(getattr(display.actuator, "patches", ()))
+    same = is_whole and path.endswith(".thickness") and len(set(alike)) == 1
+    return f"{ceramics}*.thickness" if same else path
 
 
 def _has(display: Display, path: str) -> bool:

@@ -8,11 +8,25 @@ import numpy as np
 import pytest
 from tests.unit.design.search.made_up import random_designs, requirements
 
+from squeezefilm.core.errors import GeometryError
+from squeezefilm.design.fabrication.report.sheet_parts import tolerance_said
 from squeezefilm.design.search import tolerance
-from squeezefilm.design.search.candidate import Design, Evaluated, display_of, evaluate
-from squeezefilm.design.search.requirements import Limits, Requirements
+from squeezefilm.design.search.candidate import (
+    Design,
+    Evaluated,
+    display_of,
+    evaluate,
+    sourced_display_of,
+)
+from squeezefilm.design.search.requirements import (
+    Limits,
+    Requirements,
+    load_requirements,
+    toleranced,
+)
 from squeezefilm.design.search.tolerance import as_made, made_of
 from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.uncertainty.parameters import uncertain_parameters, value_at
 
 
 @pytest.fixture(scope="module")
@@ -49,6 +63,8 @@ def test_each_tolerance_moves_what_it_names(wanted: Requirements, solved: Evalua
     longer = as_made(wanted, solved.design, rows[2]).actuator
     assert isinstance(longer, RectangularPlate)
     assert longer.length == pytest.approx(drawn.length + 50e-6)
+    assert longer.width == pytest.approx(drawn.width + 50e-6)
+    assert longer.patches[-1].x + longer.patches[-1].length == pytest.approx(longer.length)
     stiffer = as_made(wanted, solved.design, rows[3]).actuator
     assert isinstance(stiffer, RectangularPlate)
     assert stiffer.substrate.young_modulus == pytest.approx(1.02 * drawn.substrate.young_modulus)
@@ -107,3 +123,28 @@ def test_a_fault_of_ours_costs_the_plate_that_has_it_and_no_search(
 
     monkeypatch.setattr(tolerance, "screened", at_times)
     assert made_of(wanted, solved, draws=8).failed == 1
+
+
+@pytest.mark.parametrize("name", ["biet2008-plate", "winfield2007-tpad"])
+def test_file_drawing_and_yield_have_the_same_tolerances(name: str) -> None:
+    """Three standard deviations off, a plate is at the end of what its file says of each length;
+    the drawing has two of them, as ±."""
+    asked = load_requirements(name)
+    for design in random_designs(asked, 20):
+        try:
+            display = sourced_display_of(asked, design)
+        except GeometryError:
+            continue
+        made = as_made(asked, design, np.array([3.0, 3.0, 3.0, 0, 0, 0, 0]))
+        said = [path for path in toleranced(display.actuator) if "patches" not in path]  # type: ignore[arg-type]
+        for path in [f"actuator.{one}" for one in said]:
+            spread = display.provenance[path].distribution
+            assert spread is not None
+            assert value_at(made, path)[0] == pytest.approx(spread.support[1])
+        assert tolerance_said(display, "actuator.thickness") == " ±0.04"
+        sides = "length" if name == "biet2008-plate" else "diameter"
+        assert tolerance_said(display, f"actuator.{sides}") == " ±0.1"
+        thickness = [one.path for one in uncertain_parameters(display, driven=True)]
+        assert sum("thickness" in path and "glue" not in path for path in thickness) == 2
+        return
+    raise AssertionError("none of 20 designs can be built")
