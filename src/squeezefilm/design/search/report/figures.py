@@ -1,9 +1,8 @@
-"""The figures of a design search: the front, the screening, what was chosen."""
+"""The figures of a design search: the front, and what was chosen along it."""
 
 from __future__ import annotations
 
 import itertools
-import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -197,58 +196,6 @@ def _thinned(designs: Sequence[Evaluated]) -> Sequence[Evaluated]:
 
 
 @style.drawn
-def screening(search: DesignSearch) -> Figure:
-    """Figure of what the screening said of the solved plates, against what solving them said."""
-    pairs = search.screened_and_solved
-    names = dict.fromkeys((*search.requirements.objectives, "resonance_frequency"))
-    if not pairs:
-        return style.message_figure("How good the screening was", "No screened plate was solved.")
-    ranks = ", ".join(f"{criterion_of(name).said} {rho:.2f}" for name, rho in search.ranks.items())
-    figure = style.new_figure(
-        f"The screening's ranks against solved ones, Spearman's ρ: {ranks}"
-        if ranks
-        else "Fewer than ten plates were solved: their ranks say little",
-        "the screening theory across, three-dimensional solves up",
-        4.3,
-    )
-    places = figure.subplots(1, len(names))
-    for axes, name in zip(places, names, strict=True):
-        _screening_axes(axes, search, name, pairs)
-    if len(search.requirements.spaces) > 1:
-        style.legend_below(places[len(names) // 2], columns=4, gap=0.22)
-    return figure
-
-
-def _screening_axes(
-    axes: Axes, search: DesignSearch, name: str, pairs: Sequence[tuple[Evaluated, Evaluated]]
-) -> None:
-    criterion = criterion_of(name)
-    values = np.array([[e.numbers.get(criterion.key, math.nan) for e in pair] for pair in pairs])
-    shape = np.array([pair[0].design.shape for pair in pairs])
-    good = np.isfinite(values).all(axis=1)
-    values, shape = values[good], shape[good]
-    factor, symbol = scaled(values.ravel(), criterion.unit)
-    for number, space in enumerate(search.requirements.spaces):
-        here = factor * values[shape == number]
-        look: dict[str, Any] = {
-            "ls": "",
-            "marker": _SHAPES[number % 4],
-            "ms": 5,
-            "mec": style.PAPER,
-        }
-        color = style.LINES[number % len(style.LINES)][0]
-        axes.plot(here[:, 0], here[:, 1], color=color, **look, label=space.shape)
-    if values.size:
-        ends = factor * np.array([values.min(), values.max()])
-        axes.plot(ends, ends, **style.REFERENCE)
-    axes.set(xlabel=labelled("screened", symbol), ylabel=labelled("solved", symbol))
-    axes.locator_params(axis="x", nbins=4)
-    known = [c for c in search.corrections if c is not None and criterion.key in c.raw]
-    off = f"\noff by {si.percent(max(c.raw[criterion.key] for c in known), 1)}" if known else ""
-    axes.set_title(f"{criterion.said}{off}")
-
-
-@style.drawn
 def settings(search: DesignSearch) -> Figure:
     """Figure of what was chosen along the front: each variable over the first objective."""
     spaces = search.requirements.spaces
@@ -332,13 +279,6 @@ FIGURES = (
         "three dimensions; the blue points are beaten by no other. Point at one for its numbers, "
         "follow it to its row in the table.",
         has=lambda search: search.front or any(each.is_feasible for each in search.screened),
-    ),
-    FigureOf(
-        "screening",
-        "How good the screening was",
-        screening,
-        "On the dashed line the quick theory and the solved plate say the same. The search needs "
-        "the ranks to be right; the numbers on this page are the solved ones.",
     ),
     FigureOf(
         "settings",

@@ -101,7 +101,6 @@ def design_page(search: DesignSearch, *, fabrication: str = "") -> str:
         section("What each limit does and costs", bullets(limit_sentences(search))),
         section("Where nothing keeps the limits", _corners(search)),
         drawn["settings"],
-        drawn["screening"],
         section("How far the screening is off", _errors(search)),
         section("What all of this assumes", bullets(requirements.assumed)),
         section("Files", _files(search)),

@@ -1,9 +1,8 @@
 """The figures of a search: what they mark is where the numbers are, and nothing is outside."""
 
-import numpy as np
 import pytest
 from tests.unit.design.search.report.made_search import made_search
-from tests.unit.drawn import labelled, words
+from tests.unit.drawn import labelled
 
 from squeezefilm.core.kit.style import png
 from squeezefilm.design.search.found import DesignSearch
@@ -60,16 +59,6 @@ def test_three_objectives_are_drawn_in_pairs() -> None:
     names = [axes.get_xlabel() + axes.get_ylabel() for axes in figures.front(found).axes[:3]]
     assert len(set(names)) == 3
     assert sum("mass" in one for one in names) == 2
-
-
-def test_screened_and_solved_numbers_are_set_against_each_other(found: DesignSearch) -> None:
-    figure = figures.screening(found)
-    assert "Spearman's ρ" in words(figure.get_suptitle())
-    points = figure.axes[0].lines[0]
-    before = {one.design: one.numbers.get("relative_friction") for one in found.screened}
-    assert np.asarray(points.get_xdata()) == pytest.approx([before[o.design] for o in found.solved])
-    few = made_search(screened=20, solved=3)
-    assert "Fewer than ten" in words(figures.screening(few).get_suptitle())
 
 
 def test_a_panel_for_each_thing_that_could_be_chosen(found: DesignSearch) -> None:
