@@ -19,7 +19,7 @@ def main() -> dict[str, float]:
         "share": area.share_below(0.7),
     }
     print(", ".join(f"{name} {value:.2f}" for name, value in found.items()))
-    sf.plot(analysis, "area").savefig("friction_over_the_plate.png")
+    sf.plot(analysis).savefig("friction_over_the_plate.png")
     return found
 
 

@@ -89,7 +89,7 @@ _ANALYSIS, _PLAYED = _by_key(FIGURES), _by_key(played.FIGURES)
 
 SUBJECTS: Mapping[type, _Subject] = {
     Prediction: _Subject({"friction": lambda prediction: friction.predictions([prediction])}),
-    Analysis: _Subject({"band": _ANALYSIS["band"], **_ANALYSIS}, write_analysis),
+    Analysis: _Subject(_ANALYSIS, write_analysis),
     FrictionAnalysis: _Subject(_by_key(friction.FIGURES), friction.write_friction),
     FilmAnswer: _Subject({"pressure": film_map.film_pressure}),
     FilmMap: _Subject({"map": film_map.film_map}, film_map.write_film_map),

@@ -64,7 +64,7 @@ def test_the_cursor_reads_the_values_of_a_line(browser: Browser, report: Path) -
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.goto(report.as_uri())
     page.evaluate(OPEN)
-    spots = page.locator("#figure-band g.read")
+    spots = page.locator("#figure-friction g.read")
     spot = spots.nth(spots.count() // 2)
     text = spot.locator("text")
     assert not text.is_visible()
@@ -109,7 +109,7 @@ def test_text_has_contrast(browser: Browser, report: Path, scheme: Any) -> None:
         "getComputedStyle(document.documentElement).getPropertyValue('--ink').trim()"
     )
     used = page.evaluate(
-        """() => [...document.querySelectorAll('#figure-area svg [style*="--ink"]')]
+        """() => [...document.querySelectorAll('#figure-friction svg [style*="--ink"]')]
           .map(e => getComputedStyle(e).fill)"""
     )
     assert used

@@ -5,19 +5,23 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import functools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError, UnreachableError
 from squeezefilm.core.materials import Gas
 from squeezefilm.design.analysis.paper_procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
+from squeezefilm.measure.recordings import kinds as recordings
+from squeezefilm.measure.recordings.read import check_folder
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.friction_models import FrictionModel
 from squeezefilm.physics.chain.prediction import Prediction
-from squeezefilm.physics.display import Surface
+from squeezefilm.physics.display import Surface, load_display
 from squeezefilm.physics.film.closed import mean_pressure_profile
 from squeezefilm.physics.film.gap import PaperGap
 from squeezefilm.physics.plate.solid.working import response_frequencies
@@ -29,6 +33,12 @@ PAPER_CRITERION: si.Dimensionless = 0.7
 # Of the roughness: below it the over-pressure is at most 1e-8 of ambient, a millionth of a finger's
 # pressure, and a solver would work on rounding.
 _STILL: si.Dimensionless = 1e-4
+_NEAR_FREQUENCY, _NEAR_FORCE = 1.5, 4.0
+LIKE = (
+    "Dots are published measurements of fingers on plates like this: within a factor of "
+    f"{_NEAR_FREQUENCY:g} of its frequency and of {_NEAR_FORCE:g} of the force."
+)
+"""Sentence on which measurements stand beside a display's friction."""
 
 
 @si.checked_numbers
@@ -151,6 +161,32 @@ def friction_curve(prediction: Prediction, surface: Surface, model: FrictionMode
         zero_friction_amplitude=zero,
         model=model,
     )
+
+
+def measured_on_like(prediction: Prediction) -> tuple[recordings.FrictionCurve, ...]:
+    """Published curves of fingers on plates like that of a prediction, see `LIKE`; a force that
+    was not told is that of the recording's display."""
+
+    def is_like(curve: recordings.FrictionCurve, force: si.NewtonLike) -> bool:
+        pairs = (
+            (np.median(curve.frequency), prediction.frequency, _NEAR_FREQUENCY),
+            (np.median(force), prediction.normal_force, _NEAR_FORCE),
+        )
+        return all(most >= value / own >= 1 / most for value, own, most in pairs)
+
+    return tuple(curve for curve, force in _published() if is_like(curve, force))
+
+
+@functools.cache
+def _published() -> list[tuple[recordings.FrictionCurve, si.NewtonLike]]:
+    """The friction curves that come with the package, with the forces of their fingers."""
+    read = (check.recording for check in check_folder(presets.friction_folder()).checks)
+    curves = [each for each in read if isinstance(each, recordings.FrictionCurve)]
+    assumed = [load_display(curve.display).finger.normal_force for curve in curves]
+    return [
+        (curve, force if curve.normal_force is None else curve.normal_force)
+        for curve, force in zip(curves, assumed, strict=True)
+    ]
 
 
 def _reached(law: FrictionLaw, relative_friction: si.Dimensionless) -> si.Metre | None:

@@ -11,62 +11,81 @@ from squeezefilm.core.kit import style
 from squeezefilm.core.kit.model_looks import look_of
 from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, V, printable, shown, span
 from squeezefilm.core.kit.page_style import FigureOf
-from squeezefilm.design.analysis.curves import PAPER_CRITERION
+from squeezefilm.design.analysis.curves import LIKE, PAPER_CRITERION, measured_on_like
 from squeezefilm.design.plate.solved import half_power
+from squeezefilm.measure.fits.friction.friction_scores import rest_friction
 from squeezefilm.physics.chain.active_area import CRITERIA, ActiveArea
 from squeezefilm.physics.chain.pad_place import place_words
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from squeezefilm.core.quantities import FloatArray
     from squeezefilm.design.analysis.analysis import Analysis
+    from squeezefilm.design.analysis.curves import FrictionCurve
     from squeezefilm.physics.chain.prediction import Prediction
 
 
 @style.drawn
 def own_friction(analysis: Analysis) -> Figure:
     """Relative friction against amplitude by the prediction's own model, with the band in which it
-    lies."""
-    p, band, here = analysis.prediction, analysis.band, analysis.own_curve
-    unsure, needed = analysis.uncertainty, here.amplitude_for_criterion
-    said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
-    takes = "more than 50 µm" if needed is None else shown(needed, M, 3)
-    title = (
-        f"At {shown(p.vibration_amplitude, M, 3)} on {style.plain(here.surface, 20)} {said}; 0.7 "
-        f"takes {takes}"
-    )
-    small = (
+    lies and what was measured on plates like it."""
+    title = f"How far friction falls with the amplitude: {_takes(analysis)}"
+    figure = style.new_figure(title, _made(analysis), 4.8)
+    axes = figure.subplots()
+    _friction(axes, analysis, analysis.own_curves)
+    style.legend_below(axes, columns=2)
+    return figure
+
+
+def _takes(analysis: Analysis) -> str:
+    """The amplitude at which friction falls to 0.7."""
+    needed = analysis.own_curve.amplitude_for_criterion
+    return f"for 0.7 it takes {'more than 50 µm' if needed is None else shown(needed, M, 3)}"
+
+
+def _made(analysis: Analysis) -> str:
+    p = analysis.prediction
+    return (
         f"{p.model}; {shown(p.normal_force, N)}, {shown(p.speed, SPEED)}; each with the finger on"
     )
-    figure = style.new_figure(title, small, 4.8)
-    axes = figure.subplots()
+
+
+def _friction(axes: Axes, analysis: Analysis, curves: Sequence[FrictionCurve]) -> None:
+    p, band, here = analysis.prediction, analysis.band, analysis.own_curve
+    needed = here.amplitude_for_criterion
     if band is not None:
-        name = f"{si.percent(band.level)} of what the friction may be at an amplitude"
+        name = f"{si.percent(band.level)} of what it may be at an amplitude"
         x = 1e6 * band.amplitude
         axes.fill_between(x, band.low, band.high, color=style.BAND, lw=0, label=name)
     look = look_of(p.model)
-    for number, curve in enumerate(analysis.own_curves):
+    for number, curve in enumerate(curves):
         own = curve.surface == here.surface
         line = {"lw": 2.4} if own else {"lw": 1.2, "ls": style.LINES[1 + number % 3][1]}
         rough = shown(curve.roughness, M, 3)
-        name = f"as described, on {style.plain(curve.surface, 20)} (roughness {rough})"
+        name = f"on {style.plain(curve.surface, 20)} (roughness {rough})"
         axes.plot(
             1e6 * curve.amplitude, curve.relative_friction, color=look.color, label=name, **line
         )
     criterion_line(axes)
     working_point(axes, analysis)
+    measured = measured_on_like(p)
+    dots = {**style.ESTIMATE, "color": style.MUTED, "ms": 3.5, "mew": 0.4, "zorder": 1.5}
+    for number, each in enumerate(measured):
+        x, y = 1e6 * each.vibration_amplitude, each.friction / rest_friction(each)
+        name = f"measured on like plates: {len(measured)} curves, all on glass"
+        axes.plot(x, y, **dots, label=None if number else name)
     # A still plate has its whole curve to show.
     reach = max(1.5 * p.vibration_amplitude, min(needed or 0.0, float(here.amplitude[-1])))
     style.friction_axes(axes, 1e6 * (reach or float(here.amplitude[-1])), top=1.06)
-    style.legend_below(axes, columns=2)
-    return figure
 
 
 def criterion_line(axes: Axes) -> None:
     """Draw a line across at what the paper asks of the friction."""
-    axes.axhline(PAPER_CRITERION, **style.REFERENCE, label="0.7: what the paper asks for")
+    axes.axhline(PAPER_CRITERION, **style.REFERENCE, label="0.7, which the paper asks for")
 
 
 def working_point(axes: Axes, analysis: Analysis) -> None:
@@ -75,7 +94,7 @@ def working_point(axes: Axes, analysis: Analysis) -> None:
     at, words = 1e6 * p.vibration_amplitude, f"this display: {p.relative_friction:.2f}"
     if unsure is not None:
         style.interval(axes, at, *unsure.interval)
-        words += f" ({span(*unsure.interval)}, {si.percent(unsure.level)} interval)"
+        words += f" ({span(*unsure.interval)})"
     words += f" at {shown(p.vibration_amplitude, M, 3)}"
     style.mark(axes, at, p.relative_friction, 9, words)
 
@@ -149,37 +168,31 @@ _PLACE: dict[str, Any] = {
 
 
 @style.drawn
-def active_area(analysis: Analysis) -> Figure:
+def deciding(analysis: Analysis) -> Figure:
     """The friction under the pad by the place of its centre, or where the model has none the
-    amplitude of the face."""
-    judged = analysis.active_area
-    if judged is None:
-        return style.message_figure(
-            "No map: the mode has no shape over a face",
-            f"The model '{analysis.prediction.mode.model}' gives one amplitude only.",
-        )
-    area = judged.area
-    made = f"{area.shape_model} ({area.shape_words}); friction by {analysis.prediction.model}"
+    amplitude of the face; beside it friction against amplitude. A mode without a shape over a face
+    has the latter alone."""
+    if analysis.active_area is None:
+        return own_friction(analysis)
+    area = analysis.active_area.area
+    made = f"{_made(analysis)}; {area.shape_model} ({area.shape_words})"
+    title = f"Where on the face friction falls, and how far: {_takes(analysis)}"
+    figure = style.new_figure(title, made, 5.1)
+    grid = figure.add_gridspec(2, 2, width_ratios=(1.2, 1), height_ratios=(1, 0.27))
+    by_place, by_amplitude = (figure.add_subplot(grid[0, k]) for k in range(2))
+    by_place.set_anchor("S")
     if 1 in area.amplitude.shape:
-        figure = style.new_figure(_title(area), made, 4.0)
-        _line(figure.subplots(), area)
-        return figure
-    figure = style.new_figure(_title(area), made, 4.4)
-    axes = figure.subplots()
-    if area.relative_friction is None:
-        _map(axes, area, 1e6 * area.amplitude, "amplitude of the face (µm)")
-        return figure
-    _map(axes, area, area.relative_friction, "relative friction µ′/µ under the pad")
-    _places(axes, area)
+        _line(by_place, area)
+    elif area.relative_friction is None:
+        _map(by_place, area, 1e6 * area.amplitude, "amplitude of the face (µm)")
+    else:
+        _map(by_place, area, area.relative_friction, "relative friction µ′/µ under the pad")
+        _places(by_place, area)
+    _friction(by_amplitude, analysis, (analysis.own_curve,))
+    strip = figure.add_subplot(grid[1, :])
+    strip.set_axis_off()
+    style.legend_in(strip, by_amplitude, columns=2)
     return figure
-
-
-def _title(area: ActiveArea) -> str:
-    """The message; the numbers of the friction stand beside the figure."""
-    if area.best is None or area.worst is None:
-        low, high = (1e6 * end for end in area.amplitude_range)
-        return f"Under the pad {low:.3g} to {high:.3g} µm (root mean square) over the active area"
-    return "Friction under a finger, by the place of its centre on the active area"
 
 
 def _map(axes: Axes, area: ActiveArea, values: FloatArray, label: str) -> None:
@@ -273,10 +286,11 @@ def _line(axes: Axes, area: ActiveArea) -> None:
 
 FIGURES: tuple[FigureOf, ...] = (
     FigureOf(
-        "area",
-        "Friction over the active area",
-        active_area,
-        "By the place of the finger's centre; the square is its contact at the best place.",
+        "friction",
+        "Where friction falls, and how far",
+        deciding,
+        "By the place of the finger's centre, the square its contact at the best place; by "
+        f"amplitude, where the band holds what is uncertain and the bar the amplitude too. {LIKE}",
     ),
     FigureOf(
         "response",
@@ -284,14 +298,6 @@ FIGURES: tuple[FigureOf, ...] = (
         frequency_response,
         "Vibration amplitude per volt around the working resonance, without a finger. Outside the "
         "half-power band less than 71 % of it is left.",
-    ),
-    FigureOf(
-        "band",
-        "Friction against amplitude, and how sure it is",
-        own_friction,
-        "Friction divided by that without vibration, by the model of the verdict. The band and the "
-        "bar hold what is uncertain in the description, in the finger and in the laws; in the bar "
-        "the amplitude is uncertain too.",
     ),
 )
 """Figures of what one decides from, in the order of the page."""

@@ -150,7 +150,7 @@ def _how_sure(analysis: Analysis, rows: list[Row]) -> Fold:
         findings.append(analysis.model_form.text)
     if unsure is not None and unsure.refused.count:
         findings.append(f"{unsure.refused.sentence}.")
-    return Fold("How sure is it?", ("band",), tables, [*findings, *unsaid_warnings(analysis)])
+    return Fold("How sure is it?", (), tables, [*findings, *unsaid_warnings(analysis)])
 
 
 def _origin(analysis: Analysis) -> Fold:

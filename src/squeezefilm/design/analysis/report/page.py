@@ -103,7 +103,7 @@ def report_page(
 def in_short(analysis: Analysis, drawn: Mapping[str, str] | None = None) -> str:
     """First screen of an analysis as HTML, with its picture where that is `drawn`."""
     screen = first_screen(analysis)
-    picture = "" if drawn is None else _figure("area", drawn)
+    picture = "" if drawn is None else _figure("friction", drawn)
     numbers = text_table("With 90 % intervals", ("Quantity", "Value", "Interval"), screen.numbers)
     body = (
         f"<p>{as_html(screen.sentence)}</p>\n{picture}{numbers}\n"

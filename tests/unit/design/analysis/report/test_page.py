@@ -86,7 +86,7 @@ def test_the_first_screen_stands_above_folded_questions(written: tuple[Path, Ana
     path, analysis = written
     text = path.read_text(encoding="utf-8")
     first = text.index("<details>")
-    assert text.index("<h2>In short") < text.index('id="figure-area"') < first
+    assert text.index("<h2>In short") < text.index('id="figure-friction"') < first
     questions = [f"<summary><h2>{fold.question}" for fold in folds(analysis)]
     places = [text.index(question) for question in questions]
     assert places == sorted(places)
