@@ -48,13 +48,10 @@ def _say_warnings() -> None:
 
     if sys.warnoptions:
         return
-    shown = warnings.showwarning
 
-    def say(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+    def say(message: Warning | str, category: type[Warning], *_: Any, **__: Any) -> None:
         if issubclass(category, SqueezefilmWarning):
             typer.echo(f"warning: {message}", err=True)
-        elif more.get("file") is not None:
-            shown(message, category, *place, **more)
 
     warnings.showwarning = say
 

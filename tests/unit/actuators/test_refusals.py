@@ -13,8 +13,11 @@ from squeezefilm.actuators.described import actuator_kind, load_actuator
 from squeezefilm.actuators.motor.description import MotorDescription, preset_motor
 from squeezefilm.actuators.skin_stretch.array import held_forces
 from squeezefilm.actuators.skin_stretch.bimorph import MOST_SLENDER, solid_bender
+from squeezefilm.actuators.skin_stretch.cradle import pattern_voltages
 from squeezefilm.actuators.skin_stretch.elastic_layer import together
+from squeezefilm.actuators.skin_stretch.tissue import _rows
 from squeezefilm.core.errors import ConfigError, InputError, OutOfRangeError
+from squeezefilm.physics.render.texture.shapes import SineWave
 
 ONES = np.ones(3)
 
@@ -22,6 +25,12 @@ ONES = np.ones(3)
 def bimorph(**changes: Any) -> Any:
     array: Any = load_actuator("biet2008-skin-stretch")
     return dataclasses.replace(array.skin_stretch.actuator, **changes)
+
+
+def voltages(times: Any) -> Any:
+    array: Any = load_actuator("biet2008-skin-stretch")
+    wave = SineWave(4e-3)
+    return pattern_voltages(wave, array.skin_stretch.cradle, times, (0.05, 0.0), 100.0)
 
 
 @pytest.mark.parametrize(
@@ -35,6 +44,9 @@ def bimorph(**changes: Any) -> Any:
             "times as long as thick",
         ),
         (lambda: together(np.zeros(2), np.zeros(3)), "do not go together"),
+        (lambda: _rows(np.zeros(2), np.zeros(3)), r"shapes \(2,\) and \(3,\)"),
+        (lambda: _rows(np.zeros(0), np.zeros(0)), "at least one"),
+        (lambda: voltages(np.zeros(0)), "times is empty"),
         (lambda: MotorDescription("a", "", "", 1.0), "no Motor"),  # type: ignore[arg-type]
         (lambda: actuator_kind("[motor]\n[skin_stretch]\n"), "two files"),
         (lambda: actuator_kind("[other]\n"), "motor"),

@@ -92,14 +92,6 @@ class Bimorph:
     loss_tangent: Annotated[si.Dimensionless, si.AtLeast(0), si.Below(1)] = 0.02
 
     def __post_init__(self) -> None:
-        full = self.ceramic.full_constants
-        coupling = full.charge_coefficient_31**2 / (full.compliance_11 * self.free_permittivity)
-        if not coupling < 1:
-            raise OutOfRangeError(
-                f"k31² = {coupling:.3g} of {self.ceramic.name} is not below 1: its d31, s11 "
-                "and permittivity cannot be of one ceramic; correct the slip",
-                quantity="ceramic",
-            )
         for name, across in (("width", self.width), ("thickness", self.thickness)):
             if self.length < LEAST_SLENDERNESS * across:
                 raise GeometryError(

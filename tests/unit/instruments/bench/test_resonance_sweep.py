@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -112,3 +114,75 @@ def test_the_vertex_of_a_parabola_is_exact_between_its_samples() -> None:
     place, height = peak(x, 3.0 - 5.0 * (x - 0.437) ** 2)
     assert (place, height) == pytest.approx((0.437, 3.0), rel=1e-12)
     assert np.all(np.isnan(peak(x, x)))
+
+
+class Host:
+    """A device that sends these readings, one a look, on a clock of its own."""
+
+    def __init__(self, *readings: Any) -> None:
+        self.time, self.left = 0.0, list(readings)
+        self.link = SimpleNamespace(clock=lambda: self.time)
+        self.did: list[str] = []
+
+    def wait(self, duration: float) -> None:
+        self.time += duration
+
+    def pump(self) -> None:
+        """Nothing waits."""
+
+    def poll(self) -> list[Any]:
+        return [self.left.pop(0)] if self.left else []
+
+
+def reading(fault: int = 0, touching: bool = False, pickup: float = 2e6) -> Any:
+    return SimpleNamespace(fault=fault, touching=touching, pickup=pickup)
+
+
+def test_a_fault_or_silence_ends_a_measurement_with_what_to_do() -> None:
+    host: Any = Host(*[reading()] * 3)
+    assert len(resonance_sweep._readings(host, 3, host.wait)) == 3
+    host = Host(reading(), reading(fault=4), reading())
+    with pytest.raises(DeviceError, match=r"was measured \(fault 4\); run `squeezefilm device"):
+        resonance_sweep._readings(host, 3, host.wait)
+    host = Host(reading())
+    with pytest.raises(DeviceError, match=r"sent 1 of 3 readings in [\d.]+ s; look at its power"):
+        resonance_sweep._readings(host, 3, host.wait)
+    limit = resonance_sweep._DEAF_LIMIT
+    assert limit < host.time <= limit + 2 * resonance_sweep.REPORT_PERIOD
+
+
+def test_the_mean_square_leaves_out_what_came_while_the_plate_settled() -> None:
+    count = resonance_sweep.READINGS
+    late = reading(pickup=1e9)
+    host: Any = Host(late, *[reading(pickup=3e6), reading(pickup=1e6, touching=True)] * count)
+    square, touched = resonance_sweep._mean_square(host, 5e-3, host.wait)
+    # Microvolts: 3 V and 1 V in turn.
+    threes = (count + 1) // 2
+    assert square == pytest.approx((9 * threes + (count - threes)) / count)
+    assert touched
+    assert host.time >= 5e-3 + count * resonance_sweep.REPORT_PERIOD
+    still: Any = Host(late, *[reading()] * count)
+    assert resonance_sweep._mean_square(still, 5e-3, still.wait) == (pytest.approx(4.0), False)
+
+
+def test_a_device_that_fails_is_stopped_before_that_is_told() -> None:
+    """Whether or not it still hears that."""
+    limits = DISPLAY.drive.limits(33e3, VOLTS)
+    for deaf in (False, True):
+        did: list[str] = []
+
+        def stop(deaf: bool = deaf, did: list[str] = did) -> None:
+            did.append("stopped")
+            if deaf:
+                raise DeviceError("it hears nothing")
+
+        def arm() -> None:
+            raise DeviceError("it faulted")
+
+        host: Any = Host(reading())
+        host.open = lambda _: SimpleNamespace(has_pickup=True)
+        host.report, host.arm, host.stop = lambda _: None, arm, stop
+        carriers = np.array([33e3, 33.1e3])
+        with pytest.raises(DeviceError, match="it faulted"):
+            sweep_resonance(host, limits, carriers, 1.0, settle=1e-3, wait=host.wait)
+        assert did == ["stopped"]

@@ -15,6 +15,7 @@ from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFrictio
 from squeezefilm.physics.render.texture.noise import Noise
 from squeezefilm.physics.render.texture.pattern import Pattern
 from squeezefilm.physics.render.texture.shapes import Band, Bump, Pulse, Ramp, SineWave, SquareWave
+from squeezefilm.physics.texture_files import hjif
 from squeezefilm.physics.texture_files.hjif import ReferenceDevice, friction_along, hjif_of
 
 DEVICE = ReferenceDevice("biet2008-plate", 33.6e3, 15.0, 1.7e-6)
@@ -162,3 +163,19 @@ def test_what_the_reference_software_would_not_load_is_named(
 def test_too_rough_a_line_is_refused() -> None:
     with pytest.raises(InputError, match="keyframes"):
         hjif_of(friction(Noise(5e-6, 1)), 0.0, 0.5, device=DEVICE, tolerance=1e-6)
+
+
+def test_more_keyframes_than_the_format_counts_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A zigzag needs one at each of its places; a straight line its two ends."""
+    monkeypatch.setattr(hjif, "_MOST_KEYFRAMES", 30)
+
+    def zigzag(place: Any) -> Any:
+        return 0.5 + 0.1 * (np.round(place * 1e6) % 2)
+
+    band = hjif._keyframes(zigzag, 5, 34, 1e-3)
+    (effect,) = band["effects"]
+    assert len(effect["keyframes"]) == 30
+    with pytest.raises(InputError, match=r"needs 31 keyframes and the format counts up to 30"):
+        hjif._keyframes(zigzag, 5, 35, 1e-3)
+    (effect,) = hjif._keyframes(lambda place: 0.2 + 1e3 * place, 5, 35, 1e-3)["effects"]
+    assert [one["relative_position"] for one in effect["keyframes"]] == [0, 30]

@@ -4,6 +4,7 @@ import io
 import struct
 import zlib
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from tests.pictures import coloured_bytes, picture_bytes
 
 from squeezefilm.core.errors import ConfigError, InputError, SqueezefilmWarning
 from squeezefilm.physics.render.texture.image import MOST_PIXELS
+from squeezefilm.physics.texture_files import image_file
 from squeezefilm.physics.texture_files.image_file import ImageFile, picture_from, read_picture
 from squeezefilm.physics.texture_files.texture_file import load_texture, texture_from_text
 
@@ -140,3 +142,54 @@ def test_a_file_too_large_is_not_read(tmp_path: Path) -> None:
         file.truncate(17_000_000)
     with pytest.raises(InputError, match="larger than 16 000 000 bytes"):
         read_picture(tmp_path / "a.png")
+
+
+def saved(picture: Image.Image, kind: str = "PNG", **how: Any) -> bytes:
+    out = io.BytesIO()
+    picture.save(out, kind, **how)
+    return out.getvalue()
+
+
+def test_brightness_is_of_grey_as_it_is_and_of_colours_as_an_eye_weighs_them() -> None:
+    """Read here, not in a process of its own."""
+    grey = np.array([[0, 51], [102, 255]], dtype=np.uint8)
+    _, (found,) = image_file._brightness(saved(Image.fromarray(grey)))
+    assert found == pytest.approx(grey / 255, abs=1e-12)
+    fine = np.array([[0, 13107], [26214, 65535]], dtype=np.uint16)
+    _, (found,) = image_file._brightness(saved(Image.fromarray(fine)))
+    assert found == pytest.approx(fine / 65535, abs=1e-12)
+    colours = np.array([[[255, 0, 0], [0, 255, 0]], [[0, 0, 255], [255, 255, 255]]], dtype=np.uint8)
+    _, (found,) = image_file._brightness(saved(Image.fromarray(colours)))
+    # Red, green and blue make white; green is the brightest, blue the darkest.
+    red, green, blue, white = found.ravel().tolist()
+    assert white == pytest.approx(1.0)
+    assert red + green + blue == pytest.approx(1.0)
+    assert green > red > blue > 0.0
+
+
+def test_a_picture_that_says_that_it_lies_on_its_side_is_turned() -> None:
+    exif = Image.Exif()
+    exif[0x0112] = 6  # turned a quarter to the right, to be upright
+    grey = Image.fromarray(np.array([[0, 51, 102]], dtype=np.uint8))
+    _, (found,) = image_file._brightness(saved(grey, exif=exif))
+    assert found == pytest.approx(np.array([[0.0], [0.2], [0.4]]), abs=1e-12)
+
+
+def test_a_picture_with_transparent_pixels_or_cut_short_is_refused() -> None:
+    clear = Image.new("RGBA", (3, 3), (9, 9, 9, 255))
+    image_file._brightness(saved(clear))
+    clear.putpixel((1, 1), (9, 9, 9, 254))
+    with pytest.raises(ConfigError, match="has transparent pixels"):
+        image_file._brightness(saved(clear))
+    noise = np.random.default_rng(1).integers(0, 255, (64, 64), dtype=np.uint8)
+    for data in (saved(Image.fromarray(noise))[:900], b"\xff\xd8\xff\xe0 is no picture"):
+        with pytest.raises(ConfigError, match="is damaged and cannot be read"):
+            image_file._brightness(data)
+
+
+def test_a_picture_that_was_not_read_cannot_be_felt() -> None:
+    picture = image_file.ImageFile("wood.png", 1e-3)
+    finger: Any = None
+    for use in (picture._values, picture._lower):
+        with pytest.raises(InputError, match=r"picture 'wood\.png' has not been read; load the"):
+            use(finger)

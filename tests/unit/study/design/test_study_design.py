@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import textwrap
 from pathlib import Path
 
@@ -359,3 +360,13 @@ def test_a_catch_trial_is_put_in_the_order_in_which_it_is_right() -> None:
     same = dataclasses.replace(design, task="same-different", catch=(CatchTrial(odd, "same"),))
     assert same.catch_condition(same.catch[0]) == ("20 mm", "20 mm")
     assert same.catch_condition(CatchTrial(odd, "different")) == ("20 mm", "4 mm")
+
+
+def test_the_differences_of_adaptive_series_are_their_ends() -> None:
+    """Of a scale of logarithms: ln(1 + x) of each series' lowest and highest difference."""
+    design = load_design("period-jnd")
+    ends = [x for one in design.adaptive for x in (one.lowest, one.highest)]
+    assert design.differences == pytest.approx([math.log(1 + x) for x in ends])
+    assert design.series("bayesian") is design.adaptive[1]
+    with pytest.raises(InputError, match="'stairs' is none of: staircase, bayesian"):
+        design.series("stairs")

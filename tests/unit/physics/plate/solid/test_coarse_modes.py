@@ -34,3 +34,19 @@ def test_lines_that_no_mode_has_are_refused_with_those_there_are(
     with pytest.raises(InputError, match=says) as refused:
         chosen_modes([made([(5, 0), None], [20e3, 21e3])], near, None, (7, 0), 1)
     assert "there are (5, 0)" in str(refused.value)
+
+
+def test_all_of_a_band_or_those_nearest_of_all_classes_are_refined() -> None:
+    classes = [
+        made([(8, 0), None, (9, 0), (9, 0), (9, 0)], [20e3, 30e3, 33e3, 50e3, 70e3]),
+        made([(8, 1), (9, 0)], [29e3, 80e3]),
+    ]
+
+    def chosen(near: float | None, band: tuple[float, float] | None, count: int) -> list[list[int]]:
+        return [one.tolist() for one in chosen_modes(classes, near, band, None, count)]
+
+    assert chosen(None, (0.0, 1e5), 1) == [[0, 1, 2, 3, 4], [0, 1]]
+    assert chosen(31e3, None, 3) == [[1, 2], [0]]
+    assert chosen(31e3, None, 1) == [[1], []]
+    # Without a guess the lowest.
+    assert chosen(None, None, 3) == [[0, 1], [0]]

@@ -1,0 +1,82 @@
+"""A surface felt by a hand that explores freely: both ways, the clearer one explained."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from squeezefilm.core.errors import InputError
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.perception import path_percepts
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.study.simulated import felt_surfaces as module
+from squeezefilm.study.simulated.felt_surfaces import felt_freely, free_path
+
+PLATE, PEOPLE = load_display("biet2008-plate"), load_observer()
+FINGER = PEOPLE.median_finger()
+
+
+def run(name: str, evidence: float) -> Any:
+    percept = SimpleNamespace(
+        candidates=f"{name}'s candidates", evidence=SimpleNamespace(rhythm=f"{name}'s rhythm")
+    )
+    return SimpleNamespace(percept=percept, clearest_d_prime=evidence)
+
+
+@pytest.mark.parametrize(("along", "across", "clearer"), [(3.0, 1.0, 3.0), (1.0, 2.0, 2.0)])
+def test_a_free_hand_feels_both_ways_and_the_clearer_one_has_the_causes(
+    along: float, across: float, clearer: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[Any] = []
+    kept: dict[str, Any] = {}
+
+    def felt(display: Any, surface: Any, observer: Any, finger: Any, paths: Any, run_: Any) -> Any:
+        asked.append((display, surface.title, observer, finger, paths, run_))
+        return SimpleNamespace(
+            along=run("x", along), across=run("y", across), played=("first", "second")
+        )
+
+    monkeypatch.setattr(path_percepts, "path_percept", felt)
+    monkeypatch.setattr(module, "free_causes", lambda *said: said)
+    monkeypatch.setattr(module, "_KEPT", SimpleNamespace(get=kept.get, put=kept.__setitem__))
+    monkeypatch.setattr(module, "_REMEMBERED", {})
+    fine, apparatus = Stimulus("fine", 4e-3, "period"), module.Apparatus()
+    found: Any = felt_freely(fine, PLATE, PEOPLE, FINGER, apparatus)
+    assert (found.candidates, found.across) == ("x's candidates", "y's candidates")
+    assert (found.rhythm, found.across_rhythm) == ("x's rhythm", "y's rhythm")
+    stimulus, run_, played, finger = found.causes
+    assert (stimulus, run_.clearest_d_prime, played, finger) == (fine, clearer, "first", FINGER)
+    ((display, title, observer, whose, (path,), how),) = asked
+    assert (display, title, observer, whose, how) == (PLATE, "fine", PEOPLE, FINGER, apparatus)
+    # Asked again nothing is computed: not in this process, and not in one that has its disk.
+    assert felt_freely(fine, PLATE, PEOPLE, FINGER, apparatus) is found
+    module._REMEMBERED.clear()
+    assert felt_freely(fine, PLATE, PEOPLE, FINGER, apparatus) is found
+    assert len(asked) == 1
+    assert list(kept.values()) == [found]
+    # Another surface is another request.
+    felt_freely(Stimulus("fine", 5e-3, "period"), PLATE, PEOPLE, FINGER, apparatus)
+    assert len(asked) == 2
+    plate: Any = PLATE.actuator
+    assert np.ptp(path.x) <= plate.extent[0]
+    assert np.ptp(path.y) <= plate.extent[1]
+
+
+def test_no_more_percepts_are_remembered_than_there_is_room_for(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(module, "_REMEMBERED", {})
+    monkeypatch.setattr(module, "_MOST_REMEMBERED", 2)
+    for name in "abc":
+        percept: Any = name
+        module._remember(name, percept)
+    assert list(module._REMEMBERED) == ["b", "c"]
+
+
+def test_a_ring_is_not_explored_freely() -> None:
+    with pytest.raises(InputError, match=r"'biet2008-stator' is a ring, .* take a plate, or"):
+        free_path(load_display("biet2008-stator"), PEOPLE, FINGER)
