@@ -11,6 +11,8 @@ from scipy import stats
 
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
+from squeezefilm.measure.recordings.circuits_read import with_phase
+from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 
 from .circuit_sweeps import MadeSweep, Random, compared, made_sweep
 
@@ -54,6 +56,18 @@ def _drifting(random: Random) -> MadeSweep:
     return made_sweep(random, 0.005, drift=complex(*random.normal(0, 0.02, 2)))
 
 
+def _without_phase(random: Random) -> MadeSweep:
+    """Sizes alone, behind a shunt of up to half of the least impedance."""
+    made = made_sweep(random, 0.0)
+    y, f = made.sweep.admittance, made.sweep.frequency
+    ohms = random.uniform(0, 0.5) / float(np.max(np.abs(y)))
+    size = np.abs(y / (1 + y * ohms)) * (1 + 0.01 * random.standard_normal(y.size))
+    both = with_phase(f, size)
+    return replace(made, sweep=ImpedanceSweep(
+        f, both / (1 - both * ohms), phase_recorded=False, in_series=ohms
+    ))  # fmt: skip
+
+
 MAKERS: dict[str, Callable[[Random], MadeSweep]] = {
     "clean": _clean,
     "proportional noise": _proportional,
@@ -61,6 +75,7 @@ MAKERS: dict[str, Callable[[Random], MadeSweep]] = {
     "leads": _leads,
     "leads told": _leads_told,
     "drift": _drifting,
+    "without phase": _without_phase,
 }
 
 

@@ -18,7 +18,6 @@ from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
 from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan
 from squeezefilm.measure.fits.vibration.line_scan import fit_line_scan
-from squeezefilm.measure.fits.vibration.raw_signals import fit_raw_signals
 from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
 from squeezefilm.measure.fits.vibration.voltage_sweeps import fit_voltage_sweeps
 from squeezefilm.measure.recordings import kinds
@@ -92,13 +91,12 @@ def line_scan(wrong: Wrong, random: Random) -> Checked:
     def wave(x: Any) -> Any:
         turn = (1j * k + k * loss / 4) * (x - middle)
         w = np.exp(-turn) + back * np.exp(turn)
-        w = w + ends[0] * np.exp(-k * (x - x0)) + ends[1] * np.exp(-k * (x1 - x))
-        return w * (1 + (0.1 + 0.05j) * (x - middle) / (x1 - x0)) if wrong.drift else w
+        return w + ends[0] * np.exp(-k * (x - x0)) + ends[1] * np.exp(-k * (x1 - x))
 
     x0, x1 = x[0], x[-1]
     w = _noisy(1e-6 * wave(x), 0.015, random)
     w = w.conj() if wrong.phase_reversed else w
-    fit = fit_line_scan(kinds.LineScan(x, w, 33e3, 15.0), drift=wrong.drift)
+    fit = fit_line_scan(kinds.LineScan(x, w, 33e3, 15.0))
     dense = np.linspace(x0, x1, 20001)
     size = np.abs(wave(dense))
     nodes = dense[1:-1][(size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:])]
@@ -140,13 +138,11 @@ def grid_scan(wrong: Wrong, random: Random) -> Checked:
     }
     amplitude = random.uniform(0.5e-6, 2e-6)
     w = -1j * amplitude * shapes["(8,0)"]
-    if wrong.drift:
-        w = w * (1 + 0.2 * np.linspace(-0.5, 0.5, w.size))
     if wrong.double:
         w = w + 0.2j * amplitude * shapes["(8,1)"]
     w = _noisy(w, 0.03, random)
     w = w.conj() if wrong.phase_reversed else w
-    fit = fit_grid_scan(kinds.GridScan(x, y, w, 33e3, 15.0), shapes, drift=wrong.drift)
+    fit = fit_grid_scan(kinds.GridScan(x, y, w, 33e3, 15.0), shapes)
     found = {"amplitude": (fit.amplitude, amplitude)}
     if wrong.double:
         found["second shape"] = (fit.parts["(8,1)"], 0.2 * amplitude)
@@ -243,24 +239,6 @@ def voltage_sweeps(wrong: Wrong, random: Random) -> Checked:
     }
 
 
-def raw_signals(wrong: Wrong, random: Random) -> Checked:
-    rate, count = 500e3, 4096
-    t = np.arange(count) / rate
-    scale, delay = random.uniform(1e-7, 3e-7), random.uniform(0, 8e-6)
-
-    def chirp(t: Any) -> Any:
-        return 5 * np.cos(2 * np.pi * (20e3 * t + 40e3 * t**2 / (2 * count / rate)))
-
-    v, x = chirp(t), scale * chirp(t - delay)
-    if wrong.drift:
-        x = x + 0.5 * scale * np.linspace(-1, 1, count)
-    x = _noisy(x, 0.1, random)
-    fit = fit_raw_signals(kinds.RawSignals(t, v, x), instrument=True, band=(22e3, 58e3))
-    assert fit.scale is not None
-    assert fit.delay is not None
-    return {"scale": (fit.scale, scale), "delay": (fit.delay, delay)}
-
-
 def friction_bench(wrong: Wrong, random: Random) -> Checked:
     levels = np.array([0.0, 0.5e-6, 1e-6, 2e-6])
     number = np.repeat(np.arange(4), 10)
@@ -302,16 +280,16 @@ WRONGS = {
     "phase reversed": REVERSED,
 }  # fmt: skip
 
-_ALL = "noise, drift, double mode, missing points, phase reversed"
 _MADE: Mapping[str, tuple[Callable[[Wrong, Random], Checked], str]] = {
-    "frequency response": (frequency_response, _ALL),
-    "line scan": (line_scan, "noise, drift, missing points, phase reversed"),
+    "frequency response": (
+        frequency_response, "noise, drift, double mode, missing points, phase reversed"
+    ),
+    "line scan": (line_scan, "noise, missing points, phase reversed"),
     "line scan without phase": (size_of_a_line, "noise, missing points"),
-    "grid scan": (grid_scan, _ALL),
+    "grid scan": (grid_scan, "noise, double mode, missing points, phase reversed"),
     "ring-down": (ring_down, "noise, drift, double mode, missing points"),
     "ring-down that depends on its amplitude": (bent_ring_down, "noise, missing points"),
     "voltage sweeps": (voltage_sweeps, "noise, drift, missing points, phase reversed"),
-    "raw signals": (raw_signals, "noise, drift"),
     "friction bench": (friction_bench, "noise, drift, missing points"),
 }  # fmt: skip
 

@@ -23,7 +23,6 @@ from squeezefilm.core.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.core.progress import SayProgress, ShareProgress
 from squeezefilm.core.regular_file import read_json, read_regular_text
 from squeezefilm.core.results import stamp, to_json, write_whole
-from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.discrepancy import BELIEVED, KINDS, scales_of
 from squeezefilm.measure.calibration.friction_likelihood import GRID, Touching, touching
 from squeezefilm.measure.calibration.friction_posterior import finger_mixture, friction_of_points
@@ -40,7 +39,7 @@ from squeezefilm.measure.calibration.solved_answers import (
     solved_answers,
 )
 from squeezefilm.measure.calibration.steps import DRAW_TAKES, PLATE_TAKES, Steps
-from squeezefilm.measure.calibration.written_display import actuator_digest, calibrated_display
+from squeezefilm.measure.calibration.written_display import actuator_digest
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, NamedDisplay
@@ -107,7 +106,7 @@ class Score:
 
 
 def predict_blind(
-    source: Display | Calibration,
+    display: Display,
     what: Sequence[Observation],
     path: str | Path,
     *,
@@ -117,8 +116,9 @@ def predict_blind(
     """Write a prediction of what will be measured, before it is.
 
     `what` names the answers and their conditions; the values in them are ignored (leave them 0). Of
-    a calibration its own draws predict the plate, of a display plates drawn from its spreads, each
-    with what a model is believed to be off by. The file is JSON, in SI units, never overwritten.
+    a calibrated display its calibration's draws predict the plate, of another plates drawn from its
+    spreads, each with what a model is believed to be off by. The file is JSON, in SI units, never
+    overwritten.
 
     Raises `InputError` where nothing is asked, an answer is not known, or the file is there
     already.
@@ -128,7 +128,7 @@ def predict_blind(
         raise InputError(
             f"{target} is there already; a prediction is never overwritten, name another"
         )
-    write_whole(target, sealed(predicted(source, what, seed=seed, progress=progress)))
+    write_whole(target, sealed(predicted(display, what, seed=seed, progress=progress)))
     return load_prediction(target)
 
 
@@ -158,7 +158,7 @@ def predict_measurement(
 
 
 def predicted(
-    source: Display | Calibration,
+    display: Display,
     what: Sequence[Observation],
     *,
     seed: int = 1,
@@ -173,26 +173,17 @@ def predicted(
         raise InputError("nothing is to be predicted; name at least one answer")
     for seen in what:
         _ = _touched(seen) if seen.answer == FRICTION else asked_by(seen)
-    display = source if isinstance(source, Display) else calibrated_display(source)
-    how = (
-        f"plates drawn from the spreads in the description of {display.name}"
-        if isinstance(source, Display)
-        else f"the calibration of {display.name} on {len(source.observations)} observations"
-    )
+    how = f"plates drawn from the spreads in the description of {display.name}"
     of_friction = [seen for seen in what if seen.answer == FRICTION]
-    known = _of_record(display, what) if isinstance(source, Display) else {}
+    known = _of_record(display, what)
     drawn = [seen for seen in what if seen.answer != FRICTION and id(seen) not in known]
     if known and not drawn:
         how = f"the calibration in the description of {display.name}"
-    solved = _SOLVED if isinstance(source, Display) and drawn else 0
-    seconds = _FRICTION * DRAW_TAKES if of_friction else 0.0, solved * PLATE_TAKES
+    solved = _SOLVED * PLATE_TAKES if drawn else 0.0
+    seconds = _FRICTION * DRAW_TAKES if of_friction else 0.0, solved
     steps = Steps(progress or (lambda _: None), seconds)
     rows = known | _of_friction(display, of_friction, seed, steps.next())
-    rows |= (
-        _of_plate(display, drawn, seed, steps.next())
-        if isinstance(source, Display)
-        else _of_calibration(source, drawn)
-    )
+    rows |= _of_plate(display, drawn, seed, steps.next())
     predictions = tuple(_predicted(seen, rows[id(seen)]) for seen in what)
     return BlindPrediction(display.name, how, predictions, stamp(display, seed), "")
 
@@ -222,19 +213,6 @@ def _of_record(display: Display, what: Sequence[Observation]) -> dict[int, si.Fl
     kept = {answer.said: np.array(answer.draws) for answer in record.answers}
     asked = {id(seen): asked_by(seen).said for seen in what if seen.answer != FRICTION}
     return {key: kept[said] for key, said in asked.items() if said in kept}
-
-
-def _of_calibration(source: Calibration, what: Sequence[Observation]) -> dict[int, si.FloatArray]:
-    draws = {}
-    for seen in what:
-        try:
-            draws[id(seen)] = source.answer(asked_by(seen))
-        except KeyError as error:
-            known = ", ".join(asked.said for asked in source.joint.asked)
-            raise InputError(
-                f"the calibration did not compute the {asked_by(seen).said}; it has: {known}"
-            ) from error
-    return draws
 
 
 def _of_plate(

@@ -6,8 +6,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-
 from squeezefilm.core import quantities as si
 from squeezefilm.core.calibration_record import ComparedAnswer
 from squeezefilm.core.results import to_json
@@ -131,13 +129,6 @@ class Calibration:
         if self.next_measurements:
             said.append(f"Next: {self.next_measurements[0].sentence}.")
         return tuple(said)
-
-    def answer(self, asked: Asked) -> si.FloatArray:
-        """Draws of the bench's own answer (SI), shape (draws,). Raises `KeyError` for one that was
-        not computed."""
-        if asked not in self.joint.asked:
-            raise KeyError(asked.said)
-        return np.asarray(self.joint.answers[:, self.joint.asked.index(asked)])
 
     def summary(self) -> dict[str, Any]:
         """Numbers as plain JSON values."""

@@ -139,7 +139,9 @@ class FrictionLikelihood:
         off = (self.observed - curves) / self.noise
         squares = np.where(np.isfinite(off).all(axis=1), np.sum(off**2, axis=1), math.inf)
         at = int(np.argmin(squares))
-        return misfit_of(float(squares[at]), [one.said for one in self.where], off[at])
+        pairs = zip(self.observations, self.where, strict=True)
+        names = [seen.in_words(where.said) for seen, where in pairs]
+        return misfit_of(float(squares[at]), names, off[at])
 
 
 def _likeness(a: tuple[Touching, ...], b: tuple[Touching, ...]) -> si.DimensionlessArray:

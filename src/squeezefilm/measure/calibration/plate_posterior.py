@@ -118,8 +118,8 @@ class PlateProblem:
 
     @property
     def names(self) -> list[str]:
-        """Names of what was observed."""
-        return [asked_by(seen).said for seen in self.observations]
+        """Names of what was observed, with the recording where there is one."""
+        return [seen.in_words(asked_by(seen).said) for seen in self.observations]
 
     def answers(self, scores: si.DimensionlessArray) -> si.FloatArray:
         """Logarithms of all answers at scores (points, parameters), shape (points, asked)."""

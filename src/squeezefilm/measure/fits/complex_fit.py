@@ -1,4 +1,5 @@
-"""Least squares of a complex curve with relative noise: values, intervals, and what is left over.
+"""Least squares of a complex curve, or of its size, with relative noise: values, intervals, and
+what is left over.
 
 Every fit of an admittance goes through here, so that all weigh alike, estimate noise alike and say
 alike whether their model is adequate.
@@ -18,7 +19,7 @@ from squeezefilm.measure.fits.estimate import Adequacy, Estimate, propagated
 from squeezefilm.measure.fits.least_squares import remembering
 from squeezefilm.measure.fits.misfit import adequacy_of
 
-Model = Callable[[si.FloatArray], tuple[si.ComplexArray, si.ComplexArray]]
+Model = Callable[[si.FloatArray], tuple[si.Array, si.Array]]
 """Model of parameters (p,): the curve (points,) and its derivatives (p, points)."""
 
 _PASSES = 3
@@ -51,13 +52,18 @@ class ComplexFit:
     parameters: si.FloatArray
     covariance: si.FloatArray
     information: si.FloatArray
-    residual: si.ComplexArray
-    weighted: si.ComplexArray
+    residual: si.Array
+    weighted: si.Array
     spread: si.Dimensionless
     correlation: si.Dimensionless
     left: float
     floor: float
     degrees_of_freedom: int
+
+    @property
+    def numbers(self) -> int:
+        """Number of real numbers that were fitted: two a point, one where it is a size."""
+        return _numbers(self.residual)
 
     def estimate(self, value: Callable[[si.FloatArray], float], unit: str) -> Estimate:
         """Estimate of what `value` makes of the parameters: see `propagated`."""
@@ -67,10 +73,10 @@ class ComplexFit:
 def fit_complex(
     model: Model,
     start: si.FloatArray,
-    data: si.ComplexArray,
+    data: si.Array,
     prior: Prior | None = None,
 ) -> ComplexFit:
-    """Fit `model` to `data` (points,) from `start`.
+    """Fit `model` to `data` (points,) from `start`; its size to data that are real.
 
     Every point's noise is the same share of |Y|, down to a floor where the residual tells of one
     (`noise_floor`). |Y| is taken from the model and not from the noisy data, since these would pull
@@ -82,13 +88,13 @@ def fit_complex(
     found.
     """
     count, points = start.size, data.size
-    if 2 * points < count + 8:
+    if _numbers(data) < count + 8:
+        least = (count + 9) // 2 if np.iscomplexobj(data) else count + 8
         raise InputError(
-            f"{points} points are too few to fit {count} parameters; "
-            f"give at least {(count + 9) // 2}"
+            f"{points} points are too few to fit {count} parameters; give at least {least}"
         )
     parameters = np.asarray(start, dtype=float)
-    model = remembering(model)
+    model = remembering(model if np.iscomplexobj(data) else _sizes_of(model))
     weight, floor = 1 / np.abs(data), 0.0
     for number in range(_PASSES):
         scale = _prior_scale(model, parameters, data, weight) if prior is not None else 1.0
@@ -104,12 +110,29 @@ def fit_complex(
     return replace(fit, weighted=data * weight, left=left, floor=floor)
 
 
-def _stacked(values: si.ComplexArray) -> si.FloatArray:
+def _numbers(values: si.Array) -> int:
+    return values.size * (2 if np.iscomplexobj(values) else 1)
+
+
+def _sizes_of(model: Model) -> Model:
+    """The model of a curve's size."""
+
+    def sizes(parameters: si.FloatArray) -> tuple[si.Array, si.Array]:
+        curve, slopes = model(parameters)
+        size = np.abs(curve)
+        return size, np.real(np.conj(curve) * slopes) / size
+
+    return sizes
+
+
+def _stacked(values: si.Array) -> si.FloatArray:
+    if not np.iscomplexobj(values):
+        return np.asarray(values, dtype=float)
     return np.concatenate([values.real, values.imag], axis=-1)
 
 
 def _prior_scale(
-    model: Model, parameters: si.FloatArray, data: si.ComplexArray, weight: si.FloatArray
+    model: Model, parameters: si.FloatArray, data: si.Array, weight: si.FloatArray
 ) -> float:
     """Weight of a prior of one standard deviation beside residuals of which the noise is not yet
     known: their spread, times the root of their correlation time."""
@@ -121,7 +144,7 @@ def _prior_scale(
 def _minimum(
     model: Model,
     start: si.FloatArray,
-    data: si.ComplexArray,
+    data: si.Array,
     weight: si.FloatArray,
     prior: Prior | None,
     scale: float,
@@ -154,13 +177,13 @@ def _minimum(
 
 def _fitted(
     parameters: si.FloatArray,
-    residual: si.ComplexArray,
-    slopes: si.ComplexArray,
+    residual: si.Array,
+    slopes: si.Array,
     prior: Prior | None,
 ) -> ComplexFit:
     rows = _stacked(slopes)
     told = 0 if prior is None else int(np.isfinite(prior.spread).sum())
-    freedom = 2 * residual.size - (parameters.size - told)
+    freedom = _numbers(residual) - (parameters.size - told)
     spread = float(np.sqrt(np.sum(_stacked(residual) ** 2) / freedom))
     correlation = correlation_time(residual)
     information = rows @ rows.T / (spread**2 * correlation)
@@ -176,7 +199,7 @@ def _fitted(
         covariance=covariance / np.outer(size, size),
         information=information,
         residual=residual,
-        weighted=np.empty(0, dtype=complex),
+        weighted=np.empty(0),
         spread=spread,
         correlation=correlation,
         left=spread,
@@ -185,7 +208,7 @@ def _fitted(
     )
 
 
-def noise_floor(residual: si.ComplexArray, size: si.FloatArray) -> float:
+def noise_floor(residual: si.Array, size: si.FloatArray) -> float:
     """The size (as that of `size`, (points,)) below which noise falls no further: 0 for noise that
     is the same share of every point's size, as far as the residual tells.
 
@@ -194,7 +217,8 @@ def noise_floor(residual: si.ComplexArray, size: si.FloatArray) -> float:
     chooses its range at every point has none.
     """
     second = residual[2:] - 2 * residual[1:-1] + residual[:-2]
-    # Neighbouring differences share points: a third of them is independent.
+    # Neighbouring differences share points: a third of their numbers is independent.
+    share = _numbers(second) / (3 * second.size)
     rows = np.abs(second) ** 2
     if rows.size < 8 or not np.all(size > 0) or not rows.any():
         return 0.0
@@ -203,7 +227,7 @@ def noise_floor(residual: si.ComplexArray, size: si.FloatArray) -> float:
     def deviance(floor: float) -> float:
         square = size**2 + floor**2
         square = (square[2:] + 4 * square[1:-1] + square[:-2]) / 6
-        return float(2 / 3 * (np.sum(np.log(square)) + rows.size * np.log(np.mean(rows / square))))
+        return float(share * (np.sum(np.log(square)) + rows.size * np.log(np.mean(rows / square))))
 
     floors = typical * _FLOORS
     tried = [deviance(float(floor)) for floor in floors]
@@ -211,7 +235,7 @@ def noise_floor(residual: si.ComplexArray, size: si.FloatArray) -> float:
     return float(floors[best]) if deviance(0.0) - tried[best] > _EVIDENCE else 0.0
 
 
-def correlation_time(residual: si.ComplexArray) -> float:
+def correlation_time(residual: si.Array) -> float:
     """1 + 2 Σ ρ over lags until ρ first falls to noise, or 1 where the first lag's is noise.
 
     The factor by which neighbours that err alike multiply the variance of a mean (Sokal 1997).
@@ -219,8 +243,8 @@ def correlation_time(residual: si.ComplexArray) -> float:
     power = float(np.sum(np.abs(residual) ** 2))
     if power == 0 or residual.size < 8:
         return 1.0
-    # Two components a point: the standard error of a correlation of white noise.
-    chance = 1 / np.sqrt(2 * residual.size)
+    # The standard error of a correlation of white noise.
+    chance = 1 / np.sqrt(_numbers(residual))
     total = 1.0
     for lag in range(1, residual.size // 3):
         rho = float(np.real(np.vdot(residual[:-lag], residual[lag:]))) / power

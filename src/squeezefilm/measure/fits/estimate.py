@@ -80,6 +80,10 @@ class Observation:
         for name, value in self.conditions.items():
             si.require(name, value)
 
+    def in_words(self, answer: str) -> str:
+        """An answer as it is said, with the recording that it was read from."""
+        return f"{answer} ({self.recording})" if self.recording else answer
+
 
 # Of a standard error, to either side of a fitted number.
 _STEP = 1e-5

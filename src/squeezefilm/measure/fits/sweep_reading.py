@@ -30,7 +30,7 @@ def require_passive(sweep: ImpedanceSweep) -> None:
 
     Off resonance, here the tenth of the points at either end, a body is a capacitor: its
     admittance leads by nearly 90°. Resonances and noise leave a real part that is positive on
-    average.
+    average. A sweep without a recorded phase has nothing of this to look at.
     """
     y, f = sweep.admittance, sweep.frequency
     if y.ndim != 1 or f.shape != y.shape or y.size < _FEWEST_POINTS:
@@ -50,6 +50,8 @@ def require_passive(sweep: ImpedanceSweep) -> None:
             "the frequencies do not rise; sort the points and join those at one frequency",
             quantity="frequency",
         )
+    if not sweep.phase_recorded:
+        return
     unit = y / np.abs(y)
     rim = max(2, y.size // 10)
     ends = np.concatenate([unit[:rim], unit[-rim:]])

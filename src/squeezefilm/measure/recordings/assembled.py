@@ -10,7 +10,12 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.measure.recordings import assembled_friction, kinds
-from squeezefilm.measure.recordings.circuits_read import IMPEDANCES, Fixture
+from squeezefilm.measure.recordings.circuits_read import (
+    IMPEDANCES,
+    SIZES,
+    Fixture,
+    with_phase,
+)
 from squeezefilm.measure.recordings.described import Column
 from squeezefilm.measure.recordings.description import Description, ImpedanceColumns
 from squeezefilm.measure.recordings.files.raw_table import RawTable
@@ -71,6 +76,49 @@ def _own_columns(description: Description, table: RawTable) -> ImpedanceColumns:
 
 def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
     frequency = reading.take("frequency")
+    named = {name for pair in _PAIRS for name in pair if reading.has(name)}
+    named |= {"gain"} if reading.has("shunt_voltage") else set()
+    alone = len(named) == 1 and named < set(SIZES)
+    value = _size(reading, named.pop(), frequency) if alone else _admittance(reading, frequency)
+    frequency, value = _rising(reading, "frequency", frequency, value)
+    kept = _in_band(reading, frequency)
+    frequency, value = frequency[kept], value[kept]
+    outside = reading.table.outside(frequency)
+    reading.doubts += [] if outside is None else [outside]
+    said: Any = reading.description.said
+    in_series = (said.shunt or 0.0) if alone else 0.0
+    if alone:
+        value = with_phase(frequency, value)
+        value = value / (1 - value * in_series)
+    return kinds.ImpedanceSweep(
+        frequency,
+        value,
+        reading.told(),
+        _ceramic(reading),
+        said.compensated,
+        phase_recorded=not alone,
+        in_series=in_series,
+    )
+
+
+def _size(reading: Reading, name: str, frequency: si.HertzArray) -> si.FloatArray:
+    """The size of the admittance (S) where no phase was recorded, with a shunt that was told."""
+    said: Any = reading.description.said
+    for key in ("correct", "bar", "disc", "open", "short"):
+        if getattr(said, key):
+            raise reading.description.error(
+                f"only the {words(name)} is named, and {key} asks for the phase too; record it, "
+                f"or leave {key} out to have a circuit fitted to the sizes",
+                [key],
+            )
+    if name == "gain":
+        return _gain(reading) / _fixture(reading, name, frequency).shunt
+    value = reading.take(name)
+    return 1 / value if name == "magnitude" else value
+
+
+def _admittance(reading: Reading, frequency: si.HertzArray) -> si.ComplexArray:
+    """The admittance (S) that the pair of columns makes."""
     pair, first, second = _first_and_second(reading)
     fixture = _fixture(reading, pair[0], frequency)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -81,16 +129,7 @@ def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
     endless = np.flatnonzero(~np.isfinite(value))
     if endless.size:
         raise reading.refuse(pair[0], "this makes no finite impedance", int(endless[0]))
-    value = _corrected(reading, 1 / value)
-    frequency, value = _rising(reading, "frequency", frequency, value)
-    kept = _in_band(reading, frequency)
-    frequency, value = frequency[kept], value[kept]
-    outside = reading.table.outside(frequency)
-    reading.doubts += [] if outside is None else [outside]
-    said: Any = reading.description.said
-    return kinds.ImpedanceSweep(
-        frequency, value, reading.told(), _ceramic(reading), said.compensated
-    )
+    return _corrected(reading, 1 / value)
 
 
 def _first_and_second(
@@ -98,14 +137,21 @@ def _first_and_second(
 ) -> tuple[tuple[str, ...], si.FloatArray, si.FloatArray]:
     """The pair that is named and its values; two voltages are the pair of their quotient."""
     if reading.has("shunt_voltage"):
-        over, whole = (reading.take(name, amplitude=True) for name in ("shunt_voltage", "voltage"))
-        still = np.flatnonzero(np.abs(whole) < np.finfo(float).tiny)
-        if still.size:
-            raise reading.refuse("voltage", "nothing was driven here", int(still[0]))
-        return ("gain", "phase"), over / whole, reading.take("phase")
+        return ("gain", "phase"), _gain(reading), reading.take("phase")
     pair = _one_of(reading, _PAIRS)
     first, second = (reading.take(name) for name in pair)
     return pair, first, second
+
+
+def _gain(reading: Reading) -> si.FloatArray:
+    """The gain that was recorded, or the quotient of the two voltages that were."""
+    if not reading.has("shunt_voltage"):
+        return reading.take("gain")
+    over, whole = (reading.take(name, amplitude=True) for name in ("shunt_voltage", "voltage"))
+    still = np.flatnonzero(np.abs(whole) < np.finfo(float).tiny)
+    if still.size:
+        raise reading.refuse("voltage", "nothing was driven here", int(still[0]))
+    return over / whole
 
 
 def _fixture(reading: Reading, first: str, frequency: si.HertzArray) -> Fixture:
@@ -325,13 +371,6 @@ def _one_of(reading: Reading, pairs: tuple[tuple[str, ...], ...]) -> tuple[str, 
     for pair in pairs:
         if named == set(pair):
             return pair
-    if len(named) == 1 and named < {"magnitude", "admittance_magnitude", "gain", "phase"}:
-        raise reading.description.error(
-            f"only the {words(named.pop())} is named: size and phase together tell losses from "
-            "reactance. Record the phase too, or resistance and reactance; of a scope's traces it "
-            "is 360 deg times the frequency times their delay",
-            ["columns"],
-        )
     shown = "; ".join(" with ".join(pair) for pair in pairs)
     raise reading.description.error(
         f"one pair must be named of an impedance: {shown}; named are "

@@ -1,5 +1,5 @@
 """The impedance that two recorded quantities make: |Z| and phase, capacitance and loss, reflection,
-two voltages and a shunt."""
+two voltages and a shunt; and the phase that goes with a size alone."""
 
 from __future__ import annotations
 
@@ -91,3 +91,31 @@ IMPEDANCES: Mapping[tuple[str, ...], Made] = {
     ("gain", "phase"): lambda h, phase, at: at.shunt * (1 / _polar(h, phase) - 1),
 }
 """The pairs of which one must be named, those first that say most, and what each makes."""
+
+SIZES = ("magnitude", "admittance_magnitude", "gain")
+"""Quantities that make a sweep by themselves, without a phase."""
+_BEYOND, _LOSSY = 200, 1 + 0.02j
+
+
+def with_phase(frequency: si.HertzArray, size: si.FloatArray) -> si.ComplexArray:
+    """The admittance (S, (points,)) of a passive body at rising frequencies (Hz) by its size (S).
+
+    The phase is π/2 + (1/π) ∫ (dg/du) ln coth |u/2| du with g = ln(size/f) over u = ln f (Bode
+    1945, Network Analysis and Feedback Amplifier Design, section 14.3). Beyond the sweep g is that
+    of one resonance, at the largest size, with a parallel one at the least. As good as a start of a
+    fit: it may be off by some degrees.
+    """
+    away = np.geomspace(1e-5, 0.9, _BEYOND)
+    below, above = frequency[0] * (1 - away[::-1]), frequency[-1] / (1 - away)
+    own, parallel = (frequency[int(at)] ** 2 * _LOSSY for at in (size.argmax(), size.argmin()))
+    middle, rise = [], []
+    for f, g in (
+        (below, np.log(np.abs((parallel - below**2) / (own - below**2)))),
+        (frequency, np.log(size / frequency)),
+        (above, np.log(np.abs((parallel - above**2) / (own - above**2)))),
+    ):
+        middle.append(np.log(f[1:] * f[:-1]) / 2)
+        rise.append(np.diff(g))
+    places, rises = np.concatenate(middle), np.concatenate(rise) / np.pi
+    turned = [-np.log(np.tanh(np.abs(places - u) / 2)) @ rises for u in np.log(frequency)]
+    return np.asarray(size * np.exp(1j * np.clip(np.pi / 2 + np.array(turned), -1.55, 1.55)))

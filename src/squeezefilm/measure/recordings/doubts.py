@@ -32,6 +32,11 @@ def doubts_of(recording: kinds.Recording) -> tuple[str, ...]:
 
 def _impedance(sweep: kinds.ImpedanceSweep) -> Iterator[str]:
     y, f = sweep.admittance, sweep.frequency
+    if not sweep.phase_recorded:
+        yield (
+            "no phase was recorded: a circuit is fitted to sizes alone, which tell less of losses; "
+            "its intervals are wider"
+        )
     # Weighted by nothing: a phase that is off is off at every point, also away from resonance.
     dissipative, capacitive = np.mean(np.cos(np.angle(y))), np.mean(np.sin(np.angle(y)))
     degrees = np.degrees(np.angle(1 / y[0]))

@@ -57,22 +57,45 @@ class Told:
     source: str = ""
     temperature: si.AbsoluteKelvin | None = None
 
+    @property
+    def facts(self) -> list[tuple[str, str]]:
+        """What is told of who measured, when and with what, as pairs of what and how."""
+        said = (
+            ("measured by", self.who),
+            ("when", self.when),
+            ("instrument", self.instrument),
+            ("licence", self.licence),
+            ("source", self.source),
+        )
+        return [(what, how) for what, how in said if how]
+
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class ImpedanceSweep:
     """Admittance (S, complex, time factor e^{iωt}) at rising `frequency` (Hz), both (points,);
     `body` is the bare ceramic that was swept, where it is told to be one, `compensated` whether
-    the fixture's leads were (None where that is not told)."""
+    the fixture's leads were (None where that is not told). Without `phase_recorded` the phase is
+    that of a passive body (`circuits_read.with_phase`), and the size was recorded of the body and a
+    resistance `in_series` (Ω) together."""
 
     frequency: si.HertzArray
     admittance: si.Array
     told: Told = field(default_factory=Told)
     body: CeramicBar | CeramicDisc | None = None
     compensated: bool | None = None
+    phase_recorded: bool = True
+    in_series: si.Ohm = 0.0
 
     def __post_init__(self) -> None:
         si.require_alike(frequency=self.frequency, admittance=self.admittance)
+
+    def as_recorded(self, admittance: si.ComplexArray) -> si.Array:
+        """What such a sweep records of a body's admittance (S, (points,)): all of it; without a
+        phase its size, behind what is in series."""
+        if self.phase_recorded:
+            return admittance
+        return np.asarray(np.abs(admittance / (1 + admittance * self.in_series)))
 
 
 @si.checked_numbers

@@ -292,6 +292,15 @@ class Reading:
 
     def _require_own_unit(self, name: str, column: Column, place: int) -> None:
         """Refuse a unit other than the one that the file's own header has in brackets."""
+        moved = self.table.moved[place] if self.table.moved else ""
+        if moved and moved != name.removesuffix("_imaginary"):
+            acceleration = moved == "acceleration"
+            advice = "export velocity or displacement" if acceleration else f"write {moved} = …"
+            raise self.description.error(
+                f"the description says {words(name)}, and the file that column {place + 1} holds "
+                f"{moved}; {advice}, or name another column",
+                ["columns", name, "column"],
+            )
         own = self.table.unit_in_name(place)
         if own is None or column.unit == own:
             return

@@ -177,14 +177,7 @@ def check_recording(path: str | Path, described: str | Path | None = None) -> Re
         facts += reading.facts
         facts += [("of the file", note) for note in table.notes]
     told = recording.told
-    said = (
-        ("measured by", told.who),
-        ("when", told.when),
-        ("instrument", told.instrument),
-        ("licence", told.licence),
-        ("source", told.source),
-    )
-    facts += [(what, how) for what, how in said if how]
+    facts += told.facts
     if told.temperature is not None:
         facts.append(("temperature", f"{told.temperature:.4g} K"))
     return RecordingCheck(

@@ -1,4 +1,4 @@
-"""A calibration in pictures: the model beside what was measured, and friction."""
+"""A calibration in a picture: friction before and after; and how its numbers are called."""
 
 from __future__ import annotations
 
@@ -20,53 +20,6 @@ if TYPE_CHECKING:
 
 _PRIOR: dict[str, Any] = {"color": style.MUTED, "lw": 1.4}
 _POSTERIOR: dict[str, Any] = {"color": style.BLUE, "lw": 4.5, "solid_capstyle": "butt"}
-_ROW, _REST = 0.29, 1.6
-_FINE = 1e-3  # up to which a difference is drawn in proportion, beyond it by its logarithm
-_TICKS = (-0.1, -0.01, -0.001, 0.0, 0.001, 0.01, 0.1)
-
-
-@style.drawn
-def compared_figure(calibration: FolderCalibration) -> Figure:
-    """Figure of what the model alone says of every measured number, before and after."""
-    rows = calibration.calibration.compared
-    far = [one for one in rows if one.after and abs(deviation(one)) > 2]
-    title = (
-        f"The calibrated model meets all {len(rows)} measured numbers within two standard errors"
-        if not far
-        else f"The calibrated model misses {len(far)} of {len(rows)} measured numbers by more than "
-        "two standard errors"
-    )
-    figure = style.new_figure(
-        title,
-        f"{si.percent(LEVEL)} intervals of the model alone, without what it is believed to be off "
-        "by; the scale is proportional within ±0.1 %, logarithmic beyond",
-        _REST + _ROW * max(len(rows), 2),
-    )
-    axes = figure.subplots()
-    for row, one in enumerate(rows):
-        _before_after(axes, row, one)
-        error = min(one.error, 0.9)
-        look: dict[str, Any] = {"color": style.ORANGE, "capsize": 3, "ms": 4, "lw": 1.2}
-        label = "" if row else "measured, ± one standard error"
-        axes.errorbar([0], [row], xerr=[error], fmt="D", zorder=4, label=label, **look)
-    _rows(axes, [row_name(one) for one in rows])
-    axes.axvline(0, **style.ZERO)
-    axes.set_xscale("symlog", linthresh=_FINE, linscale=0.6)
-    axes.set_xticks(
-        _TICKS, [f"{'−+'[tick > 0]}{100 * abs(tick):g} %" if tick else "0" for tick in _TICKS]
-    )
-    axes.minorticks_off()
-    axes.set_xlim(-0.95, 2)
-    axes.set_xlabel("model over measured, less 1")
-    style.legend_below(axes, columns=3, gap=0.9 / (_REST + _ROW * len(rows)))
-    return figure
-
-
-def _before_after(axes: Axes, row: int, answer: ComparedAnswer) -> None:
-    looks = ((answer.before, _PRIOR, "before"), (answer.after, _POSTERIOR, "after"))
-    for ends, look, label in looks:
-        if ends:
-            axes.plot([ends[0] - 1, ends[2] - 1], [row, row], **look, label="" if row else label)
 
 
 def deviation(answer: ComparedAnswer) -> float:
@@ -124,13 +77,5 @@ def _rows(axes: Axes, names: list[str]) -> None:
     axes.tick_params(axis="y", length=0)
 
 
-FIGURES = (
-    FigureOf("friction", "Friction before and after", friction_figure),
-    FigureOf(
-        "compared",
-        "The model beside every measurement",
-        compared_figure,
-        has=lambda result: result.calibration.compared,
-    ),
-)
+FIGURES = (FigureOf("friction", "Friction before and after", friction_figure),)
 """The figures of a calibration, in the order of its page."""

@@ -56,9 +56,8 @@ def write_calibration(calibrated: FolderCalibration, folder: Path) -> Path:
         "What was measured is explained" if calibration.fits else "The model does NOT explain it",
         bullets([*calibration.doubts, *_misfits(calibration)]),
     )
-    body += get("friction", "") + get("compared", "")
+    body += get("friction", "")
     body += section("Every measured number", _compared(calibration.compared))
-    body += section("How far off, by what was measured", _by_kind(calibration.compared))
     body += section(
         "Each value", text_table("Before and after", VALUES_HEAD, value_rows(calibrated))
     )
@@ -148,23 +147,6 @@ def _difference(ends: tuple[float, ...]) -> str:
 
 def _apart(off: float) -> str:
     return "–" if math.isnan(off) else f"{abs(off):.1f} standard errors"
-
-
-def _by_kind(rows: Sequence[ComparedAnswer]) -> str:
-    """Sentence on how many of each kind were measured and how far the calibrated model is off."""
-    kinds: dict[str, list[ComparedAnswer]] = {}
-    for answer in rows:
-        # A friction is said with its conditions, which make no kind.
-        kind = answer.said if answer.relative_friction is None else "relative friction"
-        kinds.setdefault(kind, []).append(answer)
-    table = []
-    for kind, members in kinds.items():
-        known = [abs(deviation(answer)) for answer in members if answer.after]
-        square = math.sqrt(sum(off**2 for off in known) / len(known)) if known else math.nan
-        largest = max(known, default=math.nan)
-        table.append((kind, f"{len(members)}", _apart(square), _apart(largest)))
-    caption = "By the median of the calibrated model, in standard errors of both together"
-    return text_table(caption, ("what", "numbers", "root mean square", "largest"), table)
 
 
 def _computed(calibration: Calibration) -> str:

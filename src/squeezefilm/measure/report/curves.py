@@ -57,9 +57,12 @@ class _Compared(NamedTuple):
     figure: Callable[[], Figure]
 
 
+_Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
+
+
 def _recordings(compared: FolderComparison) -> Iterator[_Compared]:
     """Curves first, then numbers of many people, then thresholds."""
-    shown: tuple[str, Sequence[str], Sequence[Sequence[str]]]
+    shown: _Table
     for curve in compared.curves:
         told = curve.curve.told
         words = [beside.conditions(curve), beside.inside_words(curve), curve.adequacy.sentence]
@@ -82,6 +85,15 @@ def _recordings(compared: FolderComparison) -> Iterator[_Compared]:
         yield _Compared(told, told.name, beside.detection_words(detected), *shown, figure)
 
 
+def _totals(compared: FolderComparison) -> tuple[_Table, _Table]:
+    """Caption, head and rows of the models over all curves, and of the points in intervals."""
+    held = "Points in the default's intervals"
+    return (
+        ("All curves", beside.TOTALS_HEAD, beside.total_rows(compared)),
+        (held, beside.COVERAGE_HEAD, beside.coverage_rows(compared)),
+    )
+
+
 def show_comparisons(compared: FolderComparison) -> None:
     """Print each curve, the numbers of many people and the totals beside the models."""
     console = plain_console()
@@ -91,8 +103,8 @@ def show_comparisons(compared: FolderComparison) -> None:
         printed_bullets(console, [("", words, "") for words in recording.words])
     if len(compared.curves) > 1:
         heading(console, "All curves")
-        table(console, beside.TOTALS_HEAD, beside.total_rows(compared), fixed=(0,))
-        table(console, beside.COVERAGE_HEAD, beside.coverage_rows(compared), fixed=(0,))
+        for _, head, rows in _totals(compared):
+            table(console, head, rows, fixed=(0,))
         printed_bullets(
             console, [("", beside.covered_words(compared), ""), ("", beside.SCORES, "")]
         )
@@ -109,27 +121,14 @@ def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
     files: dict[str, str | bytes] = {"curves.json": json_text(summary | {"stamp": summary_stamp})}
     body = section("What is compared", f"<p>{beside.FITTED}</p>")
     if len(compared.curves) > 1:
-        rows = text_table("All curves", beside.TOTALS_HEAD, beside.total_rows(compared))
-        held = text_table(
-            "Points in the default's intervals",
-            beside.COVERAGE_HEAD,
-            beside.coverage_rows(compared),
-        )
+        rows, held = (text_table(*shown) for shown in _totals(compared))
         body += section(
             "All curves", rows + bullets([beside.covered_words(compared), beside.SCORES]) + held
         )
     for number, recording in enumerate(_recordings(compared), 1):
-        told = recording.told
         figure = recording.figure()
         files[f"curve-{number}.png"] = style.png(figure)
-        by = {
-            "measured by": told.who,
-            "when": told.when,
-            "instrument": told.instrument,
-            "licence": told.licence,
-            "source": told.source,
-        }
-        said = [*recording.words, *(f"{what}: {how}" for what, how in by.items() if how)]
+        said = [*recording.words, *(f"{what}: {how}" for what, how in recording.told.facts)]
         rows = text_table(recording.caption, recording.head, recording.rows)
         body += section(escape(printable(recording.name)), bullets(said) + rows)
         body += picture_sections({f"curve-{number}": (recording.name, figure)})
@@ -164,10 +163,8 @@ def write_friction_docs(compared: FolderComparison, root: Path | None = None) ->
 def friction_markdown(compared: FolderComparison) -> str:
     """The text of the page: all curves, each curve, the numbers of many people, and thresholds."""
     lines = [_HEAD, "## All curves", ""]
-    lines += markdown_table((beside.TOTALS_HEAD, beside.total_rows(compared)))
-    lines += ["", f"{beside.covered_words(compared)}. {beside.SCORES}", ""]
-    lines += markdown_table((beside.COVERAGE_HEAD, beside.coverage_rows(compared)))
-    lines += [""]
+    totals, held = (markdown_table(shown[1:]) for shown in _totals(compared))
+    lines += [*totals, "", f"{beside.covered_words(compared)}. {beside.SCORES}", "", *held, ""]
     for recording in _recordings(compared):
         how, *rest = recording.words
         lines += [f"## {recording.name.capitalize()}", "", f"{recording.told.source}. {how}.", ""]

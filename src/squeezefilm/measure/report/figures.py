@@ -45,7 +45,8 @@ def _two(figure: Figure, labels: tuple[str, str, str]) -> tuple[Axes, Axes]:
 
 
 def _impedance(figure: Figure, sweep: kinds.ImpedanceSweep) -> None:
-    upper, lower = _two(figure, ("|Z| (ohm)", "phase of Z (deg)", "frequency (kHz)"))
+    phase = "phase of Z (deg)" if sweep.phase_recorded else "phase that goes with |Z| (deg)"
+    upper, lower = _two(figure, ("|Z| (ohm)", phase, "frequency (kHz)"))
     z, f = 1 / sweep.admittance, sweep.frequency / 1e3
     upper.semilogy(f, np.abs(z), **_POINTS)
     style.plain_log(upper.yaxis)

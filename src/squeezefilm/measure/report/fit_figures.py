@@ -90,9 +90,8 @@ def modelled(check: RecordingCheck, fit: Fit) -> Modelled | None:
 
 def _admittances(sweep: kinds.ImpedanceSweep, model: si.ComplexArray) -> Modelled:
     labels = ("frequency (kHz)", "|Y| (mS)")
-    return Modelled(
-        sweep.frequency / 1e3, 1e3 * sweep.admittance, 1e3 * model, *labels, relative=True
-    )
+    data, fitted = (1e3 * sweep.as_recorded(y) for y in (sweep.admittance, model))
+    return Modelled(sweep.frequency / 1e3, data, fitted, *labels, relative=True)
 
 
 @style.drawn

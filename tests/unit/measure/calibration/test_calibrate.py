@@ -105,7 +105,7 @@ def test_text_with_sources_reads_back(calibration: Calibration) -> None:
 def test_a_prediction_is_made_kept_and_scored(calibration: Calibration, tmp_path: Path) -> None:
     file = tmp_path / "prediction.json"
     wanted = friction(0.0, 1.5e-6)
-    made = predict_blind(calibration, [wanted], file)
+    made = predict_blind(calibrated_display(calibration), [wanted], file)
     assert made == load_prediction(file)
     assert len(made.sha256) == 64
     low, high = made.predictions[0].interval
@@ -120,7 +120,7 @@ def test_a_prediction_is_made_kept_and_scored(calibration: Calibration, tmp_path
     with pytest.raises(InputError, match="nothing that was measured"):
         score(file, [friction(0.4, 3e-6)])
     with pytest.raises(InputError, match="never overwritten"):
-        predict_blind(calibration, [wanted], file)
+        predict_blind(calibrated_display(calibration), [wanted], file)
     display = write_calibrated(calibration, tmp_path / "display.toml")
     keep_scores(display, file, [one])
     assert made.sha256 in display.read_text(encoding="utf-8")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.stats import qmc
@@ -103,6 +105,15 @@ def test_a_contradiction_is_a_misfit_and_widens() -> None:
         for seen_, one in ((right, narrow), (wrong, wide))
     ]
     assert spread[1] > spread[0]
+
+
+def test_a_misfit_names_the_recording_that_does_not_fit() -> None:
+    frequencies = [seen("resonance_frequency", (k, 0), 1e-3) for k in (1.0, 1.01, -2.0)]
+    named = [replace(one, recording=f"{k}.csv") for k, one in enumerate(frequencies)]
+    misfit = sampled_posterior(problem(*named), seed=1, steps=100).misfit
+    assert misfit.judgement == "misfit"
+    assert misfit.worst == "resonance frequency (2.csv)"
+    assert "Worst is the resonance frequency (2.csv)" in misfit.sentence
 
 
 def test_draws_are_those_of_the_linear_problem(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -73,14 +73,6 @@ def test_another_mode_a_rocking_and_another_plate_are_called_wrong() -> None:
         assert not found.adequacy.adequate
 
 
-def test_what_drifts_is_fitted_where_asked_for() -> None:
-    w = line() * (1 + 0.1 * (X - X.mean()) / (X[-1] - X[0]))
-    assert not line_by_shape(SHAPE, X, w, reach=2.5e-3).adequacy.adequate
-    found = line_by_shape(SHAPE, X, w, reach=2.5e-3, drift=True)
-    assert found.adequacy.adequate
-    assert found.amplitude.value == pytest.approx(2e-6, rel=0.01)
-
-
 def test_a_line_says_amplitude_by_the_shape_and_half_wavelength_by_its_own_points() -> None:
     found = fit_line_scan(LineScan(X, line(0.2e-3), 33e3, 10.0), SHAPE)
     assert found.adequacy.adequate

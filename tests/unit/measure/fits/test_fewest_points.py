@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -78,7 +77,7 @@ def strokes(count: int) -> kinds.FrictionBench:
         (30, sweeps, fit_voltage_sweeps),
         (40, ringing, fit_ring_down),
         (100, strokes, sliding_strokes),
-        (256, signals, partial(fit_raw_signals, segment=128 / 4e5)),
+        (256, signals, fit_raw_signals),
     ],
 )
 def test_the_fewest_points_are_enough(

@@ -67,13 +67,6 @@ def test_noise_bounds_the_likeness_that_can_be_attained() -> None:
     assert fit.attainable < 0.9
 
 
-def test_an_even_drift_is_taken_out_where_asked_for() -> None:
-    w = 1e-6 * SHAPES["(8,0)"] * (1 + 0.4 * np.linspace(-0.5, 0.5, X.size))
-    recording = GridScan(X, Y, noisy(w + 0j, 0.005), 33e3)
-    assert not fit_grid_scan(recording, SHAPES).adequacy.adequate
-    assert fit_grid_scan(recording, SHAPES, drift=True).adequacy.adequate
-
-
 @pytest.mark.parametrize(
     ("shapes", "words"),
     [

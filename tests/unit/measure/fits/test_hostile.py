@@ -42,7 +42,7 @@ def _fits(x, w):
     shapes = {"a": np.cos(np.arange(x.size)), "b": np.sin(np.arange(x.size))}
     yield lambda: fit_frequency_response(kinds.FrequencyResponse(x, z))
     yield lambda: fit_line_scan(kinds.LineScan(x, z, 30e3))
-    yield lambda: fit_line_scan(kinds.LineScan(x, w, 30e3, 1.0), drift=True)
+    yield lambda: fit_line_scan(kinds.LineScan(x, w, 30e3, 1.0))
     yield lambda: fit_grid_scan(kinds.GridScan(x, x, z, 30e3, 1.0), shapes)
     yield lambda: fit_ring_down(kinds.RingDown(x, w))
     yield lambda: fit_voltage_sweeps(
@@ -51,7 +51,7 @@ def _fits(x, w):
         )
     )
     yield lambda: fit_voltage_sweeps(kinds.VoltageSweeps((), ()))
-    yield lambda: fit_raw_signals(kinds.RawSignals(x, w, w), instrument=True)
+    yield lambda: fit_raw_signals(kinds.RawSignals(x, w, w))
     yield lambda: fit_friction_bench(kinds.FrictionBench(x, same, w, w, np.abs(w)))
 
 

@@ -12,7 +12,7 @@ X = np.linspace(0, 80e-3, 4001)
 def test_every_column_is_a_free_bending_wave(recorded: bool) -> None:
     """The fourth derivative is k⁴ times the wave, where nothing is lost."""
     k, step = 280.0, X[1] - X[0]
-    line = LineWaves(0.0, 80e-3, recorded, True, False)
+    line = LineWaves(0.0, 80e-3, recorded, True)
     assert line.count == (2 if recorded else 1)
     waves = line.waves(X, np.array([k, 0.0])[: line.count])
     # By a coarse step, so that the last digits do not drown it.
@@ -24,10 +24,10 @@ def test_every_column_is_a_free_bending_wave(recorded: bool) -> None:
 
 
 def test_derivatives_are_those_of_the_columns() -> None:
-    line = LineWaves(0.0, 80e-3, True, True, True)
-    at = np.array([280.0, 0.01, 0.1, -0.05])
+    line = LineWaves(0.0, 80e-3, True, True)
+    at = np.array([280.0, 0.01])
     columns, bent = line.columns(X, at)
-    assert bent.shape == (4, *columns.shape)
-    step = np.array([1e-4, 0.0, 0.0, 0.0])
+    assert bent.shape == (2, *columns.shape)
+    step = np.array([1e-4, 0.0])
     slope = (line.waves(X, at + step) - line.waves(X, at - step)) / 2e-4
     assert bent[0] == pytest.approx(slope, abs=1e-5 * np.abs(slope).max())

@@ -125,14 +125,3 @@ def test_two_points_are_a_friction_curve(tmp_path: Path) -> None:
     curve = read_recording(written(tmp_path, "a,mu\n0,0.6\n1.5,0.3\n", typed))
     assert isinstance(curve, kinds.FrictionCurve)
     assert curve.friction.tolist() == [0.6, 0.3]
-
-
-def test_a_size_without_its_phase_says_what_to_record(tmp_path: Path) -> None:
-    typed = described(
-        "impedance",
-        'frequency = { column = 1, unit = "kHz" }\nmagnitude = { column = 2, unit = "ohm" }',
-        "",
-    )
-    content = text("f,z", (np.linspace(30, 40, 20), np.linspace(100, 90, 20)))
-    with pytest.raises(ConfigError, match="Record the phase too"):
-        read_recording(written(tmp_path, content, typed))

@@ -11,6 +11,7 @@ from tests.unit.measure.recordings import instrument_files as made
 from tests.unit.measure.recordings.bench_files import resonator, text, written
 
 from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
 from squeezefilm.measure.recordings.circuits_read import IMPEDANCES, Fixture
 from squeezefilm.measure.recordings.files.instruments import held_by, recognised
@@ -199,6 +200,30 @@ def test_a_touchstone_file_that_is_none_is_refused(
         read_recording(written(tmp_path, data, "", "a.s1p"))
 
 
+def test_a_size_without_a_phase_is_proposed_and_fitted(tmp_path: Path) -> None:
+    f, z = resonator(201)
+    white = np.random.default_rng(4).standard_normal((2, f.size))
+    z = z * (1 + 0.003 * (white[0] + 1j * white[1]))
+    path = written(tmp_path, text("f (Hz),|Z| (kohm)", (f, 1e-3 * abs(z))), "")
+    write_description(path)
+    sweep = read_recording(path)
+    assert isinstance(sweep, ImpedanceSweep)
+    fit = fit_impedance(sweep)
+    full = fit_impedance(ImpedanceSweep(f, 1 / z))
+    assert fit.adequacy.adequate
+    for name in ("series_resonance", "parallel_resonance", "quality_factor"):
+        ours, theirs = (getattr(one.strongest, name) for one in (fit, full))
+        assert ours.interval[0] < theirs.value < ours.interval[1]
+        assert 1 < ours.standard_error / theirs.standard_error < 3
+    with pytest.raises(InputError, match="sizes alone do not tell a drift"):
+        fit_impedance(sweep, drift=True)
+    said = path.with_suffix(".toml").read_text(encoding="utf-8")
+    for key in ('correct = "phase sign"', 'open = "b.csv"'):
+        path.with_suffix(".toml").write_text(f"{key}\n{said}", encoding="utf-8")
+        with pytest.raises(ConfigError, match="asks for the phase too"):
+            read_recording(path)
+
+
 def test_two_voltages_and_a_shunt_make_an_impedance(tmp_path: Path) -> None:
     f, z = resonator()
     gain = 100 / (100 + z)
@@ -217,6 +242,13 @@ def test_two_voltages_and_a_shunt_make_an_impedance(tmp_path: Path) -> None:
     kept = (f >= 29.5e3) & (f <= 30.5e3)
     assert np.array_equal(found.frequency, f[kept])
     assert np.allclose(1 / found.admittance, z[kept], rtol=1e-5)
+    alone = said.replace('phase = { column = "phi", unit = "deg" }\n', "")
+    sizes = check_recording(written(tmp_path, data, alone))
+    assert isinstance(sizes.recording, ImpedanceSweep)
+    assert not sizes.recording.phase_recorded
+    size = sizes.recording.as_recorded(sizes.recording.admittance)
+    assert np.allclose(size, np.abs(gain[kept]) / 100, rtol=1e-6)
+    assert "no phase was recorded" in sizes.doubts[0]
     narrow = said.replace('"29.5 kHz"', '"29.51 kHz"').replace('"30.5 kHz"', '"29.52 kHz"')
     with pytest.raises(ConfigError, match="kHz holds 0 rows"):
         read_recording(written(tmp_path, data, narrow))

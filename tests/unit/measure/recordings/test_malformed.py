@@ -123,7 +123,7 @@ DESCRIPTIONS = {
     "another dimension": ('"deg"', '"mm"', "mm is no unit of a phase", "columns.phase.unit"),
     "decibels": ('"ohm"', '"dB"', "does not say what 0 dB stands for", "columns.magnitude.unit"),
     "decibels of a phase": ('"deg"', '"dB re 1 rad"', "no amplitude here", "columns.phase.unit"),
-    "half a pair": ("phase = {", "# {", "Record the phase too", "columns"),
+    "half a pair": ("magnitude = {", "# {", "one pair must be named", "columns"),
     "a convention where none is": (
         '"ohm"', '"ohm", given_as = "rms"', "is no amplitude; delete it",
         "columns.magnitude.given_as",

@@ -48,8 +48,10 @@ def written(path: Path, *sets: dict[str, Any]) -> Path:
     return path
 
 
-def function(values: Any, node: int = 1, x: Any = F, binary: int = 0) -> dict[str, Any]:
-    """A frequency response as type 58."""
+def function(
+    values: Any, node: int = 1, x: Any = F, binary: int = 0, **said: Any
+) -> dict[str, Any]:
+    """A frequency response as type 58, with what its head says besides."""
     import pyuff
 
     return dict(
@@ -57,9 +59,8 @@ def function(values: Any, node: int = 1, x: Any = F, binary: int = 0) -> dict[st
             binary=binary, func_type=4, rsp_node=node, rsp_dir=3, ref_node=1, ref_dir=3,
             data=values, x=x, id1="vibrometer", id2="", id3="", id4="", id5="", load_case_id=0,
             rsp_ent_name="NONE", ref_ent_name="NONE", abscissa_spacing=1,
-            abscissa_spec_data_type=18,
-            ordinate_spec_data_type=8, orddenom_spec_data_type=13, z_axis_spec_data_type=0,
-            byte_ordering=1,
+            abscissa_spec_data_type=18, orddenom_spec_data_type=13, z_axis_spec_data_type=0,
+            byte_ordering=1, **{"ordinate_spec_data_type": 8} | said,
         )
     )  # fmt: skip
 
@@ -88,6 +89,33 @@ def test_a_function_is_read_as_it_was_written(binary: int, tmp_path: Path) -> No
     assert any("says: vibrometer" in how for _, how in found.facts)
 
 
+@pytest.mark.parametrize(
+    ("said", "told", "message"),
+    [
+        ({"ordinate_spec_data_type": 11}, None, "holds velocity; write velocity = …"),
+        ({"ordinate_spec_data_type": 12}, None, "holds acceleration; export velocity or"),
+        ({"ordinate_axis_units_lab": "m", "orddenom_axis_units_lab": "V"}, "um/V", 'unit = "m/V"'),
+        ({"ordinate_axis_units_lab": "m", "orddenom_axis_units_lab": "V"}, None, ""),
+        ({"ordinate_axis_units_lab": "m"}, None, ""),
+    ],
+)
+def test_a_function_s_own_words_are_told_and_checked(
+    said: dict[str, Any], told: str | None, message: str, tmp_path: Path
+) -> None:
+    path = written(tmp_path / "a.uff", nodes(), function(H, 6, **said))
+    text = RESPONSE if told is None else RESPONSE.replace("m/V", told)
+    path.with_suffix(".toml").write_text(text, encoding="utf-8")
+    if message:
+        with pytest.raises(ConfigError, match=message):
+            read_recording(path)
+        return
+    found = check_recording(path)
+    assert np.allclose(found.recording.displacement_per_volt, H, rtol=1e-4)
+    unit = "unit m/V" if "orddenom_axis_units_lab" in said else "no unit"
+    words = f"vibrometer, displacement, {unit}, at node 6 along z (0.01, 0.01, 0 in the file"
+    assert any(words in how for _, how in found.facts)
+
+
 def test_functions_at_nodes_become_a_scan_at_the_frequency_told(tmp_path: Path) -> None:
     shape = np.cos(2 * np.pi * PLACES[:, 0] / 0.02)
     sets = [function(one * H, number) for number, one in enumerate(shape, 1)]
@@ -102,6 +130,11 @@ def test_functions_at_nodes_become_a_scan_at_the_frequency_told(tmp_path: Path) 
     )
     with pytest.raises(ConfigError, match="does not reach the frequency told"):
         read_recording(path)
+    mixed = written(
+        tmp_path / "c.unv", nodes(), sets[0], function(H, 2, ordinate_spec_data_type=11)
+    )
+    with pytest.raises(ConfigError, match="several quantities or units"):
+        read_universal(mixed, 30e3)
     lonely = written(tmp_path / "b.unv", nodes(), function(H, 77))
     with pytest.raises(ConfigError, match="node 77, whose place no data set of type 15 gives"):
         read_universal(lonely, 30e3)

@@ -91,7 +91,7 @@ def test_a_page_says_all_that_came_out(tmp_path: Path) -> None:
         "The model does NOT explain it", "The draws are few.", "The plate: The model explains",
         "Friction: The model does not explain", FORCE, "Only together are fixed",
         "c.csv: its fit is not adequate", "A. &lt;B&gt;", "ab" * 32, "mass 0.012 %", "Seed 7.",
-        "exponential 75 %", "40 plates were solved", 'src="friction.png"', 'src="compared.png"',
+        "exponential 75 %", "40 plates were solved", 'src="friction.png"',
         "What to measure next", "mass on a balance", "&lt;b&gt;.csv",
         "+3.0 % (+2.0 % to +4.0 %)", 'href="calibrated.toml"',
     ):  # fmt: skip

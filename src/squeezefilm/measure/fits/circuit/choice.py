@@ -101,6 +101,9 @@ def _corrections(sweep: ImpedanceSweep, drift: bool) -> tuple[frozenset[str], ..
     free = [name for name in CORRECTIONS if name not in told]
     if sweep.compensated:
         free.remove("leads")
+    if not sweep.phase_recorded:
+        # A phase is all that tells of these.
+        free = [name for name in free if name == "leads"]
     return tuple(
         frozenset(told | set(some))
         for size in range(3)
@@ -114,7 +117,7 @@ def _layouts(count: int, corrections: Sequence[frozenset[str]]) -> Iterator[tupl
     made = [Layout(count, **dict.fromkeys(names, True)) for names in corrections]
     for _, step in itertools.groupby(made, _corrected):
         yield tuple(step)
-    if count == 1:
+    if count == 1 and any(layout.coupling_loss for layout in made):
         yield (replace(made[0], coupling_loss=True, softening=True),)
 
 
@@ -150,12 +153,12 @@ def _settled(trials: _Trials, best: Fitted) -> tuple[Fitted, list[Fitted]]:
 
 def _deviance(fit: Fitted) -> float:
     """Deviance of a fit: twice the logarithm of a likelihood, but for a constant."""
-    return 2 * fit[0].residual.size * math.log(fit[0].left ** 2)
+    return fit[0].numbers * math.log(fit[0].left ** 2)
 
 
 def _criterion(fit: Fitted) -> float:
     """The Bayesian information criterion of a fit."""
-    return _deviance(fit) + fit[1].size * math.log(2 * fit[0].residual.size)
+    return _deviance(fit) + fit[1].size * math.log(fit[0].numbers)
 
 
 def _better(more: Fitted, best: Fitted) -> bool:
@@ -204,13 +207,17 @@ def _fitted(
     """The fit of a layout, branches rising in frequency, from frequencies (Hz) and Q of branches;
     None where it is none."""
     f, y, count = sweep.frequency, sweep.admittance, layout.branches
-    if 2 * y.size < layout.size + 8:
-        return None
     start = start_at(layout, f, y, own, quality)
     motion = sweep_motion(sweep, start)
+
+    def circuit(p: si.FloatArray) -> tuple[si.ComplexArray, si.ComplexArray]:
+        curve, slopes = circuit_curve(layout, p, f, motion)
+        through = 1 / (1 + curve * sweep.in_series)
+        return curve * through, slopes * through**2
+
     try:
-        fit = fit_complex(lambda p: circuit_curve(layout, p, f, motion), start, y)
-    except ConvergenceError:
+        fit = fit_complex(circuit, start, sweep.as_recorded(y))
+    except (ConvergenceError, InputError):
         return None
     logs = np.array([fit.parameters[layout.branch(k)] for k in range(count)])
     frequency, quality = np.exp(np.clip(logs[:, :2], -30, 30)).T

@@ -10,6 +10,7 @@ import numpy as np
 from scipy import optimize
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.circuit.branches import Layout, circuit_curve
 from squeezefilm.measure.fits.circuit.choice import (
     CORRECTIONS,
@@ -136,13 +137,22 @@ def fit_impedance(
     not `compensated`, has drift or leads for certain; a compensated one has no leads. Where the
     sweep does not tell one of the three from another, intervals hold what each makes of it, and
     the adequacy says so. A resonance that drifts during the sweep cannot be told from another
-    Q. Noise is relative, down to a floor where the data tell of one, and estimated from them;
+    Q. Where no phase was recorded the circuit's size is fitted, with no correction but leads; its
+    `loss_tangent` is then less by twice that of the coupling.
+
+    Noise is relative, down to a floor where the data tell of one, and estimated from them;
     missing points do no harm. Intervals are of 95 %, to first order in the noise; where the
     circuit misses something they are widened by how alike neighbouring residuals are, which is
     no bound. Raises `InputError` for a sweep that no passive capacitive body has (a phase that
     is off by 180° or has the wrong sign), that holds no resonance, or is too short.
     """
     require_passive(sweep)
+    if drift and not sweep.phase_recorded:
+        raise InputError(
+            "sizes alone do not tell a drift of the analyser's complex gain; record the phase too, "
+            "or fit without drift",
+            quantity="drift",
+        )
     if branches is not None:
         si.require("branches", branches, at_least=1, at_most=MOST_BRANCHES)
     (fit, layout), rivals = chosen_circuit(sweep, branches, drift)

@@ -26,7 +26,7 @@ from squeezefilm.measure.fits.estimate import (
 from squeezefilm.measure.fits.friction.strokes import Strokes, sliding_strokes
 from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
-from squeezefilm.measure.recordings.kinds import FrictionBench, FrictionCurve
+from squeezefilm.measure.recordings.kinds import FrictionBench
 
 MOST_DRIFT = 4
 
@@ -66,23 +66,6 @@ class FrictionBenchFit(FitResult):
     drift: Estimate | None
     between_strokes: si.Dimensionless
     adequacy: Adequacy
-
-    @property
-    def curve(self) -> FrictionCurve | None:
-        """The curve µ′/µ(amplitude) with its spread between strokes, as others compare it; None
-        without a level of no vibration, or where the recording does not tell the frequency."""
-        if not self.relative_friction or self.recording.frequency is None:
-            return None
-        values = np.array([1.0, *(estimate.value for estimate in self.relative_friction)])
-        return FrictionCurve(
-            vibration_amplitude=self.amplitudes,
-            friction=values,
-            spread=values * self.between_strokes,
-            frequency=self.recording.frequency,
-            normal_force=self.normal_force,
-            speed=self.speed,
-            told=self.recording.told,
-        )
 
     @property
     def observations(self) -> tuple[Observation, ...]:

@@ -103,14 +103,12 @@ def line_by_shape(
     w: si.Array,
     *,
     reach: Annotated[si.Metre, si.Above(0.0)],
-    drift: bool = False,
 ) -> LineByShape:
     """The shape of the line that fits displacements `w` (m, real or complex) at rising `x` (m).
 
     Swing and rest have each a weight of its own; the line may begin up to `reach` (m) from the
-    face's edge; with `drift` the swing may change in proportion to the place along the scan. The
-    line is taken to run through the best antinode. Raises `InputError` where there are fewer
-    points than numbers, the places do not rise, or nothing moves.
+    face's edge. The line is taken to run through the best antinode. Raises `InputError` where
+    there are fewer points than numbers, the places do not rise, or nothing moves.
     """
     w = np.asarray(w)
     if w.dtype.kind not in "fc" or not np.all(np.isfinite(w)) or not np.any(w):
@@ -119,12 +117,10 @@ def line_by_shape(
     if not np.all(np.diff(x) > 0) or x.size < 2:
         raise InputError("x must rise from point to point", quantity="x")
     recorded = np.iscomplexobj(w)
-    span = float(x[-1] - x[0])
 
     def rows(offset: float) -> si.Array:
         swing, rest = shape.along(x + offset)
-        columns = [swing, rest] if recorded else [swing]
-        return np.stack([*columns, swing * (x - x.mean()) / span] if drift else columns, axis=1)
+        return np.stack([swing, rest] if recorded else [swing], axis=1)
 
     def columns(own: si.FloatArray) -> tuple[si.Array, si.Array]:
         offset, step = float(own[0]), 1e-3 * reach

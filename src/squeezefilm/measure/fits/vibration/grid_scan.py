@@ -74,8 +74,6 @@ class GridScanFit(FitResult):
 def fit_grid_scan(
     recording: GridScan,
     shapes: Mapping[str, si.Array],
-    *,
-    drift: bool = False,
 ) -> GridScanFit:
     """Tell which of the `shapes` a scan is, by the modal assurance criterion, and how far it moves.
 
@@ -83,9 +81,8 @@ def fit_grid_scan(
     amplitude is asked for (the best antinode): `shapes_at` takes them from solved modes, as many
     neighbours as may take part, and what else the drive moves (of two that the places cannot tell
     apart the one more alike the scan). MAC = |φᴴw|²/(φᴴφ wᴴw) (Allemang 2003, Sound and Vibration
-    37(8) 14); amplitudes are least squares of all shapes together. With `drift` the strongest part
-    may change in proportion to the order of the points. Raises `InputError` for fewer than 12
-    points or a shape of another length.
+    37(8) 14); amplitudes are least squares of all shapes together. Raises `InputError` for fewer
+    than 12 points or a shape of another length.
     """
     good = np.isfinite(recording.x) & np.isfinite(recording.y) & np.isfinite(recording.displacement)
     w = np.asarray(recording.displacement)[good]
@@ -100,11 +97,7 @@ def fit_grid_scan(
     likeness = {name: _likeness(row, w) for name, row in rows.items()}
     names, alike = _told_apart(rows, likeness)
     label, own = names[0], 0
-    matrix = np.column_stack([rows[name] for name in names])
-    columns = matrix
-    if drift:
-        order = np.linspace(-0.5, 0.5, w.size)
-        columns = np.column_stack([matrix, matrix[:, own] * order])
+    columns = np.column_stack([rows[name] for name in names])
     size = float(np.max(np.abs(w)))
     recorded = np.iscomplexobj(w) and bool(np.any(w.imag))
     data = w / size if recorded else w.real / size

@@ -21,14 +21,13 @@ from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
 class LineWaves:
     """The columns of waves along a line from `first` to `last` (m).
 
-    The shape is k, then for complex data the decay over k, then the drift's two numbers (one).
+    The shape is k, then for complex data the decay over k.
     """
 
     first: si.Metre
     last: si.Metre
     complex: bool
     free_ends: bool
-    drift: bool
 
     @property
     def length(self) -> si.Metre:
@@ -38,13 +37,11 @@ class LineWaves:
     @property
     def count(self) -> int:
         """Number of numbers that bend the columns."""
-        own = 2 if self.complex else 1
-        return own + (own if self.drift else 0)
+        return 2 if self.complex else 1
 
     def reach(self, wave_number: float) -> si.FloatArray:
         """Distance that the shape may go from its start."""
-        rows = [wave_number / 3] + ([0.25] if self.complex else [])
-        return np.array(rows + [2.0] * (self.count - len(rows)))
+        return np.array([wave_number / 3, 0.25][: self.count])
 
     def waves(self, x: si.MetreArray, shape: si.FloatArray) -> si.Array:
         """The columns (points, waves): forward, backward, and the near fields of the ends."""
@@ -56,11 +53,7 @@ class LineWaves:
             rows = [np.cos(k * (x - middle)), np.sin(k * (x - middle))]
         if self.free_ends:
             rows += [np.exp(-k * (x - self.first)), np.exp(-k * (self.last - x))]
-        columns = np.stack(rows, axis=1)
-        if not self.drift:
-            return columns
-        rate = shape[-2] + 1j * shape[-1] if self.complex else shape[-1]
-        return np.asarray(columns * (1 + rate * (x - middle) / self.length)[:, None])
+        return np.stack(rows, axis=1)
 
     def columns(self, x: si.MetreArray, shape: si.FloatArray) -> tuple[si.Array, si.Array]:
         """The columns and their derivatives by central differences of them."""

@@ -100,16 +100,14 @@ def fit_line_scan(
     shape: DrivenShape | None = None,
     *,
     free_ends: bool = True,
-    drift: bool = False,
 ) -> LineScanFit:
     """Half wavelength (m), nodal lines (m), loss, standing-wave ratio and amplitude (m) of a line.
 
     w = F e^{−ikx} + B e^{ikx} + C e^{−k(x − x0)} + D e^{−k(x1 − x)} with k(1 − iη/4): one bending
     wave number, and with `free_ends` the near fields of edges at both ends of the scan (leave them
     out along a closed track). Losses and the ratio of waves need a recorded phase; without one
-    (real values) the sign is turned at every deep minimum of a size. With `drift` the amplitude may
-    change in proportion to the place along the scan, as when the plate warms while it is scanned.
-    The model is that of an even thin plate: a plate with ceramics on it bends its wave, and the
+    (real values) the sign is turned at every deep minimum of a size. The model is that of an even
+    thin plate: a plate with ceramics on it bends its wave, and the
     fit then says by how much, and half wavelength, nodal lines and amplitude are taken from the
     recorded points around each (`LinePoints`). With the solved `shape` of the plate amplitude and
     phase are then those of the shape, which the scan is judged by.
@@ -118,7 +116,7 @@ def fit_line_scan(
     Heckl, Petersson, Structure-Borne Sound, 3rd ed., section 3.6 (decay of bending waves).
     """
     x, w = _recorded(recording)
-    line = LineWaves(float(x[0]), float(x[-1]), np.iscomplexobj(w), free_ends, drift)
+    line = LineWaves(float(x[0]), float(x[-1]), np.iscomplexobj(w), free_ends)
     size = float(np.max(np.abs(w)))
     start = np.zeros(line.count)
     start[0] = _wave_number(line, x, w / size)
@@ -141,13 +139,13 @@ def fit_line_scan(
     read = _FittedLine(recording, line, x, w, fit, size, grows, adequacy).read()
     if shape is None or not read.by_points:
         return read
-    return _by_shape(read, shape, w.conj() if grows else w, drift)
+    return _by_shape(read, shape, w.conj() if grows else w)
 
 
-def _by_shape(fit: LineScanFit, shape: DrivenShape, w: si.Array, drift: bool) -> LineScanFit:
+def _by_shape(fit: LineScanFit, shape: DrivenShape, w: si.Array) -> LineScanFit:
     """Fit by a solved shape of a line that no even wave fits, from its displacement as recorded."""
     reach = fit.half_wavelength.value / 4
-    by = line_by_shape(shape, fit.position, w, reach=reach, drift=drift)
+    by = line_by_shape(shape, fit.position, w, reach=reach)
     swing = shape.along(fit.position + by.offset.value)[0]
     along = LinePoints(fit.position, swing, fit.half_wavelength.value).spacing
     said = (

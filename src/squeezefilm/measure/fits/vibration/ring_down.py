@@ -46,7 +46,7 @@ class RingDownFit(FitResult):
     `frequency_rise` (1/m²) how the frequency does, f = f0 (1 + s a²); both None where what was
     recorded does not tell them from zero, and then frequency and Q are those of all of the decay.
     Otherwise they are those of the smallest amplitudes. `second` is a second mode that beats with
-    the first, where one was asked for. `model` and `residual` (m) are at `time` (s).
+    the first, where one is told. `model` and `residual` (m) are at `time` (s).
     """
 
     recording: RingDown
@@ -79,18 +79,15 @@ class RingDownFit(FitResult):
 
 
 @guarded_fit
-def fit_ring_down(recording: RingDown, *, modes: int | None = None) -> RingDownFit:
+def fit_ring_down(recording: RingDown) -> RingDownFit:
     """Frequency (Hz) and Q of a free decay, its amplitude (m), and how they depend on amplitude.
 
     w = a(t) cos φ(t) + constant + slope, first with a = A e^{−πft/Q}; where the residual calls for
     it at a chance below 1 in 1000, with da/dt = −(πf/Q0) a (1 + r a) and f = f0(1 + s a²), which
-    have closed forms. `modes` = 2 has a second decay that beats with the first (both linear);
-    without `modes` it is fitted where neither describes what was recorded, and it does. Valid
-    while the plate rings freely: cut off what was recorded before the drive stopped. Raises
-    `InputError` for fewer than 40 points or 5 periods, or another number of modes.
+    have closed forms; a second decay that beats with the first (both linear) where neither
+    describes what was recorded, and it does. Valid while the plate rings freely: cut off what was
+    recorded before the drive stopped. Raises `InputError` for fewer than 40 points or 5 periods.
     """
-    if modes is not None:
-        si.require_one_of("modes", modes, (1, 2))
     t, w = _recorded(recording)
     size = float(np.max(np.abs(w - w.mean())))
     if size == 0:
@@ -100,17 +97,15 @@ def fit_ring_down(recording: RingDown, *, modes: int | None = None) -> RingDownF
         decay.columns, decay.w, decay.start, reach=np.array([decay.wide, 30.0 * decay.rate])
     )
     blocks = _Blocks(t, float(fit.shape[0]))
-    bent = _Bent.of(decay, fit) if modes != 2 else None
+    bent: _Bent | None = _Bent.of(decay, fit)
     if bent is not None and (bent.chance > _CHANCE or blocks.misfits(decay.w - bent.model)):
         # A dependence on the amplitude that does not describe the decay stands for something else.
         bent = None
-    two = modes == 2
-    if modes is None and bent is None and blocks.misfits(fit.residual):
+    two = False
+    if bent is None and blocks.misfits(fit.residual):
         pair = _with_second(decay, fit)
         two = not blocks.misfits(pair.residual) and bool(np.all(pair.shape[1::2] > 0))
         fit = pair if two else fit
-    elif two:
-        fit = _with_second(decay, fit)
     fit = fit.with_widening(correlation_factor(blocks.of(fit.residual)))
     return _FittedDecay(recording, decay, fit, bent, two, blocks, size).read()
 
@@ -306,8 +301,7 @@ class _FittedDecay:
             w,
             self.blocks.of(residual) * self.size,
             lambda i: f"{1e3 * self.blocks.time[i]:.3g} ms after the start",
-            remedy="Fit two modes if the decay beats, cut off what came before the drive stopped, "
-            "or drive less.",
+            remedy="Cut off what came before the drive stopped, or drive less.",
             said="Damping or frequency depend on the amplitude; frequency and Q are those of the "
             "smallest amplitudes. "
             if bent is not None

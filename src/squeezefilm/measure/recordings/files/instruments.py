@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import ConfigError, QuantityError
-from squeezefilm.measure.recordings.circuits_read import IMPEDANCES
-from squeezefilm.measure.recordings.files.raw_table import Held, RawTable
+from squeezefilm.core.errors import ConfigError
+from squeezefilm.measure.recordings.circuits_read import IMPEDANCES, SIZES
+from squeezefilm.measure.recordings.files.raw_table import Held, RawTable, is_unit
 
 _HEAD_CHARACTERS = 4000
 _UNIT = re.compile(r"\s*[(\[]([^()\[\]]*)[)\]]|\s+in\s+(\S+)$")
@@ -111,9 +111,9 @@ def held_by(names: Sequence[str]) -> tuple[Held, ...]:
 
 
 def _pair(quantities: Mapping[str, object]) -> tuple[str, ...]:
-    for pair in IMPEDANCES:
-        if all(name in quantities for name in pair):
-            return pair
+    for wanted in (*IMPEDANCES, *((name,) for name in SIZES)):
+        if all(name in quantities for name in wanted):
+            return wanted
     return ()
 
 
@@ -130,7 +130,7 @@ def _read_name(name: str) -> Iterable[tuple[str, str]]:
     for match in _UNIT.finditer(name):
         symbol = (match[1] if match[1] is not None else match[2]).strip()
         symbol = _SYMBOLS.get(symbol.casefold(), symbol)
-        if symbol == "dB" or _is_unit(symbol):
+        if symbol == "dB" or is_unit(symbol):
             unit, bare = symbol, name[: match.start()] + name[match.end() :]
     bare = _BESIDE_A_NAME.sub("", " ".join(bare.casefold().split()))
     bare = _BESIDE_A_NAME.sub("", bare).strip(" _:\"'")
@@ -147,14 +147,6 @@ def _read_name(name: str) -> Iterable[tuple[str, str]]:
             said = word.unit
         return [(word.quantity, said)]
     return []
-
-
-def _is_unit(symbol: str) -> bool:
-    try:
-        si.parse_unit(symbol)
-    except QuantityError:
-        return False
-    return True
 
 
 def _alike(first: str, second: str) -> bool:

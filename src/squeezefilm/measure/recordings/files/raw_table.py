@@ -26,7 +26,8 @@ class RawTable:
     `header_line` that of the names. `format` is what the file was read as; `notes` and `doubts` are
     what a person should know of the reading. `described` are the quantities that the file itself
     says its columns hold, `sure` where its head names the `instrument`, which is `specified` from
-    and to these frequencies (Hz); `reference` (Ω) is that of its waves.
+    and to these frequencies (Hz); `reference` (Ω) is that of its waves. `moved` is the motion that
+    each column holds ("velocity", ""), where the file says that.
     """
 
     file: Path
@@ -42,6 +43,7 @@ class RawTable:
     reference: si.Ohm = 50.0
     instrument: str = ""
     specified: tuple[float, float] | None = None
+    moved: tuple[str, ...] = ()
 
     def error(self, message: str, row: int | None = None, column: int | None = None) -> ConfigError:
         """An error at a row and a column (both from 0), with the line and the column from 1."""
@@ -81,13 +83,7 @@ class RawTable:
     def unit_in_name(self, column: int) -> str | None:
         """The unit that a column's name ends with in brackets, where it is one that is known."""
         match = _UNIT_IN_NAME.search(self.names[column])
-        if match is None:
-            return None
-        try:
-            si.parse_unit(match[1])
-        except QuantityError:
-            return None
-        return match[1]
+        return match[1] if match is not None and is_unit(match[1]) else None
 
     @property
     def known_names(self) -> list[str]:
@@ -115,6 +111,15 @@ class RawTable:
                 row,
                 column,
             )
+
+
+def is_unit(symbol: str) -> bool:
+    """True where a symbol is a unit that is known."""
+    try:
+        si.parse_unit(symbol)
+    except QuantityError:
+        return False
+    return True
 
 
 def _folded(name: str) -> str:

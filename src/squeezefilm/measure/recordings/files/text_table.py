@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import ConfigError, QuantityError
+from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.hard_limits import RECORDING_BYTES
 from squeezefilm.core.regular_file import read_regular
 from squeezefilm.measure.recordings.described import Described
@@ -27,7 +27,7 @@ from squeezefilm.measure.recordings.files.instruments import (
     times_of,
     with_meaning,
 )
-from squeezefilm.measure.recordings.files.raw_table import RawTable
+from squeezefilm.measure.recordings.files.raw_table import RawTable, is_unit
 
 DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ",", "blank": None}
 _WORDS = {"\t": "tabs", ";": "semicolons", ",": "commas", None: "blanks"}
@@ -287,20 +287,12 @@ def _names(
             line=above[0],
             column=cells.index(other) + 1,
         )
-    if all(_is_unit(cell) for cell in cells) and len(above) > 1:
+    if all(is_unit(cell.strip("()[] ") or "1") for cell in cells) and len(above) > 1:
         upper = _header_cells(lines[above[1] - 1], notation)
         if len(upper) == notation.cells:
             joined = (f"{a} ({b.strip('()[] ')})" for a, b in zip(upper, cells, strict=True))
             return above[0], tuple(joined)
     return above[0], tuple(cells)
-
-
-def _is_unit(cell: str) -> bool:
-    try:
-        si.parse_unit(cell.strip("()[] ") or "1")
-    except QuantityError:
-        return False
-    return True
 
 
 def _header_cells(line: str, notation: _Notation) -> list[str]:

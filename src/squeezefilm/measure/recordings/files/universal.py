@@ -20,8 +20,11 @@ from squeezefilm.measure.recordings.files.raw_table import RawTable
 
 SUFFIXES = (".uff", ".unv", ".uf")
 _READ = (15, 55, 58)
-# Within half a bin: the value of a function at a frequency is the one recorded nearest to it.
 _DIRECTIONS = ("r1", "r2", "r3")
+# By the specific data type of an ordinate, and the axis of a direction.
+_MOTIONS = {8: "displacement", 11: "velocity", 12: "acceleration"}
+_AXES = {1: "x", 2: "y", 3: "z", 4: "rotation x", 5: "rotation y", 6: "rotation z"}
+_OVER_ANOTHER = 4  # the type of a function that is a frequency response
 
 
 @dataclass(frozen=True)
@@ -39,21 +42,24 @@ def read_universal(path: Path, at: si.Hertz | None = None) -> RawTable:
     Functions (type 58) over one abscissa become the column ``x`` and, of each, ``58.1 real`` and
     ``58.1 imaginary`` (``58.1`` where it is real); with the places of their nodes (15) and a
     frequency `at` (Hz), or as data at nodes (55), the columns are ``x``, ``y``, ``z`` and the
-    values at each node: ``58 real``, or ``r3 real`` for the third direction.
+    values at each node, those recorded nearest to it: ``58 real``, or ``r3 real`` for the third
+    direction. The name ends with the function's own unit in brackets, where its head says that;
+    `moved` of the table has its own quantity, for descriptions to be checked against.
 
     Raises `ConfigError`, with the line at which its data set begins, for one that is not closed,
     has fewer values than it says or cannot be read, and for functions over different abscissas.
     """
     # Looked at here, since a pipe must not be waited for there.
     read_regular(path, RECORDING_BYTES, "a Universal File")
-    (format, names, notes), (values,) = read_isolated(_table, str(path), at, file=path)
-    table = RawTable(path, format, tuple(names), values, notes=tuple(notes))
+    (format, names, moved, notes), (values,) = read_isolated(_table, str(path), at, file=path)
+    table = RawTable(path, format, tuple(names), values, notes=tuple(notes), moved=tuple(moved))
     table.require_finite()
     return table
 
 
 def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
-    """Format, names of the columns and notes, and the columns' values (read in the child)."""
+    """Format, names of the columns, the motions they hold by the file's own words, and notes; and
+    the columns' values (read in the child)."""
     path = Path(file)
     blocks = _blocks(path)
     functions = [part for part in blocks if part.type == 58]
@@ -66,10 +72,16 @@ def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
     fields = [block for block in blocks if block.type == 55]
     if fields and nodes:
         names, columns = _data_at_nodes(fields[0], nodes, path)
+        own = dict.fromkeys(_DIRECTIONS, _motion(fields[0], "spec_data_type"))
     elif functions and nodes and at is not None:
         names, columns = _functions_at_nodes(functions, nodes, at, path)
+        own = {"58": _motion(functions[0], "ordinate_spec_data_type")}
     elif functions:
         names, columns = _functions(functions, path)
+        own = {
+            f"58.{k}": _motion(block, "ordinate_spec_data_type")
+            for k, block in enumerate(functions, 1)
+        }
     else:
         kinds = ", ".join(sorted({str(block.type) for block in blocks})) or "none"
         raise ConfigError(
@@ -77,8 +89,9 @@ def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
             f"the types {kinds}",
             file=path,
         )
-    notes = [_said(block) for block in functions[:3]]
-    said = f"Universal File of {len(blocks)} data sets", names, notes
+    moved = [own.get(name.split(" ")[0], "") for name in names]
+    notes = [_said(block, nodes) for block in functions[:3]]
+    said = f"Universal File of {len(blocks)} data sets", names, moved, notes
     return said, [np.stack(columns, axis=1)]
 
 
@@ -153,25 +166,51 @@ def _require_whole(block: _Block, path: Path) -> None:
         )
 
 
-def _said(block: _Block) -> str:
-    """Words of a function on itself."""
-    c = block.content
-    words = [str(c.get(key, "")).strip() for key in ("id1", "ordinate_axis_lab")]
-    unit = str(c.get("ordinate_axis_units_lab", "")).strip()
-    told = ", ".join(word for word in words if word and word.upper() != "NONE")
-    return f"the function in line {block.line} says: {told or 'nothing'}" + (
-        f", unit {unit}" if unit and unit.upper() != "NONE" else ", no unit"
+def _words(block: _Block, key: str) -> str:
+    """What a data set says under a key; empty where it says nothing."""
+    word = str(block.content.get(key) or "").strip()
+    return "" if word.upper() == "NONE" else word
+
+
+def _unit(block: _Block) -> str:
+    """The unit of a function, of a frequency response over that of its drive; empty where its head
+    does not say all of it."""
+    above, below = (_words(block, f"{part}_axis_units_lab") for part in ("ordinate", "orddenom"))
+    if int(block.content.get("func_type") or 0) != _OVER_ANOTHER:
+        return above
+    return f"{above}/{below}" if above and below else ""
+
+
+def _motion(block: _Block, key: str) -> str:
+    return _MOTIONS.get(int(block.content.get(key) or 0), "")
+
+
+def _said(block: _Block, nodes: Mapping[int, Sequence[float]]) -> str:
+    """Words of a function on itself: its name, quantity, unit and point."""
+    names = [_words(block, key) for key in ("id1", "ordinate_axis_lab")]
+    names.append(_motion(block, "ordinate_spec_data_type"))
+    told = ", ".join(dict.fromkeys(name for name in names if name))
+    unit = _unit(block)
+    node, axis = (int(block.content.get(key) or 0) for key in ("rsp_node", "rsp_dir"))
+    at = f", at node {node}" + (f" along {_AXES[abs(axis)]}" if abs(axis) in _AXES else "")
+    if node in nodes:
+        at += " ({:.6g}, {:.6g}, {:.6g} in the file's unit)".format(*nodes[node])
+    return (
+        f"the function in line {block.line} says: {told or 'nothing'}, "
+        + (f"unit {unit}" if unit else "no unit")
+        + at
     )
 
 
-def _parts(name: str, values: Any) -> list[tuple[str, si.FloatArray]]:
+def _parts(name: str, values: Any, unit: str = "") -> list[tuple[str, si.FloatArray]]:
     """Columns of values that may be complex."""
     array = np.asarray(values)
+    end = f" ({unit})" if unit else ""
     if not np.iscomplexobj(array):
-        return [(name, array.astype(float))]
+        return [(f"{name}{end}", array.astype(float))]
     return [
-        (f"{name} real", array.real.astype(float)),
-        (f"{name} imaginary", array.imag.astype(float)),
+        (f"{name} real{end}", array.real.astype(float)),
+        (f"{name} imaginary{end}", array.imag.astype(float)),
     ]
 
 
@@ -187,7 +226,7 @@ def _functions(functions: Sequence[_Block], path: Path) -> tuple[list[str], list
                 file=path,
                 line=block.line,
             )
-        pairs += _parts(f"58.{number}", block.content["data"])
+        pairs += _parts(f"58.{number}", block.content["data"], _unit(block))
     return [name for name, _ in pairs], [column for _, column in pairs]
 
 
@@ -220,7 +259,14 @@ def _functions_at_nodes(
             )
         places.append(_places([int(block.content["rsp_node"])], nodes, block, path)[0])
         values.append(data[nearest])
-    pairs = [*zip("xyz", np.array(places).T, strict=True), *_parts("58", np.array(values))]
+    if len({(_unit(block), _motion(block, "ordinate_spec_data_type")) for block in functions}) > 1:
+        raise ConfigError(
+            "its functions are of several quantities or units, and a scan is of one; save those of "
+            "one quantity in a file",
+            file=path,
+        )
+    columns = _parts("58", np.array(values), _unit(functions[0]))
+    pairs = [*zip("xyz", np.array(places).T, strict=True), *columns]
     return [name for name, _ in pairs], [column for _, column in pairs]
 
 
