@@ -403,7 +403,10 @@ if TYPE_CHECKING:
     ) -> Playback:
         """A handle on a surface that is started and stopped while a program goes on."""
     def fit_recording(
-        recording: NamedRecording | str | Path, display: NamedDisplay | str | Path | None = ...
+        recording: NamedRecording | str | Path,
+        display: NamedDisplay | str | Path | None = ...,
+        *,
+        progress: SayProgress | None = ...,
     ) -> Fit:
         """The fit that goes with the kind of a recording: a circuit with an impedance (constants of the"""
     def calibrate_display(

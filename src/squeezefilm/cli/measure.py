@@ -11,6 +11,7 @@ from squeezefilm.cli.app import AsJson, answer, app, print_json, working, writte
 from squeezefilm.core.errors import InputError
 
 if TYPE_CHECKING:
+    from squeezefilm.core.progress import SayProgress
     from squeezefilm.measure.fits.by_kind import Fit
     from squeezefilm.measure.recordings.read import RecordingCheck
 
@@ -98,7 +99,7 @@ def fit(
     with working(as_json) as step:
         checked = check_recording(file, described)
         step(f"fit of {checked.file.name}")
-        fitted = _fitted(checked, display)
+        fitted = _fitted(checked, display, step)
         response = response_fit(fitted)
         written = None if out is None else write_fit(checked, fitted, out, response)
     if as_json:
@@ -111,14 +112,14 @@ def fit(
         raise typer.Exit(1)
 
 
-def _fitted(found: RecordingCheck, display: str | None) -> Fit:
+def _fitted(found: RecordingCheck, display: str | None, step: SayProgress) -> Fit:
     """The fit of what was read; where it is refused, what is doubtful of the recording is said."""
     from squeezefilm.measure.fits.by_kind import fit_recording
     from squeezefilm.physics.display import load_display
 
     plate = None if display is None else load_display(display)
     try:
-        return fit_recording(found.recording, plate)
+        return fit_recording(found.recording, plate, progress=step)
     except InputError:
         for doubt in found.doubts:
             typer.echo(f"doubtful: {doubt}", err=True)

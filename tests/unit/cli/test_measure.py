@@ -79,7 +79,7 @@ def test_a_file_that_cannot_be_read_is_one_message_and_leaves_nothing(tmp_path: 
 def test_a_fit_says_whether_it_is_adequate_by_its_exit_code(
     adequate: bool, stands_in: StandsIn, tmp_path: Path
 ) -> None:
-    stands_in("measure.fits.by_kind:fit_recording", made(adequate), tells=False)
+    stands_in("measure.fits.by_kind:fit_recording", made(adequate))
     path = written(tmp_path, impedance_text())
     done = run("measure", fit.__name__, str(path), "--out", str(tmp_path / "out"))
     assert done.returncode == (0 if adequate else 1), done.stderr
@@ -96,7 +96,7 @@ def test_where_a_fit_is_refused_the_doubts_are_said(
     from squeezefilm.core.errors import InputError
     from squeezefilm.measure.fits import by_kind
 
-    def refuses(*_: Any) -> None:
+    def refuses(*_: Any, **__: Any) -> None:
         raise InputError("the sweep gives out power")
 
     monkeypatch.setattr(by_kind, "fit_recording", refuses)

@@ -152,7 +152,7 @@ def folder_observations(
         name = recording.file.name
         tell(f"fit of {name}")
         try:
-            fit = fit_recording(recording.recording, display)
+            fit = fit_recording(recording.recording, display, progress=tell)
             fit = response_fit(fit) or fit
         except SqueezefilmError as error:
             left_out.append(f"{name}: {error}")

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Protocol
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import ReadBy, reads_text
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.progress import SayProgress
 from squeezefilm.measure.fits.ceramic.bar import bar_constants
 from squeezefilm.measure.fits.ceramic.disc import disc_constants
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
@@ -52,7 +53,12 @@ class Fit(Observing, Protocol):
 
 
 @reads_text
-def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None) -> Fit:
+def fit_recording(
+    recording: NamedRecording,
+    display: NamedDisplay | None = None,
+    *,
+    progress: SayProgress | None = None,
+) -> Fit:
     """The fit that goes with the kind of a recording: a circuit with an impedance (constants of the
     material with that of a bare ceramic bar or disc, whose shape its description names), modes with
     a frequency response, models of friction with a friction curve; a frozen dataclass whose numbers
@@ -60,7 +66,8 @@ def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None
 
     A grid scan is compared with the solved shapes of a `display`, and needs one; a line scan that
     is no even wave may be, a friction curve without a display of its own is taken for that
-    display's; no other kind is given it. Raises what `read_recording` raises, and `InputError` for
+    display's; no other kind is given it. A friction curve takes a minute or two before its films
+    are kept, and tells `progress`. Raises what `read_recording` raises, and `InputError` for
     a recording that its fit refuses.
     """
     if isinstance(recording, OF_MANY_PEOPLE):
@@ -74,7 +81,7 @@ def fit_recording(recording: NamedRecording, display: NamedDisplay | None = None
             f"{type(recording).__name__} is no kind of recording; give the path of a file, or what "
             "read_recording returned"
         )
-    return fit(recording, display)
+    return fit(recording, display, progress)
 
 
 def response_fit(fit: Fit) -> Fit | None:
@@ -84,7 +91,7 @@ def response_fit(fit: Fit) -> Fit | None:
     return fit_recording(response) if isinstance(response, kinds.FrequencyResponse) else None
 
 
-def _swept(sweep: kinds.ImpedanceSweep, _: Display | None) -> Fit:
+def _swept(sweep: kinds.ImpedanceSweep, *_: object) -> Fit:
     """A circuit, or the constants of a bare ceramic."""
     if sweep.body is None:
         return fit_impedance(sweep)
@@ -93,7 +100,7 @@ def _swept(sweep: kinds.ImpedanceSweep, _: Display | None) -> Fit:
     return disc_constants(sweep, sweep.body)
 
 
-def _line(scan: kinds.LineScan, display: Display | None) -> Fit:
+def _line(scan: kinds.LineScan, display: Display | None, _: object) -> Fit:
     """A wave along a line, beside the shape of a plate that resonates near the scan's frequency."""
     plate = None if display is None else display.actuator
     if isinstance(plate, RectangularPlate):
@@ -103,7 +110,7 @@ def _line(scan: kinds.LineScan, display: Display | None) -> Fit:
     return fit_line_scan(scan)
 
 
-def _grid(scan: kinds.GridScan, display: Display | None) -> Fit:
+def _grid(scan: kinds.GridScan, display: Display | None, _: object) -> Fit:
     """A scan of a face beside the plate's solved shapes."""
     plate = None if display is None else display.actuator
     if not isinstance(plate, RectangularPlate):
@@ -118,19 +125,22 @@ def _grid(scan: kinds.GridScan, display: Display | None) -> Fit:
     return fit_grid_scan(scan, shapes_at(modes, scan.x, scan.y, driven))
 
 
-def _curve(curve: kinds.FrictionCurve, display: Display | None) -> Fit:
-    return compare_friction_curve(curve, display=None if curve.display else display)
+def _curve(
+    curve: kinds.FrictionCurve, display: Display | None, progress: SayProgress | None
+) -> Fit:
+    return compare_friction_curve(curve, progress, None if curve.display else display)
 
 
-FITS: Mapping[type, Callable[[Any, Display | None], Fit]] = {
+FITS: Mapping[type, Callable[[Any, Display | None, SayProgress | None], Fit]] = {
     kinds.ImpedanceSweep: _swept,
-    kinds.FrequencyResponse: lambda response, _: fit_frequency_response(response),
+    kinds.FrequencyResponse: lambda response, *_: fit_frequency_response(response),
     kinds.LineScan: _line,
     kinds.GridScan: _grid,
-    kinds.RingDown: lambda decay, _: fit_ring_down(decay),
-    kinds.VoltageSweeps: lambda sweeps, _: fit_voltage_sweeps(sweeps),
-    kinds.RawSignals: lambda signals, _: fit_raw_signals(signals),
-    kinds.FrictionBench: lambda bench, _: fit_friction_bench(bench),
+    kinds.RingDown: lambda decay, *_: fit_ring_down(decay),
+    kinds.VoltageSweeps: lambda sweeps, *_: fit_voltage_sweeps(sweeps),
+    kinds.RawSignals: lambda signals, *_: fit_raw_signals(signals),
+    kinds.FrictionBench: lambda bench, *_: fit_friction_bench(bench),
     kinds.FrictionCurve: _curve,
 }
-"""The fit of each kind of recording, which is given the display where one was named."""
+"""The fit of each kind of recording, which is given the display where one was named, and whom to
+tell how far it is."""

@@ -108,7 +108,7 @@ def test_a_line_scan_is_given_the_shape_of_a_plate_and_a_curve_its_display(
     stand_in(monkeypatch, fit_line_scan=lambda scan, shape=None: shape)
     stand_in(
         monkeypatch,
-        compare_friction_curve=lambda curve, display=None: display,
+        compare_friction_curve=lambda curve, progress, display: display,
     )
     scan = kinds.LineScan(np.linspace(0, 0.08, 30), np.ones(30) + 0j, 33.6e3)
     assert fit_recording(scan) is None

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, SqueezefilmError
-from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.progress import SayProgress, said_with_time_left, within
 from squeezefilm.core.results import to_json
 from squeezefilm.measure.fits.estimate import Adequacy, FitResult, Observation
 from squeezefilm.measure.fits.friction.friction_scores import (
@@ -177,7 +177,7 @@ def compare_friction_curve(
     `friction_band`: 90 % of draws over parameters, laws and mechanisms. Raises `InputError` for a
     curve without a display, and what `predict` raises for its display at its largest amplitude.
     """
-    tell = progress or (lambda _: None)
+    tell = said_with_time_left(progress or (lambda _: None))
     display = display_of(curve.told.name, curve.display) if display is None else display
     at_rest = rest_friction(curve)
     finger = display.finger
@@ -188,9 +188,11 @@ def compare_friction_curve(
     friction = {model: np.full(count, np.nan) for model in MODEL_KINDS}
     edges = np.full((len(LEVELS), 2, count), np.nan)
     at = np.stack([np.broadcast_to(of, count) for of in (curve.frequency, force, speed)])
-    for condition in np.unique(at, axis=1).T:
+    several = np.unique(at, axis=1).T
+    for number, condition in enumerate(several):
         here = np.flatnonzero((at == condition[:, None]).all(axis=0))
-        tell(f"{curve.told.name}: the working mode of {display.name}")
+        part = within(tell, number / len(several), (number + 1) / len(several))
+        part(f"{curve.told.name}: the working mode of {display.name}", 0.0)
         frequency, normal_force, own_speed = map(float, condition)
         prediction = predict(
             display,
@@ -199,11 +201,17 @@ def compare_friction_curve(
             normal_force=normal_force,
             speed=own_speed,
         )
-        for model in MODEL_KINDS:
-            tell(f"{curve.told.name}: {model}")
+        for k, model in enumerate(MODEL_KINDS):
+            part(f"{curve.told.name}: {model}", 0.2 + 0.3 * k / len(MODEL_KINDS))
             friction[model][here] = relative_friction(prediction.law.by(model), amplitude[here])
-        tell(f"{curve.told.name}: the interval")
-        bands = friction_bands(display, prediction, amplitude[here], LEVELS, samples=_SAMPLES)
+        bands = friction_bands(
+            display,
+            prediction,
+            amplitude[here],
+            LEVELS,
+            samples=_SAMPLES,
+            progress=within(part, 0.5, 1.0),
+        )
         edges[:, :, here] = [(band.low, band.high) for band in bands]
     scores = [scored(model, friction[model], curve) for model in MODEL_KINDS]
     scores += shape_scores(curve)
