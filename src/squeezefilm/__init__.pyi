@@ -134,6 +134,7 @@ if TYPE_CHECKING:
         speed: Sequence[MetrePerSecond] | MetrePerSecondArray | str | None = ...,
         place: Sequence[FacePlace | str] | str | Path | None = ...,
         model: FrictionModel | None = ...,
+        progress: SayProgress | None = ...,
     ) -> Any:
         """The friction of a display at every combination of voltages (V), normal forces (N), speeds of"""
     def voltage_for_friction(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError, optional
+from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import stamp
 from squeezefilm.physics.chain.friction_models import FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace, read_place
@@ -39,6 +41,7 @@ def predict_grid(
     speed: Sequence[si.MetrePerSecond] | si.MetrePerSecondArray | None = None,
     place: Sequence[FacePlace | str] | None = None,
     model: FrictionModel | None = None,
+    progress: SayProgress | None = None,
 ) -> Any:
     """The friction of a display at every combination of voltages (V), normal forces (N), speeds of
     the finger (m/s) and places (x, y in m), as a `xarray.Dataset`.
@@ -47,6 +50,7 @@ def predict_grid(
     `place_x` and `place_y`. What is left out is the display's own, as in `predict`, whose ranges,
     `model` and sources hold. Variables have their unit and meaning as attributes `units` and
     `long_name`, the dataset the display, the model, the warnings of any point, version and hash.
+    `progress` is told each point before it is predicted.
 
     Raises:
         InputError: nothing was given, an empty or nested array, more than 20 000 points, or a value
@@ -68,10 +72,11 @@ def predict_grid(
     if 0 in shape or np.prod(shape, dtype=float) > MOST_POINTS:
         sizes = " × ".join(f"{len(values)} of {name}" for name, values in grid.items())
         raise InputError(f"a grid of {sizes}; allowed are 1 to {MOST_POINTS} points in all")
-    points = [
-        predict(display, **dict(zip(grid, values, strict=True)), model=model)
-        for values in itertools.product(*grid.values())
-    ]
+    points = []
+    for number, values in enumerate(itertools.product(*grid.values())):
+        if progress is not None:
+            progress(f"prediction {number + 1} of {math.prod(shape)}")
+        points.append(predict(display, **dict(zip(grid, values, strict=True)), model=model))
     return xarray.Dataset(
         {
             name: (tuple(grid), _values(points, name, shape), {"units": unit, "long_name": said})

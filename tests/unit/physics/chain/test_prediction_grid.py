@@ -13,7 +13,11 @@ STATOR = "biet2008-stator"
 
 
 def test_every_point_is_that_of_a_prediction() -> None:
-    grid = sf.predict_grid(STATOR, voltage=["20 V", "60 V"], speed=np.array([0.02, 0.08]))
+    told: list[str] = []
+    grid = sf.predict_grid(
+        STATOR, voltage=["20 V", "60 V"], speed=np.array([0.02, 0.08]), progress=told.append
+    )
+    assert told == [f"prediction {number} of 4" for number in (1, 2, 3, 4)]
     assert grid.relative_friction.dims == ("voltage", "speed")
     assert grid.voltage.attrs["units"] == "V"
     for volts in (20.0, 60.0):
