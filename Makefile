@@ -12,7 +12,7 @@ MINUTES ?= 480
 # Without bytecode each process compiles a thousand modules anew, and pytest its tests.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help demo lab test slow gate costs figures check lint types layers gallery pictures docs bench coverage nightly campaign release clean
+.PHONY: accuracy help demo lab test slow gate costs figures check lint types layers gallery pictures docs bench coverage nightly campaign release clean
 
 help:  ## show this list
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 12
@@ -118,6 +118,9 @@ gallery: $(VENV)/run.stamp  ## draw the preset textures for the documentation
 
 pictures: $(VENV)/test.stamp  ## draw the pictures of the README, with a Chromium
 	@$(BIN)/python tools/pictures.py
+
+accuracy: $(VENV)/test.stamp  ## measure how far the numbers are off, into the documentation
+	@$(BIN)/python tools/accuracy.py
 
 docs: $(VENV)/test.stamp  ## build the documentation, strictly, with examples run and drawn: some two minutes
 	@rm -rf docs/examples
