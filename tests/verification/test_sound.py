@@ -126,6 +126,11 @@ def test_guidance_is_labelled() -> None:
     assert guidance.level_dB == 100
     assert all("to be checked" in entry.evidence for entry in GUIDANCE)
     assert exposure_guidance(1e6) is None
+    # A band has its lower end, and the next one its upper end.
+    ends = {17.7999e3: None, 17.8e3: 70, 22.3999e3: 70, 22.4e3: 100, 111.9e3: 100, 112e3: None}
+    for frequency, level in ends.items():
+        found = exposure_guidance(frequency)
+        assert (found and found.level_dB) == level
     assert exposure_guidance(20e3).level_dB == 70  # type: ignore[union-attr]
 
 

@@ -167,7 +167,7 @@ def lan_server(
 
     Raises as `certificate`.
     """
-    address, port = listener.getsockname()[:2]
+    address, port = listener.getsockname()
     fingerprint = certificate(address, file)
     host = f"{address}:{port}"
     places = Places(

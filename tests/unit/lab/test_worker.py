@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Coroutine
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -230,3 +231,31 @@ def test_a_stopped_process_is_ended_by_its_time() -> None:
         busy.close()
 
     play(work())
+
+
+def test_only_what_would_give_way_and_was_asked_by_the_page_is_cancelled(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    busy = Busy(LONG)
+    one, other = "one page", "another page"
+    jobs: list[Any] = [
+        SimpleNamespace(page=page, gives_way=gives_way)
+        for page, gives_way in ((one, True), (one, False), (other, True), (one, True))
+    ]
+    busy._jobs = jobs
+    ended: list[tuple[Any, str]] = []
+    monkeypatch.setattr(busy, "_end", lambda job, why: ended.append((job, str(why))))
+    busy.cancel(one)  # type: ignore[arg-type]
+    assert ended == [(jobs[at], "the computation was cancelled") for at in (0, 3)]
+
+
+def test_both_lines_of_work_cancel_and_close(monkeypatch: pytest.MonkeyPatch) -> None:
+    lines = worker.Workers()
+    did: list[Any] = []
+    for name in ("quick", "slow"):
+        line = getattr(lines, name)
+        monkeypatch.setattr(line, "cancel", lambda page, name=name: did.append((name, page)))
+        monkeypatch.setattr(line, "close", lambda name=name: did.append(name))
+    lines.cancel(None)
+    lines.close()
+    assert did == [("quick", None), ("slow", None), "quick", "slow"]

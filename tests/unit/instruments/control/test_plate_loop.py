@@ -276,6 +276,17 @@ def test_what_cannot_be_held_is_refused() -> None:
     assert tracking_bandwidth(loop_gains(identified(100), AIMS), STEP) == pytest.approx(700)
 
 
+def test_a_loop_of_a_tenth_of_its_rate_is_held_and_none_faster() -> None:
+    aims = replace(AIMS, interval=1e-3, amplitude_time=5e-3, tracking_bandwidth=10.0)
+    for name in ("tracking_bandwidth", "load_bandwidth"):
+        loop_gains(identified(100), replace(aims, **{name: 100.0}))
+        with pytest.raises(OutOfRangeError, match=f"{name} = 100.1 Hz is too fast .* 100 Hz"):
+            loop_gains(identified(100), replace(aims, **{name: 100.1}))
+    # 1/(2π 1.5 ms) is 106 Hz.
+    with pytest.raises(OutOfRangeError, match=r"amplitude_time.* = 106\.1"):
+        loop_gains(identified(100), replace(aims, amplitude_time=1.5e-3))
+
+
 def test_what_a_device_would_refuse_is_refused_with_what_it_allows() -> None:
     aims = LoopAims(100e3, 300e3, 100.0, 20.0)
     edge = IdentifiedPlate(2 * 5.0 * 16_777.0, 5.0, RATIO)
