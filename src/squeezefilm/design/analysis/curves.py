@@ -35,8 +35,8 @@ PAPER_CRITERION: si.Dimensionless = 0.7
 _STILL: si.Dimensionless = 1e-4
 _NEAR_FREQUENCY, _NEAR_FORCE = 1.5, 4.0
 LIKE = (
-    "Dots are published measurements of fingers on plates like this: within a factor of "
-    f"{_NEAR_FREQUENCY:g} of its frequency and of {_NEAR_FORCE:g} of the force."
+    f"Dots: fingers measured on plates near in frequency (within a factor of {_NEAR_FREQUENCY:g}) "
+    f"and force ({_NEAR_FORCE:g})."
 )
 """Sentence on which measurements stand beside a display's friction."""
 

@@ -287,10 +287,9 @@ def _line(axes: Axes, area: ActiveArea) -> None:
 FIGURES: tuple[FigureOf, ...] = (
     FigureOf(
         "friction",
-        "Where friction falls, and how far",
+        "Map and curve of friction",
         deciding,
-        "By the place of the finger's centre, the square its contact at the best place; by "
-        f"amplitude, where the band holds what is uncertain and the bar the amplitude too. {LIKE}",
+        f"Square: the finger's contact. Band and bar: 90 % of what it may be. {LIKE}",
     ),
     FigureOf(
         "response",

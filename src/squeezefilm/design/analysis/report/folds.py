@@ -48,6 +48,8 @@ NUMBERS = ("Quantity", "Value", "Remark")
 _INFLUENCES = ("Drawn", "From", "Share of the variance", "Whose")
 # Of what could be measured: as many rows as one decides from.
 _NEXT = 5
+# And of assumed values as many as one reads.
+_ASSUMED = 20
 
 
 class Table(NamedTuple):
@@ -156,21 +158,18 @@ def _how_sure(analysis: Analysis, rows: list[Row]) -> Fold:
 def _origin(analysis: Analysis) -> Fold:
     """The models, and the values of the description: those assumed, or with all of an analysis
     every one."""
-    values = [
-        value
-        for value in display_values(analysis.display)
-        if analysis.whole or value.evidence == "assumed"
-    ]
+    every, whole = display_values(analysis.display), analysis.whole
+    values = every if whole else [value for value in every if value.evidence == "assumed"]
+    shown, caption = values, "Every value of the description"
+    if not whole:
+        shown = values[:_ASSUMED]
+        caption = f"{len(shown)} of the {len(values)} values that are assumed; --all has all"
+    marks = {"assumed": "⚠ assumed" if whole else "assumed", "": "not stated"}
     rows = [
-        (value.path, value.text, value.source or "–", _evidence(value.evidence, analysis.whole))
-        for value in values
+        (value.path, value.text, value.source or "–", marks.get(value.evidence, value.evidence))
+        for value in shown
     ]
     head = ("Key", "Value", "Source", "Evidence")
-    caption = "Every value of the description" if analysis.whole else "Values that are assumed"
     tables = [Table(caption, head, rows)] if rows else []
     made = Table("What made the numbers", ("Link of the chain", "Model"), models(analysis))
     return Fold("Where do the values come from?", (), [made, *tables], [])
-
-
-def _evidence(evidence: str, whole: bool) -> str:
-    return f"⚠ {evidence}" if whole and evidence == "assumed" else evidence or "not stated"
