@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from squeezefilm.core.errors import GeometryError
 from squeezefilm.design.analysis.verdict import Finding, held_back, verdict
 from squeezefilm.design.plate import mode_doubts as room
 from squeezefilm.design.plate.listed_modes import ListedMode
@@ -159,3 +160,12 @@ def test_an_amplitude_that_is_given_needs_no_mode() -> None:
     curve: Any = SimpleNamespace(amplitude_for_criterion=None)
     texts = [one.text for one in verdict(display, quiet, None, curve, None)]
     assert not any("audible" in text for text in texts)
+
+
+def test_a_plate_that_cannot_be_screened_lists_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: object) -> object:
+        raise GeometryError("too thin")
+
+    monkeypatch.setattr(room, "screened_modes", refused)
+    plate: Any = None
+    assert room._screened(plate, (1e3, 2e3)) == ()

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from typing import Any
 
 import pytest
 from tests.unit.design.search.made_up import TEXT, drawn, requirements
@@ -10,6 +11,7 @@ from squeezefilm.core import config
 from squeezefilm.core.errors import GeometryError, InputError
 from squeezefilm.design.search.candidate import design_of, display_of
 from squeezefilm.design.search.requirements import Requirements, load_requirements
+from squeezefilm.design.search.shapes import EdgeStrips
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
 
@@ -153,3 +155,15 @@ def test_a_fingers_centre_explores_the_workspace(name: str) -> None:
     for plate in plates:
         assert plate.length - contact >= wanted.workspace.length - 1e-9
         assert plate.width - contact >= wanted.workspace.width - 1e-9
+
+
+def test_two_strips_that_leave_nothing_between_them_are_refused() -> None:
+    own: Any = requirements().shapes[0]
+    glass = EdgeStrips(own.sheets, own.ceramics, 5, 9)
+    values = {
+        "nodal_lines": 5, "strip": 20e-3, "length": 100e-3, "width": 40e-3,
+        "ceramic_thickness": 1e-3,
+    }  # fmt: skip
+    unused: Any = None
+    with pytest.raises(GeometryError, match=r"two strips of 20 mm leave nothing of .* 40 mm"):
+        glass.body(values, unused, 1.0, unused)

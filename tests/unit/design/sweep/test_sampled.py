@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.sweep.plan import axes_of_ranges
+from squeezefilm.design.sweep.plan import axes_of_ranges, plan_of
 from squeezefilm.physics.display import load_display
 
 PLATE = load_display("biet2008-plate")
@@ -53,3 +53,11 @@ def test_whole_numbers_stay_whole() -> None:
 def test_what_cannot_be_drawn_is_refused(vary: list[str], count: int, message: str) -> None:
     with pytest.raises(InputError, match=message):
         axes_of_ranges(PLATE, vary, count, 0)
+
+
+def test_modes_are_not_followed_over_samples() -> None:
+    with pytest.raises(InputError, match="modes are followed over a grid, not over samples"):
+        plan_of(
+            load_display("biet2008-plate"), {"actuator.thickness": "1 mm..2 mm"}, "followed", None,
+            (8, 1),
+        )  # fmt: skip

@@ -132,3 +132,32 @@ def test_a_result_says_what_was_measured_and_what_is_allowed() -> None:
     # One tick too few is 0.2 ms: that much the host may have taken.
     assert "host of this virtual" in loop_result(lateness(9_899, 101), 0.3e-3).advice
     assert "real-time priority" in loop_result(lateness(9_899, 101), 0.1e-3).advice
+
+
+@pytest.mark.parametrize(
+    ("text", "waited"),
+    [
+        ("some avg10=0.00 avg60=0.00 avg300=0.00 total=2500000\nfull avg10=0 total=9\n", 2.5),
+        ("some avg10=0.00", 0.0),
+        ("some avg10=0.00 avg60=0.00 avg300=0.00 total=much\n", 0.0),
+        (None, 0.0),
+    ],
+)
+def test_the_time_that_programs_waited_is_what_the_system_tells(
+    text: str | None, waited: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+
+    class Told:
+        def __init__(self, path: str) -> None:
+            asked.append(path)
+
+        def read_text(self) -> str:
+            if text is None:
+                raise FileNotFoundError
+            return text
+
+    monkeypatch.setattr(loop_check, "Path", Told)
+    monkeypatch.setattr(loop_check, "stolen_time", lambda: 0.25)
+    assert loop_check.waited_time() == pytest.approx(waited + 0.25)
+    assert asked == ["/proc/pressure/cpu"]

@@ -11,6 +11,7 @@ from tests.unit.made_results import WARM
 from squeezefilm.design.analysis.other_models import MeasuredBeside
 from squeezefilm.design.analysis.report.rows import (
     electrical_rows,
+    more_rows,
     rival_rows,
     sound_rows_at_ear,
     surface_rows,
@@ -146,3 +147,36 @@ def test_what_the_verdict_says_is_not_warned_of_again() -> None:
 def test_the_working_point_is_said_by_what_drives_and_who_touches() -> None:
     assert working_point(point()) == "at 20 V and 30 kHz, finger of 0.5 N at 80 mm/s on polished"
     assert working_point(point(voltage=None)).startswith("at 1.5 µm and 30 kHz, finger of ")
+
+
+def test_an_appendix_has_what_the_key_numbers_are_made_of() -> None:
+    mode = SimpleNamespace(quality_factor=61.26, half_wavelength=8.5e-3)
+    p = point(
+        mode=mode, squeeze_number=40.256, mean_pressure=1.23456, friction_reduction=0.3456,
+        friction_coefficient=0.789,
+    )  # fmt: skip
+    curve = SimpleNamespace(zero_friction_amplitude=None)
+    found = [row[:2] for row in more_rows(analysis(prediction=p, own_curve=curve))]
+    assert found[:6] == [
+        ("Quality factor", "61.26"), ("Half wavelength", "8.5 mm"), ("Squeeze number", "40.26"),
+        ("Mean pressure", "1.2346"), ("Friction reduction µ − µ′", "0.346"),
+        ("Amplitude for no friction", "out of reach"),
+    ]  # fmt: skip
+    # The finest grating at each speed, then what the heat rows say beyond their first two.
+    assert found[6:9] == [
+        (f"Finest grating at {speed}", period)
+        for speed, period in (
+            ("50 mm/s", "0.1 mm"), ("100 mm/s", "0.2 mm"), ("200 mm/s", "0.4 mm"),
+        )
+    ]  # fmt: skip
+    assert found[9:] == [row[:2] for row in heat_rows(WARM)[2:]]
+    # Without a drive nothing warms, and without a texture nothing is rendered.
+    still = dict(vars(p)) | {"voltage": None}
+    bare = more_rows(
+        analysis(
+            prediction=SimpleNamespace(**still), fidelity=None,
+            own_curve=SimpleNamespace(zero_friction_amplitude=2.5e-6),
+        )
+    )  # fmt: skip
+    assert len(bare) == 6
+    assert bare[5][:2] == ("Amplitude for no friction", "2.5 µm")

@@ -44,3 +44,9 @@ def test_a_folder_without_a_sweep_is_refused(tmp_path: Path) -> None:
     for folder in (None, tmp_path):
         with pytest.raises(InputError, match="as `out`"):
             compared_rows(folder, "1,2")
+
+
+def test_a_table_whose_rows_have_other_numbers_of_cells_is_no_sweeps(tmp_path: Path) -> None:
+    (tmp_path / "sweep.csv").write_text("a,b\n1,2\n3\n")
+    with pytest.raises(InputError, match="no table of a sweep: its rows have different numbers"):
+        compared_rows(tmp_path, "1,2")
