@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 from tests.e2e.program import run as program
+
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.study.record.store import StudyStore
+
+from ..study.scripted import gratings
 
 DESIGN = """
 name = "two"
@@ -72,3 +80,66 @@ def test_what_is_missing_is_asked_for(design: Path, arguments: tuple[str, ...], 
     assert done.returncode == 2
     assert says in done.stderr
     assert "Traceback" not in done.stderr
+
+
+Shown = Callable[..., Any]
+
+
+def felt_one(name: str) -> Any:
+    return SimpleNamespace(summary=lambda: {"name": name})
+
+
+def test_a_path_is_felt_as_asked_and_drawn_where_asked(
+    design: Path, tmp_path: Path, stands_in: Shown
+) -> None:
+    one = felt_one("one")
+    asked = stands_in("study.simulated.felt_paths:felt_on_path", one)
+    shown = stands_in("study.report.felt_path:show_all")
+    drawn = stands_in("subjects:plot", "the figure")
+    stands_in("core.kit.style:png", b"a picture")
+    arguments = ("study", "felt", design, "--path", STROKE, "--stimulus", "grooves")
+    done = program(*arguments)
+    found, *rest = asked.given
+    assert (found.name, *rest) == ("two", "grooves", STROKE)
+    assert asked.named == {
+        "observer": load_observer("fingertip"), "display": None, "normal_force": None,
+    }  # fmt: skip
+    assert shown.given == ((one,),)
+    assert done.stdout == ""
+    assert drawn.calls == []
+    picture = tmp_path / "felt.png"
+    done = program(
+        *arguments, "--force", "0.6 N", "--display", "winfield2007-tpad", "--out", picture
+    )
+    named = asked.calls[-1][1]
+    assert (named["display"].name, named["normal_force"]) == ("winfield2007-tpad", 0.6)
+    assert picture.read_bytes() == b"a picture"
+    assert drawn.given == (one,)
+    assert done.stdout == f"figure: {picture}\n"
+    told = program(*arguments, "--json")
+    assert json.loads(told.stdout) == [{"name": "one"}]
+    assert len(shown.calls) == 2
+
+
+def test_each_surface_of_a_recorded_trial_has_a_picture_of_its_own(
+    tmp_path: Path, stands_in: Shown
+) -> None:
+    store = tmp_path / "a.sqlite"
+    with StudyStore.create(store, gratings(), 7) as found:
+        found.enrol()
+    pair = (felt_one("first"), felt_one("second"))
+    asked = stands_in("study.simulated.felt_trials:felt_in_trial", pair)
+    shown = stands_in("study.report.felt_path:show_all")
+    stands_in("subjects:plot", "the figure", tells=False)
+    stands_in("core.kit.style:png", b"a picture", tells=False)
+    whose = ("--participant", "abc", "--trial", "4")
+    done = program("study", "felt", store, *whose, "--out", tmp_path / "felt.png")
+    assert asked.given[1:] == ("abc", 4, load_observer("fingertip"))
+    assert shown.given == (pair,)
+    written = [tmp_path / f"felt-{number}.png" for number in (1, 2)]
+    assert done.stdout.splitlines() == [f"figure: {path}" for path in written]
+    assert all(path.exists() for path in written)
+    for half in (whose[:2], whose[2:]):
+        refused = program("study", "felt", store, *half)
+        assert refused.returncode == 2
+        assert "say whose path by --participant and --trial" in refused.stderr

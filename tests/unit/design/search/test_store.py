@@ -9,6 +9,7 @@ from tests.unit.design.search.made_up import formula, random_designs, requiremen
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.search.store import FILE, DesignStore
+from squeezefilm.design.search.tolerance import Made
 
 
 def test_what_was_found_is_there_again(tmp_path: Path) -> None:
@@ -65,3 +66,19 @@ def test_a_folder_that_is_a_file_is_refused(tmp_path: Path) -> None:
     (tmp_path / "here").write_text("")
     with pytest.raises(InputError, match="choose another folder"):
         DesignStore(requirements(), tmp_path / "here")
+
+
+def test_what_is_made_of_a_drawing_is_taken_up_by_who_asks_the_same(tmp_path: Path) -> None:
+    wanted = requirements()
+    (design,) = random_designs(wanted, 1)
+    made = Made(64, 0.5, {"temperature_rise": 30}, {"mass": (0.1, 0.2)}, {"thickness": {}}, 3)
+    first = DesignStore(wanted, tmp_path)
+    assert first.made(design) is None
+    first.add_made(design, made)
+    assert first.made(design) == made
+    again = DesignStore(wanted, tmp_path)
+    assert again.made(design) == made
+    assert len(again) == 0
+    # Other limits are another question.
+    limits = replace(wanted.limits, most_temperature_rise=50.0)
+    assert DesignStore(replace(wanted, limits=limits), tmp_path).made(design) is None

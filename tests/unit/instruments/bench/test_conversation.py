@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
-from squeezefilm.instruments.bench.conversation import Conversation
+from squeezefilm.core.drive_limits import WATCHDOG
+from squeezefilm.instruments.bench.conversation import KEEP_ALIVE, Conversation
+from squeezefilm.instruments.device.machine.device import LATE_TICK
 from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.states import Fault, State
 
 
 class Stream:
@@ -64,3 +68,29 @@ def test_nobody_is_held_up_who_listens_often() -> None:
     alone.watch()
     alone.listen()
     assert alone.held_up == 0.0
+
+
+@pytest.mark.parametrize(
+    ("state", "fault", "here", "excused"),
+    [
+        (State.OFF, Fault.WATCHDOG, True, 0.0),
+        # Fed every 20 ms, a watchdog of 50 ms leaves 30.
+        (State.FAULT, Fault.WATCHDOG, False, WATCHDOG - KEEP_ALIVE),
+        # Only a device that runs on this computer is late because of it.
+        (State.FAULT, Fault.LATE_TICK, True, LATE_TICK * 1e-6),
+        (State.FAULT, Fault.LATE_TICK, False, 0.0),
+        (
+            State.FAULT,
+            next(f for f in Fault if f not in (Fault.WATCHDOG, Fault.LATE_TICK)),
+            True,
+            0,
+        ),
+    ],
+)
+def test_a_stop_is_excused_by_what_a_busy_computer_does(
+    state: State, fault: Fault, here: bool, excused: float
+) -> None:
+    talk = Conversation(Stream(), lambda: 0.0, never, (lambda: 0.0) if here else None)
+    said: Any = SimpleNamespace(state=state, fault=fault.value)
+    assert talk.excuse(said) == pytest.approx(excused, abs=1e-12)
+    assert talk.excuse(None) == 0.5

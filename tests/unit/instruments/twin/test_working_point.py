@@ -13,7 +13,7 @@ import pytest
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.instruments.twin import working_point as module
 from squeezefilm.instruments.twin.settings import Amplifier, TwinSettings
-from squeezefilm.instruments.twin.working_point import FORCES, POINTS, working_point
+from squeezefilm.instruments.twin.working_point import FORCES, POINTS, WorkingPoint, working_point
 from squeezefilm.physics.chain.friction import TABLE_SPEEDS
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.working_mode import WorkingMode
@@ -178,3 +178,14 @@ def test_what_does_not_vibrate_is_no_twin(laws: Laws) -> None:
         with pytest.raises(InputError, match=r"has no amplitude at .* V; a twin"):
             working_point(display, SETTINGS, mode)
     assert laws.asked == []
+
+
+def test_a_sweep_would_identify_the_plate_with_its_amplifier_and_pickup() -> None:
+    """Twice the gain, twice the reading per volt; the mode's own frequency and Q."""
+    point: Any = SimpleNamespace(mode=MODE, pickup_calibration=lambda pickup: 5e-6)
+    plain = TwinSettings(amplifier=Amplifier(gain=1.0))
+    found = WorkingPoint.identified(point, plain)
+    assert (found.frequency, found.quality_factor) == (40e3, 60.0)
+    assert found.ratio == pytest.approx(2e-8 / 5e-6)
+    twice = WorkingPoint.identified(point, TwinSettings(amplifier=Amplifier(gain=2.0)))
+    assert twice.ratio == pytest.approx(2 * found.ratio)
