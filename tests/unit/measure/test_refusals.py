@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -11,14 +12,17 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.calibration.blind import Predicted, _scored, predict_blind
+from squeezefilm.measure.calibration.plate_posterior import Predictive
+from squeezefilm.measure.calibration.solved_answers import Asked
 from squeezefilm.measure.fits.ceramic.constants import compliances
 from squeezefilm.measure.fits.circuit.branches import poles
-from squeezefilm.measure.fits.estimate import Estimate, Observation
-from squeezefilm.measure.fits.friction.friction_bench import _straight
-from squeezefilm.measure.fits.least_squares import fit_nonlinear
+from squeezefilm.measure.fits.estimate import Estimate, Observation, guarded_fit
+from squeezefilm.measure.fits.friction.friction_bench import _MOST_LEVELS, _levels, _straight
+from squeezefilm.measure.fits.least_squares import _least, fit_nonlinear
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
 from squeezefilm.measure.fits.vibration.frequency_response import _Band, fit_frequency_response
 from squeezefilm.measure.fits.vibration.line_points import LinePoints
+from squeezefilm.measure.fits.vibration.line_scan import _wave_number
 from squeezefilm.measure.recordings.kinds import FrequencyResponse
 from squeezefilm.physics.display import load_display
 
@@ -102,3 +106,77 @@ def test_a_smoothed_line_is_the_cubic_that_it_was() -> None:
 
 def test_an_estimate_is_told_with_its_error_in_its_own_unit() -> None:
     assert str(Estimate(33214.56, 12.3, (33190.0, 33239.0), "Hz")) == "33.2146 kHz ± 12 Hz"
+
+
+class Fitted:
+    """A fit that observed this."""
+
+    def __init__(self, value: float, error: float = 1.0) -> None:
+        self.seen = value, error
+
+    @property
+    def observations(self) -> tuple[Observation, ...]:
+        """What a calibration may use."""
+        return (Observation("quality_factor", *self.seen),)
+
+
+def test_a_fit_whose_arithmetic_ends_is_no_fit() -> None:
+    def fit(of: Any) -> Any:
+        if isinstance(of, Exception):
+            raise of
+        return of
+
+    guarded = guarded_fit(fit)
+    good = Fitted(60.0)
+    assert guarded(good) is good
+    for error in (ZeroDivisionError("by three"), np.linalg.LinAlgError("by three")):
+        with pytest.raises(InputError, match=r"has no fit \(by three\).*measure check"):
+            guarded(error)
+    for bad in (Fitted(np.nan), Fitted(1.0, np.inf)):
+        with pytest.raises(InputError, match="its numbers are not finite"):
+            guarded(bad)
+    # A refusal of its own is said as it is.
+    with pytest.raises(InputError, match=r"^too short$"):
+        guarded(InputError("too short"))
+
+
+def test_what_scipy_refuses_is_arithmetic_and_what_we_refuse_is_ours() -> None:
+    def least(error: Exception | None) -> Any:
+        def residual(at: Any) -> Any:
+            if error is not None:
+                raise error
+            return np.array([at[0] - 3.0, 2.0 * at[0] - 6.0])
+
+        return _least(residual, lambda _: np.array([[1.0], [2.0]]), np.zeros(1), np.inf)
+
+    assert least(None) == pytest.approx([3.0])
+    with pytest.raises(ArithmeticError, match="its squares cannot be made least: residuals are"):
+        least(ValueError("residuals are not finite"))
+    with pytest.raises(InputError, match=r"^no such display$"):
+        least(InputError("no such display"))
+
+
+def test_amplitudes_that_were_not_set_are_not_fitted_as_levels() -> None:
+    held = np.repeat(np.linspace(0.0, 2e-6, _MOST_LEVELS), 3)
+    levels, number = _levels(held)
+    assert levels == pytest.approx(np.linspace(0.0, 2e-6, _MOST_LEVELS), abs=1e-15)
+    assert number.tolist() == np.repeat(np.arange(_MOST_LEVELS), 3).tolist()
+    with pytest.raises(InputError, match=f"have {_MOST_LEVELS + 1} different amplitudes"):
+        _levels(np.linspace(0.0, 2e-6, _MOST_LEVELS + 1))
+
+
+def test_a_line_of_few_places_holds_no_wave() -> None:
+    line_of: Any = SimpleNamespace(length=80e-3, count=2)
+    with pytest.raises(InputError, match="too coarse for any wave along it"):
+        _wave_number(line_of, np.array([0.0, 80e-3]), np.ones(2))
+
+
+def test_an_answer_that_was_not_computed_is_named_with_those_that_were() -> None:
+    quality, lines = Asked("quality_factor"), Asked("mode_frequency", (7, 0))
+    made = Predictive((quality, lines), np.array([[60.0, 3e4], [70.0, 4e4]]))
+    assert made.of(lines).tolist() == [3e4, 4e4]
+    says = (
+        r"nothing was computed of the modal mass; there are: quality factor, mode frequency \(7,0"
+    )
+    with pytest.raises(InputError, match=says):
+        made.of(Asked("modal_mass"))

@@ -180,12 +180,12 @@ def guarded_fit(fit: Callable[_P, _F]) -> Callable[_P, _F]:
                 warnings.simplefilter("ignore", RuntimeWarning)
                 warnings.simplefilter("ignore", np.exceptions.RankWarning)
                 fitted = fit(*args, **kwargs)
-                observed = fitted.observations
+                try:
+                    _ = fitted.observations
+                except InputError as error:
+                    raise _no_fit("its numbers are not finite") from error
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             raise _no_fit(str(error)) from error
-        numbers = [(seen.value, seen.standard_error) for seen in observed]
-        if not np.isfinite(numbers).all():
-            raise _no_fit("its numbers are not finite")
         return fitted
 
     return guarded

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
+import sys
+from collections.abc import Iterator
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 
 from squeezefilm.core.kit import terminal
@@ -45,3 +51,24 @@ def test_quantities_read_as_the_field_says_them(value: float, unit: str, text: s
 
 def test_printable() -> None:
     assert printable("a\x1b[31m\n b\u202e") == "a [31m b"
+
+
+def test_progress_at_a_terminal_is_a_line_that_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    said: list[str] = []
+
+    @contextlib.contextmanager
+    def status(_: object, begins: str) -> Iterator[Any]:
+        said.append(begins)
+        yield SimpleNamespace(update=lambda text: said.append(str(text)))
+        said.append("gone")
+
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    monkeypatch.setattr("rich.console.Console.status", status)
+    with terminal.progress(enabled=True) as step:
+        step("plate 3 of 7")
+        # Brackets are no markup, and what would move the cursor is not sent.
+        step("[red]\x1b[2J")
+    assert said[:2] == ["starting", "plate 3 of 7 …"]
+    assert said[2].startswith("[red]")
+    assert "\x1b" not in said[2]
+    assert said[3] == "gone"

@@ -73,11 +73,11 @@ class TraceWriter:
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             self._file = os.open(self.path, mode, 0o644)
-        except FileExistsError as error:
-            raise RecordError(
-                f"{self.path} exists; a record is never written over: give another name"
-            ) from error
         except OSError as error:
+            if isinstance(error, FileExistsError) and os.path.lexists(self.path):
+                raise RecordError(
+                    f"{self.path} exists; a record is never written over: give another name"
+                ) from error
             raise RecordError(
                 f"cannot write {self.path}: {error.strerror}; choose another folder"
             ) from error

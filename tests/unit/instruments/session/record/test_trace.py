@@ -241,3 +241,28 @@ def test_an_export_of_a_sparse_file_says_how_far_it_is(tmp_path: Path) -> None:
     assert shares == sorted(set(shares))
     assert all("reading the trace, 0.3 GB" in text for text in said[:-1])
     assert said[-1] == f"writing {done.rows} rows"
+
+
+def test_a_record_that_cannot_be_written_names_its_place(tmp_path: Path) -> None:
+    from squeezefilm.core.errors import RecordError
+
+    (tmp_path / "file").write_text("precious")
+    with pytest.raises(RecordError, match=r"cannot write .*one\.sqft: .*; choose another folder"):
+        TraceWriter(tmp_path / "file" / "one.sqft", COLUMNS, {})
+    assert (tmp_path / "file").read_text() == "precious"
+
+
+def test_a_name_that_the_disk_did_not_confirm_is_a_record_that_did_not_begin(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from squeezefilm.core.errors import RecordError
+    from squeezefilm.instruments.session.record import trace_writer
+
+    def refuse(_: Path) -> None:
+        raise OSError(5, "Input/output error")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(trace_writer, "sync_folder", refuse)
+        with pytest.raises(RecordError, match="Input/output error"):
+            TraceWriter(tmp_path / "one.sqft", COLUMNS, {})
+    assert list(tmp_path.iterdir()) == []
