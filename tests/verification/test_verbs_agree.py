@@ -154,7 +154,7 @@ def check_rows(analysis: Analysis) -> None:
     for label, value, unit in (
         ("Resonance frequency", p.mode.resonance_frequency, si.Unit("Hz")),
         ("Amplitude, free", volts * p.mode.amplitude_per_volt, metre),
-        ("Amplitude, finger on", p.vibration_amplitude, metre),
+        ("Peak amplitude, finger on", p.vibration_amplitude, metre),
         ("Relative friction µ′/µ", p.relative_friction, si.Unit("1")),
     ):
         told = si.parse_quantity(rows[label][0], unit)

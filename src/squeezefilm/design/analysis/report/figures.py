@@ -85,7 +85,7 @@ def _friction(axes: Axes, analysis: Analysis, curves: Sequence[FrictionCurve]) -
 
 def criterion_line(axes: Axes) -> None:
     """Draw a line across at what the paper asks of the friction."""
-    axes.axhline(PAPER_CRITERION, **style.REFERENCE, label="0.7, which the paper asks for")
+    axes.axhline(PAPER_CRITERION, **style.REFERENCE, label="0.7: what the paper asks for")
 
 
 def working_point(axes: Axes, analysis: Analysis) -> None:
@@ -94,7 +94,7 @@ def working_point(axes: Axes, analysis: Analysis) -> None:
     at, words = 1e6 * p.vibration_amplitude, f"this display: {p.relative_friction:.2f}"
     if unsure is not None:
         style.interval(axes, at, *unsure.interval)
-        words += f" ({span(*unsure.interval)})"
+        words += f" ({span(*unsure.interval)}, {si.percent(unsure.level)} interval)"
     words += f" at {shown(p.vibration_amplitude, M, 3)}"
     style.mark(axes, at, p.relative_friction, 9, words)
 

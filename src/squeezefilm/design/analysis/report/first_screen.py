@@ -6,10 +6,11 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.kit.numbers import HZ, A, M, Row, W, shown, signed, span
+from squeezefilm.core.kit.numbers import HZ, A, M, Row, V, W, shown, signed, span
 from squeezefilm.design.analysis.curves import PAPER_CRITERION
 from squeezefilm.design.analysis.verdict import NOTICED_DIFFERENCE, probability_words
 from squeezefilm.design.plate.mode_doubts import why_undriven
+from squeezefilm.physics.display import DECAY_LENGTH
 from squeezefilm.physics.uncertainty.parameters import parameter_name
 
 if TYPE_CHECKING:
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 
 KELVIN = si.Unit("K")
 MOST_DOUBTS = 3
+HEAD = ("Quantity", "Value", "90 % interval")
+"""Heads of the numbers."""
 # A computed number that lies so far from the measured one is doubted.
 _OFF = 0.2
 # Displays of the paper, whose own criterion is theirs.
@@ -56,18 +59,19 @@ def criterion(analysis: Analysis) -> tuple[si.Dimensionless, str]:
     if analysis.wanted is not None:
         return analysis.wanted.relative_friction, "which was asked for"
     if analysis.display.name.startswith(_PAPER):
-        return PAPER_CRITERION, "as the paper asks"
+        return PAPER_CRITERION, "as Biet (2008) asks"
     return 1 - NOTICED_DIFFERENCE, "where people notice it"
 
 
 def _sentence(analysis: Analysis) -> str:
     """Sentence on how probable it is that the criterion is met."""
-    unsure, area = analysis.uncertainty, analysis.active_area
+    unsure, area, volts = analysis.uncertainty, analysis.active_area, analysis.prediction.voltage
     below, whose = criterion(analysis)
     if unsure is None:
         return f"How probable it is that µ′/µ falls below {below:.2f}, {whose}, is not known."
     text = (
-        f"Friction falls below {below:.2f} of that without vibration, {whose}, with probability "
+        f"{'Friction' if volts is None else f'At {shown(volts, V)} friction'} falls below "
+        f"{below:.2f} of that without vibration, {whose}, with probability "
         f"{probability_words(unsure.probability_below(below))}"
     )
     if area is None or area.odds is None:
@@ -83,18 +87,15 @@ def _numbers(analysis: Analysis) -> list[Row]:
     frequency = known.get("Resonance frequency")
     measured = "" if frequency is None else f"measured {shown(frequency.measured, HZ)}"
     swing = None if unsure is None else unsure.amplitude_interval
+    friction = "" if unsure is None else span(*unsure.interval)
     rows = [
         ("Resonance frequency", shown(p.mode.resonance_frequency, HZ), measured),
-        ("Amplitude, finger on", shown(p.vibration_amplitude, M, 3), _between(swing, M)),
-        (
-            "Relative friction µ′/µ",
-            f"{p.relative_friction:.2f}",
-            "" if unsure is None else span(*unsure.interval),
-        ),
+        ("Peak amplitude, finger on", shown(p.vibration_amplitude, M, 3), _between(swing, M)),
+        ("Relative friction µ′/µ", f"{p.relative_friction:.2f}", friction),
     ]
     if area is not None and area.area.worst is not None:
         within = "" if area.odds is None else span(*area.odds.worst_interval)
-        rows.append(("µ′/µ at the worst place", f"{area.area.worst:.2f}", within))
+        rows.append(("µ′/µ, worst place", f"{area.area.worst:.2f}", within))
     load = analysis.drive_electronics
     if unsure is not None and unsure.power is not None:
         rows.append(("Power taken", shown(unsure.power, W, 3), _between(unsure.power_interval, W)))
@@ -102,7 +103,8 @@ def _numbers(analysis: Analysis) -> list[Row]:
         rows.append(("Current", shown(load.current, A, 3), ""))
     if p.voltage and p.heat is not None:
         rise = signed(p.heat.tracked.temperature_rise, KELVIN)
-        rows.append(("Temperature rise", rise, _between(p.heat.rise_range, KELVIN)))
+        ends = _between(p.heat.rise_range, KELVIN)
+        rows.append(("Temperature rise", rise, f"emissivity: {ends}" if ends else ""))
     return rows
 
 
@@ -119,7 +121,7 @@ def _doubts(analysis: Analysis) -> list[tuple[str, str]]:
     """Doubts about the numbers, the worst first: in short, and the finding's own text."""
     far = [
         (
-            f"{one.quantity.partition(',')[0]} is computed {si.percent(abs(one.difference))} "
+            f"{one.quantity}: computed {si.percent(abs(one.difference))} "
             f"{'above' if one.difference > 0 else 'below'} the measured "
             f"{shown(one.measured, si.Unit(one.unit), 3)}.",
             "",
@@ -152,12 +154,11 @@ def _next_step(analysis: Analysis) -> str:
         return "Ask for an interval of the friction, by 16 samples."
     for influence in unsure.influences:
         if influence.parameter.knowledge == "measurable":
-            share = si.percent(max(influence.total, 0.0))
-            path = influence.parameter.path
-            return (
-                f"Measure the {parameter_name(path)} ({path}): {share} of the variance of µ′/µ "
-                "comes from it."
-            )
+            path, share = influence.parameter.path, si.percent(max(influence.total, 0.0))
+            what = f"the {parameter_name(path)} ({path})"
+            if path == DECAY_LENGTH:
+                what = "friction over amplitude under your finger (--finger FILE)"
+            return f"Measure {what}: {share} of the variance of µ′/µ."
     return "Nothing that can be measured would make the friction surer."
 
 

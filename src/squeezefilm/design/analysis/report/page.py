@@ -19,7 +19,7 @@ from squeezefilm.core.kit.page_style import (
     text_table,
 )
 from squeezefilm.design.analysis.report.figures import FIGURES, drawing
-from squeezefilm.design.analysis.report.first_screen import first_screen
+from squeezefilm.design.analysis.report.first_screen import HEAD, first_screen
 from squeezefilm.design.analysis.report.folds import Fold, folds
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ def in_short(analysis: Analysis, drawn: Mapping[str, str] | None = None) -> str:
     """First screen of an analysis as HTML, with its picture where that is `drawn`."""
     screen = first_screen(analysis)
     picture = "" if drawn is None else _figure("friction", drawn)
-    numbers = text_table("With 90 % intervals", ("Quantity", "Value", "Interval"), screen.numbers)
+    numbers = text_table("In numbers", HEAD, screen.numbers)
     body = (
         f"<p>{as_html(screen.sentence)}</p>\n{picture}{numbers}\n"
         f"<h3>What could make it wrong</h3>\n{bullets(screen.doubts)}\n"

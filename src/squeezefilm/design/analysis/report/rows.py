@@ -73,7 +73,7 @@ def vibration_rows(p: Prediction) -> list[Row]:
         ("Resonance frequency", shown(mode.resonance_frequency, HZ), _solved(mode)),
         drive,
         ("Amplitude, free", shown(free, M, 3), made),
-        ("Amplitude, finger on", held, f"{of}; {kept}"),
+        ("Peak amplitude, finger on", held, f"{of}; {kept}"),
         *under_finger,
     ]
 

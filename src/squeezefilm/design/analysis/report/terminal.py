@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.kit.terminal import bullets, heading, plain_console, table
 from squeezefilm.design.analysis.report.decisions import sensitivity_rows, wanted_rows
-from squeezefilm.design.analysis.report.first_screen import first_screen
+from squeezefilm.design.analysis.report.first_screen import HEAD, first_screen
 from squeezefilm.design.analysis.report.folds import folds
 
 if TYPE_CHECKING:
@@ -26,7 +26,7 @@ def show_analysis(analysis: Analysis, *, whole: bool = False, sensitivities: boo
     display, console, screen = analysis.display, plain_console(), first_screen(analysis)
     heading(console, f"{display.title} [{display.name}]")
     console.print(printable(screen.sentence))
-    table(console, ("", "", ""), screen.numbers, fixed=(0, 1))
+    table(console, HEAD, screen.numbers, fixed=(0, 1))
     heading(console, "What could make it wrong")
     bullets(console, [("!", text, "yellow") for text in screen.doubts])
     heading(console, f"Next: {screen.next_step}")

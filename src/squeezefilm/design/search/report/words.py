@@ -29,7 +29,7 @@ _LEAST = 0.001  # smaller changes of a friction are said to be so
 _TOLERANCES = {
     "thickness": "thickness of the sheet",
     "ceramic_thickness": "thickness of the ceramics",
-    "sides": "length or diameter",
+    "sides": "sides or diameter",
     "young_modulus": "Young's modulus of the sheet",
     "ceramic_stiffness": "stiffness of the ceramic",
     "charge_coefficient": "charge coefficient of the ceramic",

@@ -32,7 +32,7 @@ def test_the_own_model_is_drawn_within_its_band() -> None:
     assert list(drawn) == [
         "90 % of what it may be at an amplitude",
         "on polished (roughness 1.5 µm)", "on rough (roughness 1.5 µm)",
-        "0.7, which the paper asks for", "this display: 0.81 (0.20–0.80) at 2 µm",
+        "0.7: what the paper asks for", "this display: 0.81 (0.20–0.80, 90 % interval) at 2 µm",
         "measured on like plates: 4 curves, all on glass",
     ]  # fmt: skip
     area, own, other, *_ = drawn.values()

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import Any
 
+from tests.unit.drawn import labelled
+from tests.unit.made_curves import AMPLITUDE, made
+
 from squeezefilm.design.analysis.area_odds import judged_area
-from squeezefilm.design.analysis.report.figures import active_area as figure_of
+from squeezefilm.design.analysis.report.figures import deciding
 from squeezefilm.design.analysis.report.point_rows import place_rows
 from squeezefilm.physics.chain.active_area import active_area, percent
 from squeezefilm.physics.chain.pad_place import place_words
@@ -29,12 +31,16 @@ def test_rows_and_figure_say_the_range_and_its_places() -> None:
     assert second[1] == f"{AREA.best:.2f} to {AREA.worst:.2f}"
     assert place_words(AREA.worst_place) in second[2]
     assert f"{percent(AREA.share_below(0.7))} below 0.70" in second[2]
-    assert "by the place of its centre" in figure_of(_analysis(judged)).get_suptitle()
+    axes = deciding(_analysis(judged)).axes
+    # The stator's area is a line: along it, what a pad gets, and beside it the friction curve.
+    assert "finger's centre" in axes[0].get_xlabel()
+    assert axes[1].get_xlabel() == AMPLITUDE
 
 
-def test_without_an_area_nothing_is_known_and_the_figure_says_why() -> None:
+def test_without_an_area_nothing_is_known_and_the_figure_is_the_curve() -> None:
     assert place_rows(POINT, None)[1][1] == "not known"
-    assert "No map" in figure_of(_analysis(None)).get_suptitle()
+    (axes,) = deciding(_analysis(None)).axes
+    assert axes.get_xlabel() == AMPLITUDE
 
 
 def test_a_model_without_ridges_of_their_own_says_why() -> None:
@@ -43,8 +49,8 @@ def test_a_model_without_ridges_of_their_own_says_why() -> None:
     assert judged is not None
     assert judged.odds is None
     assert "paper2008" in place_rows(p, judged)[1][2]
-    assert "root mean square" in figure_of(_analysis(judged)).get_suptitle()
+    assert labelled(deciding(_analysis(judged)).axes[0]).keys() == {"amplitude of the face"}
 
 
 def _analysis(judged: Any) -> Any:
-    return SimpleNamespace(display=STATOR, prediction=POINT, active_area=judged)
+    return made(display=STATOR, prediction=POINT, active_area=judged)

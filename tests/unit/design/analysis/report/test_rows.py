@@ -91,7 +91,7 @@ def test_the_free_amplitude_is_told_from_that_under_the_finger() -> None:
     assert rows["Drive"] == ("20 V", "peak, at 30 kHz, the resonance")
     # 100 nm/V × 20 V: the product is the number it stands beside.
     assert rows["Amplitude, free"] == ("2 µm", "100 nm/V × 20 V, at antinodes")
-    assert rows["Amplitude, finger on"] == ("1.5 µm", "at antinodes; the finger leaves 75 %")
+    assert rows["Peak amplitude, finger on"] == ("1.5 µm", "at antinodes; the finger leaves 75 %")
     assert "Amplitude under the finger" not in rows
     beside = {a: (b, c) for a, b, c in vibration_rows(point(frequency=31e3))}
     assert beside["Drive"][1] == "peak, at 31 kHz, beside the resonance"

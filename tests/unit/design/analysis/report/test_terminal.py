@@ -48,7 +48,7 @@ def test_what_one_decides_from_is_one_screen(
     places = [words.index(printable(one)) for one in said]
     assert places == sorted(places)
     assert all(" ".join(" ".join(row).split()) in words for row in screen.numbers)
-    assert ("as the paper asks" in words) == analysis.display.name.startswith("biet2008")
+    assert ("as Biet (2008) asks" in words) == analysis.display.name.startswith("biet2008")
     assert "timoshenko" not in words
 
 
