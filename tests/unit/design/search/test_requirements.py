@@ -73,3 +73,8 @@ def test_the_finger_of_the_requirements_is_that_of_the_display() -> None:
     assert finger.normal_force == 1.0
     # The contact grows with the force from the area that the display's own force has.
     assert math.sqrt(finger.contact_area()) > finger.contact_length
+
+
+def test_a_search_among_no_shapes_is_refused() -> None:
+    with pytest.raises(InputError, match="shapes is empty; give at least one"):
+        dataclasses.replace(requirements(), shapes=())

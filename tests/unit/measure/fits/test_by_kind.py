@@ -132,3 +132,36 @@ def test_signals_are_fitted_by_the_response_that_they_give(
     found: Any = response_fit(SimpleNamespace(response=response))  # type: ignore[arg-type]
     assert found is f
     assert response_fit(SimpleNamespace()) is None  # type: ignore[arg-type]
+
+
+def test_a_grid_scan_is_compared_with_the_solved_shapes_about_its_frequency(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[Any] = []
+
+    def kept(name: str) -> Any:
+        def do(*said: Any, **how: Any) -> Any:
+            asked.append((name, said, how))
+            return name
+
+        return do
+
+    for name in ("solve_modes", "shapes_at", "solid_mode", "fit_grid_scan"):
+        monkeypatch.setattr(by_kind, name, kept(name))
+    monkeypatch.setattr(by_kind.DrivenShape, "of", kept("driven"))
+    scan: Any = SimpleNamespace(frequency=30e3, x="x", y="y")
+    plate = sf.load_display("biet2008-plate")
+    found: Any = by_kind._grid(scan, plate, None)
+    assert found == "fit_grid_scan"
+    (_, (solved,), how), _, (_, (of,), _), (_, shapes, _), (_, fitted, _) = asked
+    assert solved is plate.actuator
+    assert of == "solid_mode"
+    low, high = how["band"]
+    # As far to either side.
+    assert (low + high) / 2 == pytest.approx(30e3)
+    assert 20e3 < low < 30e3
+    assert shapes == ("solve_modes", "x", "y", "driven")
+    assert fitted == (scan, "shapes_at")
+    for other in (None, sf.load_display("biet2008-stator")):
+        with pytest.raises(InputError, match="compared with a plate's solved shapes; name its"):
+            by_kind._grid(scan, other, None)

@@ -127,7 +127,7 @@ class PlateModes(SolvedAgain):
                 "band; squeezefilm modes lists what is driven",
                 quantity="label",
             )
-        return max(found, key=lambda i: abs(self.drive_forces[i]))
+        return max(found, key=self.drive_forces.__getitem__)
 
     @si.checked_numbers
     def field(self, mode: int, x: si.FloatArray, y: si.FloatArray, z: si.Metre) -> si.FloatArray:

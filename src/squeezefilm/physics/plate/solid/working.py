@@ -137,7 +137,7 @@ class SolidMode:
 
     @functools.cached_property
     def _circuit(self) -> tuple[EquivalentCircuit | None, str]:
-        force = abs(float(self.modes.drive_forces[self.index]))
+        force = float(self.modes.drive_forces[self.index])
         if force == 0:
             return None, "none: the drive exerts no force on this mode"
         branch = motional_branch(self.frequency, self.quality_factor, 1.0, force)
@@ -300,7 +300,7 @@ def _solved_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: P
     lobe = float(x[at]), across / 2
     lobe = lobe if lengthwise else lobe[::-1]
     resonance, per_volt = _strongest(response, frequency, quality, lobe)
-    alone = quality * abs(float(modes.drive_forces[index])) / (2 * np.pi * frequency) ** 2
+    alone = quality * float(modes.drive_forces[index]) / (2 * np.pi * frequency) ** 2
     doubt = (
         COARSE_AMPLITUDE_ERROR
         if modes.left_coarse

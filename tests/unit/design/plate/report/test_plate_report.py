@@ -1,12 +1,18 @@
 """The figures and the page of a solved plate: messages, marks, and nothing that is not there."""
 
 import dataclasses
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy.interpolate import RectBivariateSpline
 
+from squeezefilm import subjects
+from squeezefilm.core.errors import InputError
 from squeezefilm.design.plate.command import PlateAnalysis, analyze_plate
+from squeezefilm.design.plate.report import page
 from squeezefilm.design.plate.report.page import plate_page
 from squeezefilm.design.plate.report.plate import (
     admittance,
@@ -112,3 +118,13 @@ def test_the_tornado_cuts_a_bar_that_hides_the_others_and_says_so() -> None:
     assert [one.get_text() for one in left.get_yticklabels()] == [
         "huge: changed", "b: changed", "c: changed", "a: changed",
     ]  # fmt: skip
+
+
+def test_a_volume_is_written_of_a_plate_and_under_its_own_ending(tmp_path: Path) -> None:
+    unused: Any = None
+    with pytest.raises(InputError, match=r"a\.txt does not end in \.vtu; ParaView tells"):
+        page.write_vtu(tmp_path / "a.txt", unused, 0)
+    ring: Any = SimpleNamespace(display=SimpleNamespace(name="a stator"))
+    with pytest.raises(InputError, match=r"'a stator' is no rectangular plate: .* no volume"):
+        subjects.write_mode(ring, tmp_path / "a.vtu")
+    assert list(tmp_path.iterdir()) == []
