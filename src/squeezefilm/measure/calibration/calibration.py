@@ -31,14 +31,6 @@ class CalibratedValue:
     interval: tuple[float, float]
     left: si.Dimensionless
 
-    @property
-    def sentence(self) -> str:
-        """Sentence about it."""
-        middle, low, high = (
-            si.format_quantity(number, self.unit, 4) for number in (self.median, *self.interval)
-        )
-        return f"{self.path} = {middle} ({low} to {high})"
-
 
 @dataclass(frozen=True)
 class FrictionInterval:

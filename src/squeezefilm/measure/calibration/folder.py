@@ -162,6 +162,8 @@ def folder_observations(
             left_out.append(f"{name}: {fit.adequacy.sentence}")
             continue
         used = [dataclasses.replace(seen, recording=name) for seen in fit.observations]
+        if not used:
+            left_out.append(f"{name}: its fit tells no answer of a display")
         left_out += [
             f"{name}, its {seen.answer.replace('_', ' ')}: {why}"
             for seen in used

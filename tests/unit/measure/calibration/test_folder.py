@@ -160,6 +160,7 @@ def test_what_of_a_folder_is_no_use_is_left_out_with_its_reason(
         "poor.csv": Fit(resonance, adequate=False),
         "exact.csv": Fit(Observation("quality_factor", 60.0, 0.0)),
         "empty.csv": InputError("it holds one point"),
+        "ceramic.csv": Fit(),
         "curve.csv": Fit(friction, adequate=False),
     }
     told = SimpleNamespace(who="A", when="today", instrument="an LDV", source="bench")
@@ -176,7 +177,8 @@ def test_what_of_a_folder_is_no_use_is_left_out_with_its_reason(
     refused = [SimpleNamespace(file=Path("torn.toml"), why="it has no end")]
     answers = iter(fits.values())
 
-    def fit(recording: Any, display: Display) -> Any:
+    def fit(recording: Any, display: Display, *, progress: Any) -> Any:
+        assert callable(progress)
         assert display is plate
         answer = next(answers)
         if isinstance(answer, InputError):
@@ -203,6 +205,7 @@ def test_what_of_a_folder_is_no_use_is_left_out_with_its_reason(
         "poor.csv: the model does not describe it",
         "exact.csv, its quality factor: it is not above 0, or has no error",
         "empty.csv: it holds one point",
+        "ceramic.csv: its fit tells no answer of a display",
     )
 
 

@@ -120,6 +120,24 @@ def test_newtons_without_spread_or_rest_and_conditions_in_columns_are_compared(
     assert untold.speed == load_display("biet2008-plate").finger.speed
 
 
+def test_a_pull_in_newtons_is_observed_over_the_one_without_vibration() -> None:
+    pull = replace(
+        BARE,
+        vibration_amplitude=np.array([0.0, 0.0, 1e-6]),
+        friction=np.array([0.39, 0.41, 0.3]),
+        spread=np.array([0.03, 0.03, 0.02]),
+        quantity="friction_force",
+        normal_force=0.5,
+        speed=0.02,
+    )
+    found = compare_friction_curve(pull)
+    (only,) = found.observations
+    assert only.value == pytest.approx(0.75)
+    expected = np.hypot(0.02 / 0.4, 0.75 * 0.03 / np.sqrt(2) / 0.4)
+    assert only.standard_error == pytest.approx(expected)
+    assert replace(found, normal_force=np.array([0.5, 0.5, 0.6])).observations == ()
+
+
 def test_a_curve_must_name_its_display() -> None:
     with pytest.raises(InputError, match="names no display"):
         compare_friction_curve(replace(BARE, display=""))

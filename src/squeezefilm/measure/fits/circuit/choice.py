@@ -25,6 +25,8 @@ MOST_BRANCHES = 8
 # So many richer circuits in a row that are no better, and no more are tried: two modes of five that
 # are told only together take three steps.
 _PATIENCE = 6
+# A mode whose ln Q is known to no better is none.
+_BOUNDED = 0.5
 # A branch that is flatter than this is no resonance but what a band shows of other things.
 _LEAST_QUALITY = 4.0
 _LEAST_RISE = 1e-3
@@ -102,8 +104,8 @@ def _corrections(sweep: ImpedanceSweep, drift: bool) -> tuple[frozenset[str], ..
     if sweep.compensated:
         free.remove("leads")
     if not sweep.phase_recorded:
-        # A phase is all that tells of these.
-        free = [name for name in free if name == "leads"]
+        # A phase is what tells of these.
+        free = []
     return tuple(
         frozenset(told | set(some))
         for size in range(3)
@@ -227,7 +229,9 @@ def _fitted(
     sharp = (quality > _LEAST_QUALITY) & (frequency / quality > step)
     # How far the branch rises above the static capacitance, at its resonance.
     strong = quality * np.exp(np.clip(logs[:, 2] - fit.parameters[0], -60, 30)) > _LEAST_RISE
-    if not np.all(inside & sharp & strong) or not np.all(np.diag(fit.covariance) > 0):
+    variances = np.diag(fit.covariance)
+    bounded = variances[3 : layout.loss : 3] < _BOUNDED**2
+    if not np.all(inside & sharp & strong & bounded) or not np.all(variances > 0):
         return None
     if layout.leads:
         ohms, henries = fit.parameters[layout.lead :][:2]

@@ -137,8 +137,8 @@ def fit_impedance(
     not `compensated`, has drift or leads for certain; a compensated one has no leads. Where the
     sweep does not tell one of the three from another, intervals hold what each makes of it, and
     the adequacy says so. A resonance that drifts during the sweep cannot be told from another
-    Q. Where no phase was recorded the circuit's size is fitted, with no correction but leads; its
-    `loss_tangent` is then less by twice that of the coupling.
+    Q. Where no phase was recorded the circuit's size is fitted, without corrections but leads that
+    were not compensated; its `loss_tangent` is then less by twice that of the coupling.
 
     Noise is relative, down to a floor where the data tell of one, and estimated from them;
     missing points do no harm. Intervals are of 95 %, to first order in the noise; where the

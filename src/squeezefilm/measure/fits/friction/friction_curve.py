@@ -94,19 +94,29 @@ class CurveComparison(FitResult):
 
     @property
     def observations(self) -> tuple[Observation, ...]:
-        """Each measured point, for a calibration, but one without vibration; none of a curve that
-        is not in µ′/µ, or whose spread is not known."""
+        """Each measured point, for a calibration, but those without vibration: over these where the
+        curve is not in µ′/µ, with their error. None of a curve whose spread is not known, or that
+        has no friction without vibration at one force."""
         c = self.curve
-        if c.quantity != "relative_friction" or c.deviation is None:
+        if c.deviation is None:
             return ()
+        still, unsure = 1.0, 0.0
+        if c.quantity != "relative_friction":
+            rest = c.vibration_amplitude == 0
+            if not rest.any() or np.ptp(self.normal_force) > 0 or np.mean(c.friction[rest]) <= 0:
+                return ()
+            still = float(np.mean(c.friction[rest]))
+            unsure = float(np.linalg.norm(c.deviation[rest])) / int(rest.sum()) / still
+        relative = c.friction / still
+        error = np.hypot(c.deviation / still, relative * unsure)
         force, speed = (
             np.broadcast_to(of, c.friction.shape) for of in (self.normal_force, self.speed)
         )
         return tuple(
             Observation(
                 "relative_friction",
-                float(c.friction[k]),
-                float(c.deviation[k]),
+                float(relative[k]),
+                float(error[k]),
                 {
                     "vibration_amplitude": float(c.vibration_amplitude[k]),
                     "normal_force": float(force[k]),

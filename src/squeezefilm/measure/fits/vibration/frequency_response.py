@@ -117,9 +117,9 @@ class FrequencyResponseFit(FitResult):
     """The modes of a response, the strongest first, and what else is in it.
 
     `model` (m/V, complex) is what was fitted, `residual` what it leaves, at the recording's
-    frequencies (those that were recorded as finite numbers). `circle` is the strongest mode by its
-    circle alone. `phase_reversed` says that the phase was recorded with the other sign (it rises
-    through the resonance), and that the fit is of the complex conjugate.
+    frequencies (those that were recorded as finite numbers). `phase_reversed` says that the phase
+    was recorded with the other sign (it rises through the resonance), and that the fit is of the
+    complex conjugate.
     """
 
     recording: FrequencyResponse
@@ -128,7 +128,6 @@ class FrequencyResponseFit(FitResult):
     residual: si.ComplexArray
     modes: tuple[FittedMode, ...]
     largest_per_volt: Estimate
-    circle: ModalCircle | None
     phase_reversed: bool
     adequacy: Adequacy
 
@@ -332,7 +331,6 @@ class _FittedResponse:
             residual=self.response - model,
             modes=tuple(self._mode(k) for k in order),
             largest_per_volt=self._largest(order[0]),
-            circle=modal_circle(self.band.f, self.response),
             phase_reversed=self.reversed_phase,
             adequacy=self._adequacy(),
         )
