@@ -75,6 +75,8 @@ class Criterion:
             return _INFINITE.get(self.key, "no limit")
         if self.key == "area":
             return si.percent(value)
+        if self.key == "mass":
+            return f"{1e3 * value:.3g} g"
         return si.format_quantity(value, self.unit, 3)
 
     def bound_said(self, bound: float) -> str:

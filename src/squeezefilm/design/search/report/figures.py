@@ -12,10 +12,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.page_style import FigureOf
 from squeezefilm.design.search.criteria import criterion_of
-from squeezefilm.design.search.report.words import (
-    front_words,
-    setting_words,
-)
+from squeezefilm.design.search.report.words import front_words, setting_words
 from squeezefilm.design.search.space import Choice, Variable
 from squeezefilm.design.search.worth_solving import objectives_of
 from squeezefilm.design.sweep.report.words import labelled, scaled

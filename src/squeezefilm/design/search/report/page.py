@@ -87,13 +87,14 @@ def front_csv(search: DesignSearch) -> str:
 def design_page(search: DesignSearch, *, fabrication: str = "") -> str:
     """The page of a search as text; it is complete but for the files that it links to."""
     requirements = search.requirements
+    notes = [requirements.note] if requirements.note else []
     drawn = {
         item.key: figure_section(item, item.heading, _svg(search, item)) if item.has(search) else ""
         for item in FIGURES
     }
     parts = [
         section("To read first", verdict_list(first_sentences(search))),
-        section("What was asked for", bullets(asked_sentences(requirements) + _note(search))),
+        section("What was asked for", bullets([*asked_sentences(requirements), *notes])),
         drawn["front"],
         section("The plates of the front", _front_table(search)),
         *_chosen_sections(search, fabrication),
@@ -155,10 +156,6 @@ def first_sentences(search: DesignSearch) -> Iterator[tuple[str, str]]:
         "No plate here was built. The quality factor is assumed, and with it every amplitude; the "
         "friction is by a model fitted to people on glass alone.",
     )
-
-
-def _note(search: DesignSearch) -> list[str]:
-    return [search.requirements.note] if search.requirements.note else []
 
 
 def _svg(search: DesignSearch, item: FigureOf) -> str:

@@ -238,7 +238,7 @@ def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]
     if made is None:
         return ["How many plates made of its drawing keep the limits was not computed."]
     breaks = sorted(made.broken.items(), key=lambda item: -item[1])
-    told = ", ".join(f"{CRITERIA[key].said} by {count}" for key, count in breaks)
+    told = ", ".join(f"{CRITERIA[key].said} in {count}" for key, count in breaks)
     failed = f"; {made.failed} could not be computed" if made.failed else ""
     alone = requirements.limits.unasked_of_made
     unasked = " and ".join(
@@ -249,7 +249,7 @@ def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]
     return [
         f"Of {made.draws} plates made with the tolerances {si.percent(made.kept)} keep all limits"
         + (f" but those on {unasked}, which only a solved plate can be asked" if unasked else "")
-        + (f"; broken are {told}" if told else "")
+        + (f"; limits broken: {told}" if told else "")
         + f"{failed}."
     ]
 

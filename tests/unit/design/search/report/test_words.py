@@ -99,7 +99,7 @@ def test_the_chosen_plate_is_told_with_its_nearest_limits_and_its_yield(
     assert said.startswith(found.chosen_name)
     assert "Its nearest limits: " in said
     assert "53 % keep all limits but those on half-bandwidths to the nearest mode" in said
-    assert "; broken are temperature rise by 30" in said
+    assert "; limits broken: temperature rise in 30" in said
     member = replace(found.front[0], made=None)
     assert words.made_sentences(found.requirements, member) == [
         "How many plates made of its drawing keep the limits was not computed."
