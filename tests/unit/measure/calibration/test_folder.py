@@ -173,13 +173,14 @@ def test_what_of_a_folder_is_no_use_is_left_out_with_its_reason(
         (tmp_path / name).write_text(name)
         return SimpleNamespace(file=tmp_path / name, kind="a kind", recording=recording)
 
+    steps: list[str] = []
     checks = [checked(name) for name in fits]
     refused = [SimpleNamespace(file=Path("torn.toml"), why="it has no end")]
     answers = iter(fits.values())
 
     def fit(recording: Any, display: Display, *, progress: Any) -> Any:
-        assert callable(progress)
         assert display is plate
+        assert progress == steps.append
         answer = next(answers)
         if isinstance(answer, InputError):
             raise answer
@@ -189,7 +190,6 @@ def test_what_of_a_folder_is_no_use_is_left_out_with_its_reason(
     monkeypatch.setattr(calibrated_folder, "check_folder", lambda _: found_there)
     monkeypatch.setattr(calibrated_folder, "fit_recording", fit)
     monkeypatch.setattr(calibrated_folder, "response_fit", lambda _: None)
-    steps: list[str] = []
     found = folder_observations(plate, tmp_path, steps.append)
     assert steps == [f"fit of {name}" for name in fits]
     seen = [(one.recording, one.answer) for one in found.observations]

@@ -68,7 +68,8 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, float]]:
         every.append(how)
         return SimpleNamespace(law=SimpleNamespace(by=law))
 
-    def bands(_display: Any, _prediction: Any, amplitude: Any, levels: Any, samples: int) -> Any:
+    def bands(_display: Any, _prediction: Any, amplitude: Any, levels: Any, **how: Any) -> Any:
+        how["progress"]("draws", 0.5)
         middle = fall(amplitude, False)
         return [
             SimpleNamespace(low=middle - 0.1 * level, high=middle + 0.1 * level) for level in levels
@@ -101,9 +102,12 @@ def test_a_curve_is_compared_at_its_own_conditions_and_its_rest_is_fitted(
         score for score in found.models if score.model in MODEL_KINDS and score is not model
     )
     assert np.isnan(other.friction).tolist() == [False, False, False, True]
-    assert told[0] == "mine: the working mode of biet2008-plate"
-    assert told[-1] == "mine: the interval"
-    assert {f"mine: {model}" for model in MODEL_KINDS} <= set(told)
+    # The half of its draws is three quarters of the whole.
+    assert [text.partition(" (")[0] for text in told] == [
+        "mine: the working mode of biet2008-plate", *(f"mine: {model}" for model in MODEL_KINDS),
+        "draws",
+    ]  # fmt: skip
+    assert told[-1].startswith("draws (75 %")
 
 
 def test_what_a_recording_does_not_tell_is_the_displays(asked: list[dict[str, float]]) -> None:
