@@ -34,7 +34,7 @@ class BillRow:
 def bill_of(
     actuator: Actuator, parts: Sequence[Part], electrodes: Sequence[Electrode]
 ) -> tuple[BillRow, ...]:
-    """Substrate, ceramics by size, glue, foam, leads and resistors, in this order.
+    """Substrate, ceramics by size, glue, foam, clamps, leads and resistors, in this order.
 
     The rows that are `in_mass` add up to the mass of all `parts`. What of a substrate stands on it
     (teeth) is machined from the same piece and is in its row.
@@ -58,7 +58,7 @@ def bill_of(
         ),
         *_ceramics(parts),
         *_glue(parts),
-        *_foam(actuator),
+        *_held(actuator),
     ]
     for lead in leads_of(electrodes):
         joined = f"{', '.join(lead.electrodes)} to {lead.to}"
@@ -128,23 +128,22 @@ def _glue(parts: Sequence[Part]) -> list[BillRow]:
     ]
 
 
-def _foam(actuator: Actuator) -> list[BillRow]:
+def _held(actuator: Actuator) -> list[BillRow]:
     if not isinstance(actuator, RectangularPlate):
         return []
     sizes = Counter(
         " × ".join(map(millimetres, (support.length, support.width, support.thickness))) + " mm"
         for support in actuator.supports
     )
+    told = "its mass is not described, and neglected"
+    clamps = [
+        BillRow("Clamp", 1, "", "", "", None, False, f"holds the {edge} edge, taken as rigid")
+        for edge in actuator.clamped_edges
+    ]
     return [
-        BillRow(
-            "Support",
-            count,
-            "foam",
-            size,
-            CUT,
-            None,
-            False,
-            "its mass is not described, and neglected",
-        )
-        for size, count in sizes.items()
+        *(
+            BillRow("Support", count, "foam", size, CUT, None, False, told)
+            for size, count in sizes.items()
+        ),
+        *clamps,
     ]

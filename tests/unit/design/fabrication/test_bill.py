@@ -54,3 +54,12 @@ def test_foam_glue_and_resistors_are_on_it() -> None:
     shunted = dataclasses.replace(plate.patches[1], electrode="shunted", shunt_resistance=470.0)
     with_one = dataclasses.replace(plate, patches=(plate.patches[0], shunted))
     assert [one.size for one in bill(with_one) if one.what == "Shunt resistor"] == ["470 ohm"]
+
+
+def test_what_holds_an_edge_is_on_it() -> None:
+    plate = sf.load_display("biet2008-plate").actuator
+    assert isinstance(plate, RectangularPlate)
+    held = dataclasses.replace(plate, clamped_edges=("left", "right"))
+    clamps = [one for one in bill(held) if one.what == "Clamp"]
+    assert [one.remark.split()[2] for one in clamps] == ["left", "right"]
+    assert not any(one.what == "Clamp" for one in bill(plate))
