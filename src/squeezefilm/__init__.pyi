@@ -523,8 +523,6 @@ if TYPE_CHECKING:
         guess_rate: Dimensionless | str | None = ...,
         prior: PsychometricPrior | None = ...,
         level: Dimensionless | str = ...,
-        replicates: int = ...,
-        seed: int = ...,
     ) -> PsychometricFit:
         """Fit a psychometric function to answers."""
     class PsychometricFunction(_PsychometricFunction):

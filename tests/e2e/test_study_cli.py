@@ -128,10 +128,11 @@ def test_mistakes_are_one_message(arguments: tuple[str, ...], says: str, tmp_pat
     assert "Traceback" not in done.stderr
 
 
+@pytest.mark.realtime
 @pytest.mark.nightly
-def test_a_rehearsal_acknowledges_the_ultrasound(tmp_path: Path) -> None:
+def test_a_session_on_the_twin_acknowledges_the_ultrasound(tmp_path: Path) -> None:
     (tmp_path / "tiny.toml").write_text(DESIGN, encoding="utf-8")
-    start = ("run", "tiny.toml", "--store", "a.sqlite", "--consent", "--drive", "rehearsal")
+    start = ("run", "tiny.toml", "--store", "a.sqlite", "--consent", "--drive", "twin")
     refused = run(*start, cwd=tmp_path, keys="no\n")
     assert refused.returncode == 2
     assert "dB above the guidance" in refused.stdout

@@ -59,7 +59,6 @@ def test_a_fitted_function_lies_in_its_intervals(answers, guess_rate, axis, leve
         trials,
         guess_rate=guess_rate,
         axis=axis,
-        replicates=0,
         level=level,
     )
     for name, (low, high) in fit.posterior_interval.items():

@@ -77,7 +77,7 @@ class Recovery:
         intensity, positive = self.experiment(self.truth, np.random.default_rng(seed))
         return fit_psychometric(
             intensity, positive, shape=self.truth.shape, axis=self.truth.axis,
-            guess_rate=self.truth.guess_rate, prior=self.prior, replicates=0,
+            guess_rate=self.truth.guess_rate, prior=self.prior,
         )  # fmt: skip
 
 

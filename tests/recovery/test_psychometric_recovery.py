@@ -49,7 +49,7 @@ def _drawn_from_the_prior(runs: int, trials: int) -> dict[str, float]:
             float(WIDE_PRIOR.quantile(at, np.array(share[at]), "linear")) for at in range(3)
         )
         truth = PsychometricFunction("logistic", threshold, math.exp(log_width), 0.5, lapse)
-        fit = fit_psychometric(*experiment(truth, random), prior=WIDE_PRIOR, replicates=0)
+        fit = fit_psychometric(*experiment(truth, random), prior=WIDE_PRIOR)
         for name in held:
             low, high = fit.posterior_interval[name]
             held[name] += low <= getattr(truth, name) <= high

@@ -59,7 +59,7 @@ def test_a_texture_and_a_psychometric_fit_are_plotted() -> None:
     texture = sf.RelativeFriction(sf.SquareWave("2 mm"), 0.5, 1.0)
     assert len(sf.plot(texture).axes) == 3
     fit = sf.fit_psychometric(
-        [0.1, 0.2, 0.4], [11, 15, 20], [20, 20, 20], shape="weibull", axis="log", replicates=0
+        [0.1, 0.2, 0.4], [11, 15, 20], [20, 20, 20], shape="weibull", axis="log"
     )
     figure = sf.plot(fit)
     assert figure.get_suptitle().startswith(f"The threshold is {fit.function.threshold:.3g}")

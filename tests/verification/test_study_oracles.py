@@ -50,7 +50,7 @@ def test_twenty_fits_agree_with_psignifit() -> None:
         )
         trials = np.full(LEVELS.size, 40)
         right = random.binomial(trials, truth(LEVELS))
-        fit = fit_psychometric(LEVELS, right, trials, replicates=0)
+        fit = fit_psychometric(LEVELS, right, trials)
         (low, high), (least, most) = fit.prior.threshold, fit.prior.width
         other = psignifit.psignifit(
             np.column_stack([LEVELS, right, trials]),

@@ -332,8 +332,8 @@ class RunOptions:
     drive: Annotated[
         str,
         typer.Option(
-            help="serial:PORT (a device), twin (a simulated one behind a port, in real time), "
-            "rehearsal (one without a port, as fast as it goes) or none."
+            help="serial:PORT (a device), twin (a simulated one behind a port, in real time) or "
+            "none."
         ),
     ] = "none"
     amplitude_per_pickup: Pickup = None

@@ -97,7 +97,7 @@ def prediction() -> Any:
 
 @pytest.fixture(scope="module")
 def fit() -> PsychometricFit:
-    return sf.fit_psychometric([0.1, 0.2, 0.4], [11, 15, 20], [20, 20, 20], replicates=0)
+    return sf.fit_psychometric([0.1, 0.2, 0.4], [11, 15, 20], [20, 20, 20])
 
 
 def test_a_prediction_is_short_small_and_json(prediction: Any) -> None:

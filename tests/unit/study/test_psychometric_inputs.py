@@ -61,32 +61,28 @@ def test_data_that_cannot_be_fitted(rows: tuple[Any, ...], message: str) -> None
 
 def test_settings_of_a_fit_that_are_refused() -> None:
     data = ([1.0, 2.0, 3.0], [5, 8, 10], [10, 10, 10])
-    with pytest.raises(InputError, match="replicates = 5"):
-        fit_psychometric(*data, replicates=5)
     with pytest.raises(InputError, match="guess_rate"):
         fit_psychometric(*data, guess_rate=0.7)
     with pytest.raises(InputError, match="parameter = 'slope'"):
-        fit_psychometric(*data, replicates=0).posterior.interval("slope")
+        fit_psychometric(*data).posterior.interval("slope")
 
 
 def test_one_answer_a_row_is_the_same_as_counts() -> None:
-    rows = fit_psychometric([1, 3, 1, 2, 2, 3], [0, 1, 1, 0, 1, 1], replicates=99)
-    counts = fit_psychometric([1, 2, 3], [1, 1, 2], [2, 2, 2], replicates=99)
+    rows = fit_psychometric([1, 3, 1, 2, 2, 3], [0, 1, 1, 0, 1, 1])
+    counts = fit_psychometric([1, 2, 3], [1, 1, 2], [2, 2, 2])
     assert rows.summary() == counts.summary()
 
 
 def test_a_fit_is_reproducible_and_says_itself_in_json() -> None:
     data = ([1.0, 2.0, 3.0, 4.0], [5, 6, 9, 10], [10, 10, 10, 10])
-    first, again = (fit_psychometric(*data, replicates=99, seed=4).summary() for _ in range(2))
+    first, again = (fit_psychometric(*data).summary() for _ in range(2))
     assert first == again
     assert json.loads(json.dumps(first, allow_nan=False)) == first
     assert set(first["posterior_interval"]) == {"threshold", "width", "lapse_rate"}
 
 
 def test_perfect_answers_leave_the_width_to_the_prior_and_say_so() -> None:
-    fit = fit_psychometric(
-        [1.0, 2.0, 3.0, 4.0], [0, 0, 20, 20], [20] * 4, guess_rate=0.0, replicates=0
-    )
+    fit = fit_psychometric([1.0, 2.0, 3.0, 4.0], [0, 0, 20, 20], [20] * 4, guess_rate=0.0)
     assert "width" in fit.bounded_by_prior
     assert fit.posterior_interval["width"][0] == pytest.approx(fit.prior.width[0], rel=0.2)
 

@@ -40,7 +40,7 @@ def require_study_drive(drive: str) -> None:
     """Refuse what no study may be driven by. Raises `InputError` that says what may."""
     if drive != "twin" and not (drive.startswith("serial:") and drive[7:].strip()):
         raise InputError(
-            f"drive = '{drive[:80]}' is not known; it may be none, rehearsal, twin, or "
+            f"drive = '{drive[:80]}' is not known; it may be none, twin, or "
             "serial:PORT like serial:/dev/ttyACM0. A drive that does not stop by itself, such as a "
             "sound card, is not allowed in a study",
             quantity="drive",

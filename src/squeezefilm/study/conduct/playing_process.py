@@ -17,7 +17,6 @@ import dataclasses
 import math
 import signal
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from multiprocessing.connection import Connection
@@ -27,12 +26,11 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.core.formats.traces import Table, csv_text
 from squeezefilm.core.results import stamp
 from squeezefilm.instruments.bench.play import device_stream
-from squeezefilm.instruments.bench.resonance_sweep import ResonanceSweep, sweep_resonance
+from squeezefilm.instruments.bench.resonance_sweep import sweep_resonance
 from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.serial_ports import SerialDrive
@@ -49,7 +47,6 @@ from squeezefilm.instruments.twin.working_point import working_point
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.perception.stimuli import Stimulus
-from squeezefilm.physics.plate.working_mode import WorkingMode
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.physics.texture_files.texture_file import TextureFile
 from squeezefilm.study.conduct.study_device import DeviceVerification, TrialMotion
@@ -69,9 +66,6 @@ _PATH = ("time_s", "x_m", "y_m", "speed_m_per_s", "amplitude_m", "relative_frict
 
 Surface = Stimulus | TextureFile
 """Something to play: a study's stimulus, or any texture with what it is called."""
-
-Sweep = Callable[[Limits, si.HertzArray, si.Volt, si.Second], ResonanceSweep | None]
-"""Sweeps carriers within limits at a voltage, settling at each; None without a pickup."""
 
 
 @dataclass(frozen=True)
@@ -131,18 +125,43 @@ class Bench:
         return ("ended", *self.presentation(*order[1:]))
 
     def verification(self) -> DeviceVerification:
-        """The resonance swept on the device, with no finger (a twin's lifts it)."""
-        display, twin = self._loaded(), self._orders.drive == "twin"
-        per_volt = self._amplitude_per_pickup
-        return resonance_verified(display, predict(display).mode, per_volt, self._swept, twin=twin)
-
-    def _swept(
-        self, limits: Limits, carriers: si.HertzArray, voltage: si.Volt, settle: si.Second
-    ) -> ResonanceSweep | None:
+        """The carrier swept over the resonance at a quarter of the display's voltage, with no
+        finger (a twin's lifts it); the amplitude is judged where the pickup is calibrated. A device
+        without a pickup is not measurable."""
+        display, mode = self._loaded(), predict(self._loaded()).mode
+        volts = VERIFICATION_SHARE * display.drive.voltage
+        twin = self._orders.drive == "twin"
+        limits = display.limits(mode.resonance_frequency, volts, twin=twin)
+        half = _SPAN * mode.resonance_frequency / (2 * mode.quality_factor)
+        carriers = np.linspace(
+            max(limits.lowest_frequency, mode.resonance_frequency - half),
+            min(limits.highest_frequency, mode.resonance_frequency + half),
+            _POINTS,
+        )
+        settle = _SETTLE * mode.quality_factor / (math.pi * mode.resonance_frequency)
         with contextlib.closing(open_stream(self._streaming("none"))) as stream:
             host = DeviceHost(Link(stream))
             require_safe_drive(SerialDrive(host, 1 / self._orders.rate), limits, "study")
-            return sweep_resonance(host, limits, carriers, voltage, settle=settle)
+            swept = sweep_resonance(host, limits, carriers, volts, settle=settle)
+        if swept is None:
+            return DeviceVerification(
+                measurable=False, remark="the device has no pickup: nothing was verified"
+            )
+        frequency, signal_at_peak = swept.peak
+        per_volt = self._amplitude_per_pickup
+        said = f"swept at {volts:.3g} V and read at the device's pickup, no finger"
+        if per_volt is None:
+            said += "; the pickup is not calibrated, so its amplitude was not judged"
+        if swept.touched:
+            said += "; the plate was touched meanwhile, so it says nothing: do it again"
+            frequency = signal_at_peak = math.nan
+        return DeviceVerification(
+            amplitude=math.nan if per_volt is None else per_volt * signal_at_peak,
+            expected_amplitude=math.nan if per_volt is None else mode.amplitude_per_volt * volts,
+            resonance_frequency=frequency,
+            expected_resonance_frequency=mode.resonance_frequency,
+            remark=said,
+        )
 
     def presentation(self, given: Surface, seed: int, name: str) -> tuple[str, TrialMotion]:
         """Play until an order comes; returns what failed (empty: nothing) and the exploration."""
@@ -228,50 +247,6 @@ def surface_of(given: Surface) -> TextureFile:
     if isinstance(given, TextureFile):
         return given
     return TextureFile(given.surface(), given.name)
-
-
-def resonance_verified(
-    display: Display,
-    mode: WorkingMode,
-    amplitude_per_pickup: si.MetrePerVolt | None,
-    sweep: Sweep,
-    *,
-    twin: bool,
-) -> DeviceVerification:
-    """Verdict on a device by a sweep of the carrier over a mode's resonance, without a finger.
-
-    At a quarter of the display's voltage; the amplitude is judged where the pickup is calibrated
-    (m/V). A device without a pickup is not measurable. Raises what `sweep` raises.
-    """
-    volts = VERIFICATION_SHARE * display.drive.voltage
-    limits = display.limits(mode.resonance_frequency, volts, twin=twin)
-    half = _SPAN * mode.resonance_frequency / (2 * mode.quality_factor)
-    carriers = np.linspace(
-        max(limits.lowest_frequency, mode.resonance_frequency - half),
-        min(limits.highest_frequency, mode.resonance_frequency + half),
-        _POINTS,
-    )
-    settle = _SETTLE * mode.quality_factor / (math.pi * mode.resonance_frequency)
-    swept = sweep(limits, carriers, volts, settle)
-    if swept is None:
-        return DeviceVerification(
-            measurable=False, remark="the device has no pickup: nothing was verified"
-        )
-    frequency, signal_at_peak = swept.peak
-    per_volt = amplitude_per_pickup
-    said = f"swept at {volts:.3g} V and read at the device's pickup, no finger"
-    if per_volt is None:
-        said += "; the pickup is not calibrated, so its amplitude was not judged"
-    if swept.touched:
-        said += "; the plate was touched meanwhile, so it says nothing: do it again"
-        frequency = signal_at_peak = math.nan
-    return DeviceVerification(
-        amplitude=math.nan if per_volt is None else per_volt * signal_at_peak,
-        expected_amplitude=math.nan if per_volt is None else mode.amplitude_per_volt * volts,
-        resonance_frequency=frequency,
-        expected_resonance_frequency=mode.resonance_frequency,
-        remark=said,
-    )
 
 
 def explored(trace: Trace, name: str) -> TrialMotion:

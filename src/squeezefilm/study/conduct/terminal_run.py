@@ -116,10 +116,9 @@ def run_session(
 ) -> str:
     """Run a session on the display that the participant's next trial needs. Returns how it ended.
 
-    `drive` is "none", "rehearsal" (the twin in this process, on a virtual clock), "twin" (behind a
-    port, in real time) or "serial:PORT", whose pickup gives `amplitude_per_pickup` (m/V; None if
-    not calibrated). Without a participant somebody new is enrolled and named by `desk.tell`; not so
-    if the session cannot start.
+    `drive` is "none", "twin" (behind a port, in real time) or "serial:PORT", whose pickup gives
+    `amplitude_per_pickup` (m/V; None if not calibrated). Without a participant somebody new is
+    enrolled and named by `desk.tell`; not so if the session cannot start.
     `conditions` is a TOML file of `SessionConditions`; `consent` counts beside what it says. Raises
     what `begin_session` and `conduct` raise.
     """
@@ -221,21 +220,14 @@ def _device(
     if drive == "none":
         return (NoDevice() if by_hand is None else ByHand(by_hand)), None
     # Plates, film and loop take a second to import, which a study by hand need not wait for.
-    from squeezefilm.instruments.twin.hand import EXPLORING, Hand
+    from squeezefilm.instruments.twin.hand import EXPLORING
     from squeezefilm.physics.display import load_display
     from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive
-    from squeezefilm.study.conduct.rehearsal_device import StudyTwin
 
-    if drive != "rehearsal":
-        require_study_drive(drive)
+    require_study_drive(drive)
     loaded = load_display(display)
     duration = expected_duration(store.design) / len(store.design.displays)
     exposed = exposure(loaded, duration, progress=tell)
-    if drive == "rehearsal":
-        tell("the twin's working point")
-        if store.design.exploring == "free":
-            return StudyTwin(loaded, hand=Hand(_free_path(loaded), begin=0.05, repeats=1)), exposed
-        return StudyTwin(loaded), exposed
     stroke = EXPLORING
     if drive == "twin" and store.design.exploring == "free":
         folder = closing.enter_context(tempfile.TemporaryDirectory())

@@ -7,7 +7,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtr
+from scipy.optimize import minimize
+from scipy.special import ndtr, xlogy
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
@@ -15,11 +16,6 @@ from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import Interval, Result, to_json
 from squeezefilm.study.psychometric import kernel
-from squeezefilm.study.psychometric.bootstrap import (
-    PenalisedLikelihood,
-    share_as_large,
-    simulated_deviances,
-)
 from squeezefilm.study.psychometric.estimate import holding
 from squeezefilm.study.psychometric.function import (
     Axis,
@@ -57,8 +53,6 @@ class PsychometricFit(Result):
             one, opened to the fitted value where that lies in a tail, as it does at the bound of a
             prior. It holds at least `level`.
         deviance: from the saturated model.
-        deviance_p: probability of a deviance as large if the function is the truth, simulated;
-            None without replicates. Without meaning where most places have a trial or two.
         bounded_by_prior: parameters with an interval that ends at a bound of the prior of
             threshold or width: the data do not say how far they go.
         falling_p: probability that answers to which intensity does not matter fall with it as
@@ -75,7 +69,6 @@ class PsychometricFit(Result):
     posterior: PsychometricPosterior
     posterior_interval: dict[str, Interval]
     deviance: float
-    deviance_p: si.Dimensionless | None
     bounded_by_prior: tuple[str, ...]
     falling_p: si.Dimensionless
     _shown: ClassVar[str] = (
@@ -116,7 +109,6 @@ class PsychometricFit(Result):
             "interval_level": self.level,
             "posterior_interval": {k: list(v) for k, v in self.posterior_interval.items()},
             "deviance": self.deviance,
-            "deviance_p": self.deviance_p,
             "trials": int(self.trials.sum()),
             "bounded_by_prior": list(self.bounded_by_prior),
             "falling_p": self.falling_p,
@@ -142,8 +134,6 @@ class FitRequest:
     guess_rate: si.Dimensionless | None = 0.5
     prior: PsychometricPrior | None = None
     level: si.Dimensionless = 0.95
-    replicates: int = 999
-    seed: int = 0
 
 
 @reads_text
@@ -161,9 +151,6 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
             alternatives); None to fit it, as for a yes/no task.
         prior: without one, `PsychometricPrior.for_stimuli`.
         level: of the intervals, between 0 and 1.
-        replicates: of the answers that are simulated for `deviance_p`; 0 for none, else at least
-            39.
-        seed: of those answers.
 
     Raises:
         InputError: data that are no counts, of unlike shape or empty, or a value outside its
@@ -177,17 +164,11 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
     places, k, n = _by_place(asked.intensity, asked.positive, asked.trials)
     prior = PsychometricPrior.for_stimuli(places, axis) if asked.prior is None else asked.prior
     answered = Answered(code, axis, prior, guess_rate, on_axis(places, axis), k, n)
-    likelihood = _penalised(answered)
-    starts = coarse_maxima(answered)
-    best, _ = max((likelihood.maximum(start) for start in starts), key=lambda pair: pair[1])
+    best = _likeliest(answered)
     posterior = grid_posterior(answered, best)
     fitted = PARAMETERS if guess_rate is None else PARAMETERS[: kernel.GUESS]
-    likeliest = kernel.log_density(code, best, np.ones(4), answered.x, k, n)
-    deviance = max(2.0 * (kernel.saturated(k, n) - likeliest), 0.0)
-    p = None
-    if asked.replicates:
-        again = simulated_deviances(likelihood, best, asked.replicates, asked.seed)
-        p = share_as_large(again, deviance)
+    likelihood = kernel.log_density(code, best, np.ones(4), answered.x, k, n)
+    saturated = float(np.sum(xlogy(k, k / n) + xlogy(n - k, 1 - k / n)))
     function = _function(asked.shape, axis, best)
     return PsychometricFit(
         function=function,
@@ -201,8 +182,7 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
         posterior_interval={
             name: _opened(function, name, posterior.interval(name, level)) for name in fitted
         },
-        deviance=deviance,
-        deviance_p=p,
+        deviance=max(2.0 * (saturated - likelihood), 0.0),
         bounded_by_prior=_bounded(prior, posterior),
         falling_p=falling_probability(answered.x, k, n),
     )
@@ -236,18 +216,29 @@ def _opened(function: PsychometricFunction, name: str, interval: tuple[float, fl
     return Interval(float(low), float(high))
 
 
-def _penalised(answered: Answered) -> PenalisedLikelihood:
-    """The likelihood of the answers with the priors of the rates, within the whole prior."""
+def _likeliest(answered: Answered) -> si.FloatArray:
+    """θ of the largest ln density of the answers and the priors of the rates, within the prior."""
     a, rate = answered, answered.guess_rate
     low, high = a.prior.bounds(a.axis)
-    beta = np.array([*a.prior.lapse_rate, *a.prior.guess_rate])
+    beta, free = np.array([*a.prior.lapse_rate, *a.prior.guess_rate]), 4
     if rate is not None:
-        low[kernel.GUESS] = high[kernel.GUESS] = rate
         # A known rate has no prior; without a bound γ + λ could reach 1.
-        beta[2:] = 1.0
+        beta[2:], free = 1.0, kernel.GUESS
         high[kernel.LAPSE] = min(high[kernel.LAPSE], 0.99 - rate)
-    free = np.array([True, True, True, rate is None])
-    return PenalisedLikelihood(a.code, free, low, high, beta, a.x, a.k, a.n)
+    bounds = list(zip(low, high, strict=True))[:free]
+
+    def loss(part: si.FloatArray) -> float:
+        theta = part if rate is None else np.append(part, rate)
+        return -kernel.log_density(a.code, theta, beta, a.x, a.k, a.n)
+
+    found = [
+        minimize(loss, start[:free], method="L-BFGS-B", bounds=bounds) for start in coarse_maxima(a)
+    ]
+    near = min(found, key=lambda one: float(one.fun)).x
+    # Its derivatives are differences; the simplex has none, and settles the last digits.
+    exact = {"xatol": 1e-9, "fatol": 1e-12, "maxiter": 4000, "maxfev": 4000}
+    best = minimize(loss, near, method="Nelder-Mead", bounds=bounds, options=exact).x
+    return np.asarray(best if rate is None else np.append(best, rate))
 
 
 def _function(shape: Shape, axis: Axis, theta: si.FloatArray) -> PsychometricFunction:

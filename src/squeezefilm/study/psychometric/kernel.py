@@ -1,4 +1,4 @@
-"""The compiled parts of psychometric functions: shapes, likelihood, maximum, refits, grid.
+"""The compiled parts of psychometric functions: shapes, likelihood, grids.
 
 A row of parameters θ is threshold m, ln width, lapse rate and guess rate, on the axis on which
 the shape is defined (the stimulus or its natural logarithm). A row `beta` holds the two
@@ -9,15 +9,11 @@ threshold and of ln width are flat between their bounds.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-
-BoolArray = NDArray[np.bool_]
 
 LOGISTIC, GAUSSIAN, GUMBEL, REVERSED_GUMBEL, HYPERBOLIC_SECANT = range(5)
 THRESHOLD, LOG_WIDTH, LAPSE, GUESS = range(4)
@@ -32,18 +28,6 @@ _LN_LN_2 = math.log(math.log(2.0))
 # Probabilities nearer to 0 or 1 than this are not told apart; they occur only where the data
 # are impossible under the parameters anyway.
 _LEAST = 1e-12
-_MOST_STEPS = 200
-_SETTLED = 1e-8
-
-
-class Model(NamedTuple):
-    """A shape, which of the four parameters are fitted, their bounds, and the priors' `beta`."""
-
-    shape: int
-    free: BoolArray
-    low: si.FloatArray
-    high: si.FloatArray
-    beta: si.FloatArray
 
 
 @compiled(error_model="numpy")
@@ -111,157 +95,6 @@ def log_density(
         if b != 1.0:
             total += (b - 1.0) * math.log(max(1.0 - p, _LEAST))
     return total
-
-
-@compiled(error_model="numpy")
-def _derivatives(
-    shape: int,
-    theta: si.FloatArray,
-    beta: si.FloatArray,
-    x: si.FloatArray,
-    k: si.FloatArray,
-    n: si.FloatArray,
-    gradient: si.FloatArray,
-    information: si.FloatArray,
-) -> None:
-    width = math.exp(theta[1])
-    gradient[:] = 0.0
-    information[:] = 0.0
-    d = np.empty(4)
-    for i in range(x.size):
-        z = (x[i] - theta[0]) / width
-        s, r, slope = sigmoid(shape, z)
-        rise = 1.0 - theta[3] - theta[2]
-        p = max(theta[3] + rise * s, _LEAST)
-        q = max(theta[2] + rise * r, _LEAST)
-        d[0] = -rise * slope / width
-        d[1] = -rise * slope * z
-        d[2] = -s
-        d[3] = r
-        pull = k[i] / p - (n[i] - k[i]) / q
-        weight = n[i] / (p * q)
-        for a in range(4):
-            gradient[a] += pull * d[a]
-            for b in range(a + 1):
-                information[a, b] += weight * d[a] * d[b]
-    for j in range(2):
-        a1, b1, p = beta[2 * j] - 1.0, beta[2 * j + 1] - 1.0, theta[2 + j]
-        near, far = max(p, 1e-6), max(1.0 - p, 1e-6)
-        gradient[2 + j] += a1 / near - b1 / far
-        information[2 + j, 2 + j] += a1 / near**2 + b1 / far**2
-
-
-@compiled(error_model="numpy")
-def _solve(matrix: si.FloatArray, right: si.FloatArray, size: int) -> bool:
-    """Cholesky in place on the lower triangle; False where the matrix is not positive."""
-    for i in range(size):
-        for j in range(i + 1):
-            total = matrix[i, j]
-            for m in range(j):
-                total -= matrix[i, m] * matrix[j, m]
-            if i == j:
-                if not total > 0.0:
-                    return False
-                matrix[i, i] = math.sqrt(total)
-            else:
-                matrix[i, j] = total / matrix[j, j]
-    for i in range(size):
-        for m in range(i):
-            right[i] -= matrix[i, m] * right[m]
-        right[i] /= matrix[i, i]
-    for i in range(size - 1, -1, -1):
-        for m in range(i + 1, size):
-            right[i] -= matrix[m, i] * right[m]
-        right[i] /= matrix[i, i]
-    return True
-
-
-@compiled(error_model="numpy")
-def maximise(
-    model: Model, theta: si.FloatArray, x: si.FloatArray, k: si.FloatArray, n: si.FloatArray
-) -> float:
-    """Raise ln density over the free parameters within their bounds; θ is changed in place.
-
-    Fisher scoring, damped after Levenberg and Marquardt, with an active set of bounds. Returns
-    the largest ln density. A local maximum near the start.
-    """
-    shape, free, low, high, beta = model
-    gradient, information = np.empty(4), np.empty((4, 4))
-    matrix, step = np.empty((4, 4)), np.empty(4)
-    chosen, trial = np.empty(4, dtype=np.int64), np.empty(4)
-    value = log_density(shape, theta, beta, x, k, n)
-    damping, fresh = 1e-3, False
-    for _ in range(_MOST_STEPS):
-        if not fresh:
-            _derivatives(shape, theta, beta, x, k, n, gradient, information)
-            fresh = True
-        size = 0
-        for a in range(4):
-            held = (theta[a] <= low[a] and gradient[a] < 0) or (
-                theta[a] >= high[a] and gradient[a] > 0
-            )
-            if free[a] and not held:
-                chosen[size] = a
-                size += 1
-        if size == 0:
-            break
-        for i in range(size):
-            step[i] = gradient[chosen[i]]
-            for j in range(i + 1):
-                # chosen rises, so the lower triangle is the one that was filled.
-                matrix[i, j] = information[chosen[i], chosen[j]]
-            matrix[i, i] += damping * matrix[i, i] + 1e-9
-        solved = _solve(matrix, step, size)
-        trial[:] = theta
-        if solved:
-            for i in range(size):
-                a = chosen[i]
-                trial[a] = min(max(theta[a] + step[i], low[a]), high[a])
-        better = log_density(shape, trial, beta, x, k, n) if solved else -math.inf
-        if better >= value:
-            gain = better - value
-            theta[:] = trial
-            value = better
-            fresh = False
-            if gain < _SETTLED and damping < 1e-1:
-                break
-            damping = max(0.2 * damping, 1e-9)
-        else:
-            damping *= 6.0
-            if damping > 1e10:
-                break
-    return value
-
-
-@compiled(error_model="numpy")
-def saturated(k: si.FloatArray, n: si.FloatArray) -> float:
-    """ln likelihood of the model that has a probability of its own for every place."""
-    total = 0.0
-    for i in range(k.size):
-        if 0 < k[i] < n[i]:
-            total += k[i] * math.log(k[i] / n[i]) + (n[i] - k[i]) * math.log(1 - k[i] / n[i])
-    return total
-
-
-@compiled(error_model="numpy")
-def refit(
-    model: Model,
-    best: si.FloatArray,
-    x: si.FloatArray,
-    n: si.FloatArray,
-    answers: si.FloatArray,
-    deviances: si.FloatArray,
-) -> None:
-    """Fit every row of simulated `answers` (replicates, places), starting from `best`.
-
-    Fills `deviances` from the saturated model (replicates,).
-    """
-    flat = np.ones(4)
-    for row in range(answers.shape[0]):
-        k = answers[row]
-        theta = best.copy()
-        maximise(model, theta, x, k, n)
-        deviances[row] = 2.0 * (saturated(k, n) - log_density(model.shape, theta, flat, x, k, n))
 
 
 @compiled(error_model="numpy")

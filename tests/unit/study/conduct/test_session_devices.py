@@ -14,7 +14,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.instruments.twin.hand import EXPLORING
 from squeezefilm.physics import display as display_module
-from squeezefilm.study.conduct import played_device, rehearsal_device, terminal_run
+from squeezefilm.study.conduct import played_device, terminal_run
 from squeezefilm.study.conduct.terminal_run import Desk, open_study, run_session
 from squeezefilm.study.design.trials import expected_duration
 from squeezefilm.study.record.store import StudyStore
@@ -47,24 +47,18 @@ class Room:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.exposed: list[tuple[Any, float]] = []
-        self.twins: list[tuple[Any, Bench]] = []
         self.ports: list[Port] = []
         self.asked: list[str] = []
         self.told: list[str] = []
         self.steps: list[str] = []
         monkeypatch.setattr(display_module, "load_display", lambda name: f"the {name}")
         monkeypatch.setattr(terminal_run, "exposure", self._exposure)
-        monkeypatch.setattr(rehearsal_device, "StudyTwin", self._twin)
         monkeypatch.setattr(played_device, "SessionDevice", self._port)
 
     def _exposure(self, found: Any, duration: float, *, progress: SayProgress) -> Any:
         progress("the sound field")
         self.exposed.append((found, duration))
         return LOUD
-
-    def _twin(self, found: Any) -> Bench:
-        self.twins.append((found, Bench()))
-        return self.twins[-1][1]
 
     def _port(self, *how: Any, **more: Any) -> Port:
         self.ports.append(Port(*how, **more))
@@ -93,7 +87,7 @@ def room(monkeypatch: pytest.MonkeyPatch) -> Room:
     return Room(monkeypatch)
 
 
-def test_a_rehearsal_is_on_the_twin_of_the_display_that_comes_next(
+def test_a_session_is_on_the_twin_of_the_display_that_comes_next(
     room: Room, tmp_path: Path
 ) -> None:
     design = gratings(1, displays=("biet2008-plate", "biet2008-stator"))
@@ -101,26 +95,24 @@ def test_a_rehearsal_is_on_the_twin_of_the_display_that_comes_next(
         who = store.enrol()
         first = store.rows("SELECT display FROM trial ORDER BY number")[0]["display"]
         second = next(one for one in design.displays if one != first)
-        said = room.held(store, who, Script(), drive="rehearsal")
+        said = room.held(store, who, Script(), drive="twin")
         assert said == f"6 trials on {first} recorded; next display: {second}"
-        assert [one for one, _ in room.twins] == [f"the {first}"]
+        assert [one.made_of[0][0] for one in room.ports] == [first]
         # Of the study's whole time, what falls to one of its two displays.
         assert room.exposed == [(f"the {first}", pytest.approx(expected_duration(design) / 2))]
         assert room.asked == [LOUD.statement]
         assert room.steps == [
             "the sound field",
-            "the twin's working point",
             "the device is verified: keep fingers off",
         ]
         assert room.told == [f"participant {who}: go on with --participant {who}"]
-        said = room.held(store, who, Script(), drive="rehearsal")
+        said = room.held(store, who, Script(), drive="twin")
         assert said == f"6 trials on {second} recorded"
-        said = room.held(store, who, Script(), drive="rehearsal")
+        said = room.held(store, who, Script(), drive="twin")
         assert said == f"participant {who} has answered every trial"
-        assert len(room.twins) == 2
+        assert len(room.ports) == 2
         sessions = store.rows("SELECT device, exposure FROM session")
         assert [one["device"] for one in sessions] == ["bench", "bench"]
-    assert room.ports == []
 
 
 @pytest.mark.parametrize("drive", ["twin", "serial:/dev/ttyACM0"])
@@ -138,7 +130,6 @@ def test_a_port_is_given_the_studys_traces_and_closed_in_the_end(
         moments = [one["moment"] for one in store.rows("SELECT moment FROM verification")]
         assert sorted(moments) == ["after", "before"]
         assert store.rows("SELECT count(*) AS n FROM session")[0]["n"] == 1
-    assert room.twins == []
 
 
 def test_by_hand_nothing_is_heard_and_nobody_acknowledges(room: Room, tmp_path: Path) -> None:
@@ -166,10 +157,10 @@ def test_a_device_that_is_off_afterwards_is_told(room: Room, tmp_path: Path) -> 
 
         def feel(self, presentation: object, place: int) -> None:
             """Its resonance falls."""
-            room.twins[0][1].resonance = 29.5e3
+            room.ports[0].resonance = 29.5e3
 
     with StudyStore.create(tmp_path / "a.sqlite", gratings(1), 7) as store:
-        said = room.held(store, None, Warming(), drive="rehearsal")
+        said = room.held(store, None, Warming(), drive="twin")
     assert said.startswith("6 trials on biet2008-plate recorded. CAUTION, the device is off after")
     assert "resonance is 29.5 kHz" in said
 

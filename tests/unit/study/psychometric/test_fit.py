@@ -9,11 +9,6 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.psychometric import kernel
-from squeezefilm.study.psychometric.bootstrap import (
-    PenalisedLikelihood,
-    share_as_large,
-    simulated_deviances,
-)
 from squeezefilm.study.psychometric.fit import falling_probability, fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricPrior
 from squeezefilm.study.psychometric.posterior import Answered, PsychometricPosterior, coarse_maxima
@@ -23,7 +18,7 @@ LEVELS = np.arange(1.0, 6.0)
 
 def test_places_that_nobody_answered_are_left_out() -> None:
     rows = ([3.0, 1.0, 9.0, 2.0, 3.0], [4, 2, 0, 3, 5], [6, 4, 0, 5, 6])
-    fit = fit_psychometric(*rows, replicates=0)
+    fit = fit_psychometric(*rows)
     assert fit.intensity.tolist() == [1.0, 2.0, 3.0]
     assert fit.positive.tolist() == [2.0, 3.0, 9.0]
     assert fit.trials.tolist() == [4.0, 5.0, 12.0]
@@ -44,10 +39,10 @@ def test_the_first_row_that_is_no_count_is_named() -> None:
 
 def test_a_rate_that_is_known_may_be_none_at_all_or_a_half() -> None:
     for rate in (0.0, 0.5):
-        fit = fit_psychometric(LEVELS, [3, 6, 8, 9, 10], [10] * 5, guess_rate=rate, replicates=0)
+        fit = fit_psychometric(LEVELS, [3, 6, 8, 9, 10], [10] * 5, guess_rate=rate)
         assert fit.function.guess_rate == pytest.approx(rate, abs=1e-12)
         assert fit.fitted == ("threshold", "width", "lapse_rate")
-    free = fit_psychometric(LEVELS, [1, 2, 8, 9, 9], [10] * 5, guess_rate=None, replicates=0)
+    free = fit_psychometric(LEVELS, [1, 2, 8, 9, 9], [10] * 5, guess_rate=None)
     assert free.fitted[-1] == "guess_rate"
     assert set(free.posterior_interval) == set(free.fitted)
     for wrong in (-0.01, 0.51):
@@ -61,8 +56,7 @@ def test_a_rate_that_is_known_may_be_none_at_all_or_a_half() -> None:
 def test_on_a_logarithmic_axis_all_goes_with_the_unit_of_intensity() -> None:
     answers = ([3, 5, 8, 9, 10], [10] * 5)
     one, other = (
-        fit_psychometric(unit * 2.0**LEVELS, *answers, axis="log", replicates=0)
-        for unit in (1.0, 1000.0)
+        fit_psychometric(unit * 2.0**LEVELS, *answers, axis="log") for unit in (1.0, 1000.0)
     )
     assert other.function.threshold == pytest.approx(1000 * one.function.threshold, rel=1e-6)
     assert other.function.width == pytest.approx(one.function.width, rel=1e-5)
@@ -157,33 +151,16 @@ def test_searches_start_from_each_sixth_of_the_widths(guess_rate: float | None) 
         assert starts[:, 3] == pytest.approx(0.5)
 
 
-def test_simulated_deviances_are_counted() -> None:
-    deviances = np.array([1.0, 2.0, 3.0, 4.0])
-    # The data count as one of the simulations, and a tie as one as large.
-    assert share_as_large(deviances, 2.5) == pytest.approx(3 / 5)
-    assert share_as_large(deviances, 2.0) == pytest.approx(4 / 5)
-    assert share_as_large(deviances, 9.0) == pytest.approx(1 / 5)
-    low, high = PsychometricPrior((0.0, 6.0), (0.4, 12.0)).bounds("linear")
-    low[3] = high[3] = 0.0
-    free, beta = np.array([True, True, True, False]), np.array([1.0, 10.0, 1.0, 1.0])
-    k, n = np.array([0.0, 2.0, 10.0, 18.0, 20.0]), np.full(5, 20.0)
-    likelihood = PenalisedLikelihood(kernel.LOGISTIC, free, low, high, beta, LEVELS, k, n)
-    with pytest.raises(InputError, match="replicates = 38"):
-        simulated_deviances(likelihood, np.array([3.0, 0.7, 0.02, 0.0]), 38, 1)
-
-
 @pytest.mark.parametrize("known", [0.0, 0.1, 0.25, 1 / 3, 0.5])
 def test_a_known_guess_rate_is_kept_to_the_last_digit(known: float) -> None:
-    found = fit_psychometric(
-        [1, 2, 3, 4, 5], [3, 6, 8, 9, 10], [10] * 5, guess_rate=known, replicates=0
-    )
+    found = fit_psychometric([1, 2, 3, 4, 5], [3, 6, 8, 9, 10], [10] * 5, guess_rate=known)
     assert found.function.guess_rate == known
 
 
 @pytest.mark.parametrize("guess_rate", [None, 0.0, 0.5])
 def test_falling_answers_are_said_to_fall_wherever_a_fit_is_shown(guess_rate: float | None) -> None:
     positive, trials = np.array([20, 18, 10, 3, 0]), np.full(5, 20)
-    fit = fit_psychometric(LEVELS, positive, trials, guess_rate=guess_rate, replicates=0)
+    fit = fit_psychometric(LEVELS, positive, trials, guess_rate=guess_rate)
     assert fit.falls
     assert fit.falling_p < 1e-10
     said = "the answers fall with intensity"
@@ -191,14 +168,14 @@ def test_falling_answers_are_said_to_fall_wherever_a_fit_is_shown(guess_rate: fl
     assert said in repr(fit)
     assert said in fit._repr_html_()
     assert said in fit.summary()["notes"][0]
-    turned = fit_psychometric(LEVELS, trials - positive, trials, guess_rate=None, replicates=0)
+    turned = fit_psychometric(LEVELS, trials - positive, trials, guess_rate=None)
     assert not turned.falls
     assert not any(said in note for note in turned.notes)
     assert turned.falling_p == pytest.approx(1 - fit.falling_p)
 
 
 def test_what_the_answers_do_not_bound_is_said_where_a_fit_is_printed() -> None:
-    fit = fit_psychometric(LEVELS, [5, 6, 5, 6, 10], [10] * 5, replicates=0)
+    fit = fit_psychometric(LEVELS, [5, 6, 5, 6, 10], [10] * 5)
     assert fit.bounded_by_prior
     assert "the answers do not bound the" in repr(fit)
 
