@@ -267,7 +267,7 @@ def test_exponents_agree_with_a_linear_mixed_model(seeds: range) -> None:
         data = pandas.DataFrame(
             {
                 "y": np.log(main.estimate),
-                "x": np.log(main.values[main.first]),
+                "x": np.log(main.values[main.presented[0]]),
                 "who": main.participant,
             }
         )

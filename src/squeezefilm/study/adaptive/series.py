@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
@@ -11,8 +12,10 @@ from squeezefilm.core import quantities as si
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.placement import Placement, PlacementModel
+from squeezefilm.study.adaptive.runs import Runs
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.design.tasks.same_different import SAME_DIFFERENT
 from squeezefilm.study.design.tasks.task import Task
 from squeezefilm.study.psychometric.function import PsychometricPrior
@@ -85,15 +88,16 @@ def _differencing(lowest: float, highest: float) -> PlacementModel:
     return PlacementModel(parameters, differences, ("different", "same"), chances, prior)
 
 
-AdaptiveMethod = Staircase | BayesianAdaptive | SameDifferentSeries
+AdaptiveMethod = Staircase | BayesianAdaptive | SameDifferentSeries | Runs
 
 
 def adaptive_method(
     series: AdaptiveCondition,
-    answers: Iterable[tuple[float, bool]] = (),
+    answers: Iterable[tuple[float, Any]] = (),
     task: Task = "two-interval",
 ) -> AdaptiveMethod:
-    """The method of a series after the answers (intensity, correct) it has had.
+    """The method of a series after the answers (intensity, and whether it was right, or of runs
+    which it was) it has had.
 
     Intensities are differences from the reference in parts of its value. Nothing in the methods
     is random, so the answers in a study's file are all the state there is: playing them again
@@ -119,6 +123,9 @@ def adaptive_method(
                 most_trials=series.count,
             )
         )
+    elif series.in_runs:
+        least = series.lowest if TASKS[task].reference == "flat" else -series.highest
+        method = Runs(series, least)
     else:
         choices = np.geomspace(series.lowest, series.highest, _CHOICES)
         method = BayesianAdaptive(

@@ -306,14 +306,19 @@ class StudyRun:
             return trial, (design.stimulus(design.reference),) * 2, 0.0
         series = design.series(trial.adaptive)
         answers = self._store.rows(
-            "SELECT r.intensity, r.correct FROM response r JOIN trial t ON t.uuid = r.trial WHERE "
+            "SELECT r.intensity, r.correct, r.choice FROM response r "
+            "JOIN trial t ON t.uuid = r.trial WHERE "
             f"t.participant = ? AND t.adaptive = ? AND t.display = ? AND {COUNTED} "
             "ORDER BY t.block, t.number",
             [self.participant, series.name, trial.display],
         )
-        given = ((a["intensity"], bool(a["correct"])) for a in answers)
+        given = (
+            (a["intensity"], a["choice"] if series.in_runs else bool(a["correct"])) for a in answers
+        )
         intensity = adaptive_method(series, given, design.task).next_stimulus()
         pair = (design.stimulus(design.reference), design.comparison(series, intensity))
+        if not design.compares:
+            return trial, pair[1:], intensity
         return trial, pair if trial.reference_first else pair[::-1], intensity
 
     def _response_row(

@@ -84,6 +84,8 @@ def require_amounts(
         )
     if task.name in ("match-to-sample", "same-different"):
         return
+    if task.ranks and any(map(math.isnan, amounts)):
+        return
     for stimulus, amount in zip(stimuli, amounts, strict=True):
         if (
             task.ordered
@@ -96,7 +98,9 @@ def require_amounts(
                 "would be right; change it, or `judged`",
                 quantity="stimuli",
             )
-        if math.isnan(amount) or (amount <= 0 and task.model is not None and not in_amounts):
+        if math.isnan(amount) or (
+            amount <= 0 and (task.ranks or task.model is not None) and not in_amounts
+        ):
             raise InputError(
                 f"stimulus '{stimulus.name}' ({stimulus.kind}) has no {judged}, which "
                 f'{task.name} asks about; judge another, like judged = "friction_depth", or take '
@@ -120,10 +124,22 @@ def require_comparison(
             f"task = '{task.name}' compares with a reference; name one of the stimuli",
             quantity="reference",
         )
+    if task.ranks and stimuli < 3:
+        raise InputError(
+            f"task = '{task.name}' compares all surfaces with each other; give three or more "
+            f"[[stimuli]], there are {stimuli}",
+            quantity="stimuli",
+        )
     if task.reference and stimuli < 2 and not is_adaptive:
         raise InputError(
             "only the reference is there; add a stimulus to compare with it, or [[adaptive]]",
             quantity="stimuli",
+        )
+    if task.name == "adjustment" and not is_adaptive:
+        raise InputError(
+            'an adjustment is a series of steps: give [[adaptive]] with method = "adjustment", its '
+            "highest difference, step and count",
+            quantity="adaptive",
         )
     if is_adaptive and not task.adaptive:
         taking = ", ".join(name for name, other in TASKS.items() if other.adaptive)

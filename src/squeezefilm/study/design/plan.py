@@ -22,7 +22,6 @@ from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import (
     Trial,
-    conditions,
     expected_duration,
     trials,
     williams_square,
@@ -175,7 +174,7 @@ def _balanced(design: StudyDesign) -> int:
     displays = len(williams_square(len(design.displays)))
     if design.adaptive or design.order == "shuffled":
         return displays
-    count = len(conditions(design))
+    count = len(design.conditions)
     rows = len(williams_square(count)) if design.order == "williams" else count
     alone = (design.blocks * design.repetitions) % rows == 0
     return displays if alone else math.lcm(rows, displays)
@@ -238,15 +237,16 @@ def _of_range(design: StudyDesign, observer: Observer) -> list[str]:
     if not has_threshold or not design.on_a_scale or fraction is None:
         return []
     ends = [math.expm1(difference) for difference in design.differences]
+    least = "from the reference" if design.reference else "between two surfaces"
     threshold = f"the predicted threshold of {si.percent(fraction, 1)} ('{observer.name}')"
     if min(ends) > fraction:
         return [
-            f"the least difference from the reference, {si.percent(min(ends), 1)}, is above "
+            f"the least difference {least}, {si.percent(min(ends), 1)}, is above "
             f"{threshold}: most people tell all of them; add smaller ones"
         ]
     if max(ends) < fraction:
         return [
-            f"the greatest difference from the reference, {si.percent(max(ends), 1)}, is below "
+            f"the greatest difference {least}, {si.percent(max(ends), 1)}, is below "
             f"{threshold}: most people tell none of them; add larger ones"
         ]
     return []

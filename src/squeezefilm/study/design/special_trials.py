@@ -37,18 +37,20 @@ class AdaptiveCondition:
 
     Args:
         name: of the series.
-        method: "staircase" or "bayesian".
+        method: "staircase" or "bayesian"; "limits" (runs from either end until the answer changes)
+            or "adjustment" (somebody asks for more or less until it is equal).
         varied: what of the design's reference is changed; what the design's `judged` asks about.
         start: of a staircase: first difference from the reference, in parts of the reference's
             value (1).
-        lowest, highest: differences allowed, likewise (1).
-        step: of a staircase, in parts of the reference's value; halved at the first reversals (1).
+        lowest, highest: differences allowed, likewise (1); runs that are not of a flat reference go
+            as far below it as above.
+        step: in parts of the reference's value (1); a staircase halves it at the first reversals.
         down: correct answers in a row that make a staircase harder.
         count: trials; of same-different half present the reference twice, in random order.
     """
 
     name: str
-    method: Literal["staircase", "bayesian"]
+    method: Literal["staircase", "bayesian", "limits", "adjustment"]
     varied: Varied = "spatial_period"
     start: si.Dimensionless = 0.4
     lowest: Annotated[si.Dimensionless, si.Above(0.0)] = 0.005
@@ -57,9 +59,16 @@ class AdaptiveCondition:
     down: Annotated[int, si.AtLeast(1), si.AtMost(10)] = 2
     count: Annotated[int, si.AtLeast(1), si.AtMost(10000)] = 60
 
+    @property
+    def in_runs(self) -> bool:
+        """True of runs whose next level follows from what was answered, right or wrong."""
+        return self.method in ("limits", "adjustment")
+
     def __post_init__(self) -> None:
         require_name(self.name)
         si.require("highest", self.highest, above=self.lowest, at_most=100.0)
+        if self.in_runs:
+            si.require("step", self.step, above=0.0)
         if self.method == "staircase":
             si.require("start", self.start, at_least=self.lowest, at_most=self.highest)
             si.require("step", self.step, above=0.0, at_most=self.highest)
@@ -68,6 +77,13 @@ class AdaptiveCondition:
                 f"series '{self.name}' cannot move: from lowest = {self.lowest:g} to highest = "
                 f"{self.highest:g} there is less than its smallest step, {self.step / 4:g}; take a "
                 "smaller step or a wider range",
+                quantity="step",
+            )
+        if self.in_runs and not 3 * self.step <= self.highest - self.lowest:
+            raise InputError(
+                f"series '{self.name}' has no room: from highest = {self.highest:g} to lowest = "
+                f"{self.lowest:g} there are fewer than three steps of {self.step:g}; take smaller "
+                "steps or a wider range",
                 quantity="step",
             )
         if self.method == "bayesian" and self.highest < _LEAST_RANGE * self.lowest:

@@ -12,6 +12,9 @@ Tasks, each a record of `design.tasks`:
 - "direction": one surface; does it have more or less than the reference, known from before?
 - "yes-no": one surface, the flat `reference` in half of the trials; was anything felt?
 - "detection": two surfaces, one of them the flat `reference`; which had something to feel?
+- "paired-comparison": two of all surfaces, each with each other; which has more?
+- "ranking": three of all surfaces; in which order do they have more?
+- "adjustment": the second of two surfaces is made equal to the `reference`, by an adaptive series
 
 `squeezefilm.study.design.trials` makes each participant's trials of a design.
 """
@@ -19,6 +22,7 @@ Tasks, each a record of `design.tasks`:
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -198,8 +202,16 @@ class StudyDesign:
         """Upper bound of the main trials that a participant has on a display."""
         if self.adaptive:
             return sum(series.count for series in self.adaptive)
-        conditions = len(self.stimuli) * self.described.most_per_stimulus
-        return self.blocks * self.repetitions * conditions
+        return self.blocks * self.repetitions * len(self.conditions)
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """Surfaces of the trials of a repetition, once each, as the task's record says; no more
+        than a participant may have trials, and one."""
+        here, compared = self.reference, self.described.reference
+        names = [one.name for one in self.stimuli if not compared or one.name != here]
+        every = self.described.conditions(here, names)
+        return tuple(itertools.islice(every, int(PARTICIPANT_TRIALS.most) + 1))
 
     @property
     def answers(self) -> tuple[str, ...]:
@@ -342,14 +354,14 @@ class StudyDesign:
             [textured, *_] = (one for one in self.stimuli if one.name != self.reference)
             return textured.varied(f"{textured.name} at {part}", series.varied, intensity)
         value = here.amount(series.varied) * (1.0 + intensity)
-        return here.varied(f"{here.name} +{part}", series.varied, value)
+        return here.varied(f"{here.name} {100 * intensity:+.3g} %", series.varied, value)
 
     def _require_series(self, series: AdaptiveCondition) -> None:
         methods = self.described.adaptive
         if series.method not in methods:
             raise InputError(
-                f"series '{series.name}' is a {series.method}, which would settle where a person's "
-                f"criterion has it; {self.task} takes method = '{methods[0]}'",
+                f"series '{series.name}' is by method = '{series.method}', which would settle "
+                f"where a person's criterion has it; {self.task} takes method = '{methods[0]}'",
                 quantity="adaptive",
             )
         if series.varied != self.judged:
@@ -358,8 +370,11 @@ class StudyDesign:
                 "make them the same, or no answer is right",
                 quantity="adaptive",
             )
+        is_signed = series.in_runs and self.described.reference != "flat"
         try:
             self.comparison(series, series.highest)
+            if is_signed:
+                si.require("highest", series.highest, below=1.0)
         except InputError as error:
             raise InputError(
                 f"series '{series.name}' cannot go up to highest = {series.highest:g}: {error}",

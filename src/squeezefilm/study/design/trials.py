@@ -133,16 +133,6 @@ def orders(
     return tuple(planned_orders)
 
 
-def conditions(design: StudyDesign) -> tuple[Condition, ...]:
-    """Surfaces of the trials of a repetition, once each.
-
-    One stimulus each; where a task compares with a reference as its record says.
-    """
-    here, compared = design.reference, design.described.reference
-    names = [one.name for one in design.stimuli if not compared or one.name != here]
-    return design.described.conditions(here, names)
-
-
 def trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Trial, ...]:
     """All trials of a participant in the order in which they are presented.
 
@@ -229,7 +219,7 @@ def _display_trials(
         for i in matching.permutation(len(felt)):
             add(0, "familiarisation", (felt[i],), pause)
             pause = 0.0
-    every = conditions(design)
+    every = design.conditions
     practice = _random(seed, _PRACTICE, participant, place)
     rounds = -(-design.practice // len(every)) if every else 0
     rehearsed = [i for _ in range(rounds) for i in practice.permutation(len(every))]
@@ -250,7 +240,7 @@ def _blocks(
     design: StudyDesign, place: int, participant: int, seed: int
 ) -> list[list[tuple[Phase, Condition, str]]]:
     """Surfaces of each block, in its order: the repetitions, and catch trials between them."""
-    every = conditions(design)
+    every = design.conditions
     rows = orders(
         len(every), design.blocks * design.repetitions, participant, seed + place, design.order
     )

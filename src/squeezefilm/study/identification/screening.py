@@ -112,7 +112,11 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
     caught = answers.take((answers.display == display) & (answers.phase == "catch"))
     missed = {person.person: person for person in attention(caught)}
     people = [main.take(main.participant == person) for person in np.unique(main.participant)]
-    models = [_models(mine) if main.design.answers else () for mine in people]
+    # Surfaces without an amount are in no order that somebody could follow.
+    by_amount = main.design.on_a_scale or not main.design.described.ranks
+    # Runs go where the answers lead, so that these say little of whether they follow.
+    by_amount = by_amount and not any(series.in_runs for series in main.design.adaptive)
+    models = [_models(mine) if main.design.answers and by_amount else () for mine in people]
     follows = [_follows(mine, model) for mine, model in zip(people, models, strict=True)]
     middle, asked = float(np.median(follows)), -float(ndtri(rule.chance))
     excused, said = main.design.task == "match-to-sample" or len(people) < _LEAST_PEOPLE, ""
@@ -177,7 +181,8 @@ def _models(mine: Answers, lapse: float = _LAPSE) -> _Models:
     model = mine.design.described.model
     if model is None or model.counts < 0:
         return _among_names(mine)
-    x = mine.differences if mine.design.on_a_scale else (mine.first != mine.second).astype(float)
+    shown = mine.presented
+    x = mine.differences if mine.design.on_a_scale else (shown[0] != shown[-1]).astype(float)
     y = mine.told
     reach = max(float(np.abs(x).max()), 1e-9)
     least = float(np.abs(x[x != 0]).min()) if np.any(x) else reach
@@ -216,7 +221,7 @@ def _best(logs: si.FloatArray) -> float:
 def _follows(mine: Answers, models: _Models | tuple[()]) -> float:
     """z of following the surfaces."""
     if not models:
-        return _numbers_follow(mine)
+        return _numbers_follow(mine) if not mine.design.answers else math.nan
     task, turned, guess = (_best(model) for model in models)
     return math.sqrt(2 * max(max(task, turned) - guess, 0.0)) * (1 if task >= turned else -1)
 
@@ -260,7 +265,7 @@ def _changed(mine: Answers, models: _Models) -> list[str]:
 
 def _numbers_follow(mine: Answers) -> float:
     """Fisher's z of the correlation of given numbers with what is judged, over its error."""
-    x, y = np.log(mine.values[mine.first]), np.log(mine.estimate)
+    x, y = np.log(mine.values[mine.presented[0]]), np.log(mine.estimate)
     if mine.trials < 4 or not (np.ptp(x) > 0 and np.ptp(y) > 0):
         return 0.0
     r = min(max(float(np.corrcoef(x, y)[0, 1]), -1 + 1e-12), 1 - 1e-12)

@@ -236,8 +236,7 @@ def _likeliest(answered: Answered) -> si.FloatArray:
     ]
     near = min(found, key=lambda one: float(one.fun)).x
     # Its derivatives are differences; the simplex has none, and settles the last digits.
-    exact = {"xatol": 1e-9, "fatol": 1e-12, "maxiter": 4000, "maxfev": 4000}
-    best = minimize(loss, near, method="Nelder-Mead", bounds=bounds, options=exact).x
+    best = minimize(loss, near, method="Nelder-Mead", bounds=bounds, tol=1e-10).x
     return np.asarray(best if rate is None else np.append(best, rate))
 
 

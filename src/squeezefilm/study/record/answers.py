@@ -15,7 +15,14 @@ from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.tasks.task import DifferenceModel
 from squeezefilm.study.record.exploration import MEASURES
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.tables import Cell, is_chosen, origin_of, presented, trial_table
+from squeezefilm.study.record.tables import (
+    SURFACES,
+    Cell,
+    is_chosen,
+    origin_of,
+    presented,
+    trial_table,
+)
 
 EXPLORED = ("mean_speed_m_per_s", "mean_normal_force_N", "path_length_m", *MEASURES)
 
@@ -34,8 +41,7 @@ class Answers:
         phase: "practice", "main" or "catch".
         display: number in the design's order.
         series: number of the adaptive series, −1 for none.
-        first, second, third: number of the surface, or surfaces; `second` is −1 where there is one,
-            `third` is None in tasks of fewer than three.
+        presented: numbers of the surfaces in their order, shape (surfaces of a trial, trials).
         intensity: of an adaptive series' comparison, in parts of the reference (1); else NaN.
         choice, right: numbers among the design's answers; −1 for none.
         estimate: number given (1); NaN for none.
@@ -52,15 +58,13 @@ class Answers:
     phase: NDArray[np.str_]
     display: si.IntArray
     series: si.IntArray
-    first: si.IntArray
-    second: si.IntArray
+    presented: si.IntArray
     intensity: si.DimensionlessArray
     choice: si.IntArray
     right: si.IntArray
     estimate: si.DimensionlessArray
     response_time: si.SecondArray
     exploration: Mapping[str, si.FloatArray] = dataclasses.field(default_factory=dict)
-    third: si.IntArray | None = None
 
     @property
     def trials(self) -> int:
@@ -73,17 +77,17 @@ class Answers:
         return np.array([self.design.judged_value(surface) for surface in self.surfaces])
 
     @property
-    def presented(self) -> si.IntArray:
-        """Numbers of the surfaces, shape (surfaces of a trial, trials)."""
-        every = (self.first, self.second, self.third)[: self.design.described.surfaces]
-        return np.array(every, dtype=np.int64)
-
-    @property
     def model(self) -> DifferenceModel:
         """The model of the task, which must have one."""
         model = self.design.described.model
         assert model is not None
         return model
+
+    @property
+    def in_order(self) -> si.IntArray:
+        """`presented` of each trial as its answer puts them, from most to least."""
+        places = np.array(self.design.described.ranks)[self.choice].T
+        return np.take_along_axis(self.presented, places, axis=0)
 
     @property
     def told(self) -> NDArray[np.bool_]:
@@ -107,7 +111,7 @@ class Answers:
     def take(self, rows: NDArray[np.bool_]) -> Answers:
         """Some of the trials, with all people and surfaces."""
         arrays = {
-            field.name: getattr(self, field.name)[rows]
+            field.name: getattr(self, field.name)[..., rows]
             for field in dataclasses.fields(self)
             if isinstance(getattr(self, field.name), np.ndarray)
         }
@@ -134,8 +138,6 @@ def answers_of(design: StudyDesign, table: Sequence[Mapping[str, Cell]], origin:
     surfaces: list[Stimulus] = []
 
     def surface(name: str, row: Mapping[str, Cell]) -> int:
-        if not name:
-            return -1
         key = name, row["intensity"] if is_chosen(design, name, row) else None
         if key not in known:
             known[key] = len(surfaces)
@@ -163,11 +165,13 @@ def answers_of(design: StudyDesign, table: Sequence[Mapping[str, Cell]], origin:
         phase=np.array([str(row["phase"]) for row in rows], dtype=np.str_),
         display=whole([displays[str(row["display"])] for row in rows]),
         series=whole([series.get(str(row["adaptive_series"]), -1) for row in rows]),
-        first=whole([surface(str(row["stimulus"]), row) for row in rows]),
-        second=whole([surface(str(row["second_stimulus"]), row) for row in rows]),
-        third=whole([surface(str(row["third_stimulus"]), row) for row in rows])
-        if design.described.surfaces > 2
-        else None,
+        presented=np.array(
+            [
+                [surface(str(row[key]), row) for row in rows]
+                for key in SURFACES[: design.described.surfaces]
+            ],
+            dtype=np.int64,
+        ),
         surfaces=tuple(surfaces),
         intensity=column("intensity"),
         choice=whole([names.get(str(row["choice"]), -1) for row in rows]),

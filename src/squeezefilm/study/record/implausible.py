@@ -67,13 +67,19 @@ def _require_pair(
 ) -> None:
     shown = [str(row[key]) for key in SURFACES[: design.described.surfaces]]
     alike = design.task == "same-different" and len(set(shown)) == 1
+    if design.described.ranks:
+        if len(set(shown)) < len(shown):
+            said = f"{' / '.join(shown)} has a surface twice, which is compared with itself"
+            raise _refused(path, line, "second_stimulus", said)
+        return
     if (design.reference not in shown and not alike) or not all(shown):
         said = f"{' / '.join(shown)} has no reference ('{design.reference}') to be compared with"
         raise _refused(path, line, "second_stimulus", said)
     if row["adaptive_series"]:
         series = design.series(str(row["adaptive_series"]))
         part = _value_of(row, "intensity")
-        if part > 2 * series.highest or 0 < part < series.lowest / 2:
+        least = 0.0 if series.in_runs else series.lowest / 2
+        if part > 2 * series.highest or 0 < part < least:
             raise _refused(
                 path,
                 line,

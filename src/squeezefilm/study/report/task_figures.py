@@ -11,7 +11,7 @@ from squeezefilm.core.kit import style
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.design.tasks.task import JUDGED
 from squeezefilm.study.report.figures import data_of, named_ticks
-from squeezefilm.study.report.words import condition_head, estimate_words, scale_of
+from squeezefilm.study.report.words import condition_head, estimate_words, most_and_least, scale_of
 from squeezefilm.study.tasks.findings import PARTS, through
 
 if TYPE_CHECKING:
@@ -36,10 +36,16 @@ def _scale(analysis: TaskAnalysis) -> tuple[float, str]:
 @style.drawn
 def answers(analysis: TaskAnalysis) -> Figure:
     """Answers against the stimulus: psychometric functions, or the scale of numbers."""
+    if not analysis.conditions:
+        return style.message_figure(_said(analysis), "Nobody's answers say anything of it.")
     figure = style.new_figure(_said(analysis), data_of(analysis), 4.4)
     axes = figure.subplots()
     model = TASKS[analysis.task].model
-    if model is None:
+    if TASKS[analysis.task].ranks:
+        _strengths(axes, analysis)
+    elif analysis.is_adaptive and analysis.conditions[0].share is None:
+        _runs(axes, analysis)
+    elif model is None:
         _magnitudes(axes, analysis)
     elif math.isnan(analysis.conditions[0].value):
         _unlike(axes, analysis)
@@ -51,6 +57,8 @@ def answers(analysis: TaskAnalysis) -> Figure:
 
 
 def _said(analysis: TaskAnalysis) -> str:
+    if analysis.pooled is None and TASKS[analysis.task].ranks:
+        return most_and_least(analysis).split(";")[0]
     if analysis.pooled is None:
         return f"No {analysis.measure} could be computed"
     words = estimate_words(analysis.pooled, *scale_of(analysis))
@@ -153,6 +161,30 @@ def _magnitudes(axes: Axes, analysis: TaskAnalysis) -> None:
     axes.set(xscale="log", yscale="log", xlabel=label, ylabel="number given")
     style.plain_log(axes.xaxis, axes.yaxis)
     axes.set_title("geometric means, people's scales taken out; line: the mean exponent")
+
+
+def _runs(axes: Axes, analysis: TaskAnalysis) -> None:
+    """Mean ends of runs from above and from below."""
+    scale, unit = scale_of(analysis)
+    ends = [c.magnitude and through(c.magnitude, lambda x: scale * x) for c in analysis.conditions]
+    _points(axes, range(len(ends)), ends)
+    _named(axes, [condition.name for condition in analysis.conditions])
+    axes.set(xlabel="runs", ylabel=f"{analysis.measure} ({unit.strip()})")
+    axes.set_title("means over people of where runs ended")
+
+
+def _strengths(axes: Axes, analysis: TaskAnalysis) -> None:
+    """Strengths of surfaces that were ordered, by amount, or side by side where they have none."""
+    scale, label = _scale(analysis)
+    x = [scale * condition.value for condition in analysis.conditions]
+    if any(map(math.isnan, x)):
+        x, label = list(range(len(x))), "surface"
+        _named(axes, [condition.name for condition in analysis.conditions])
+    _points(axes, x, [condition.magnitude for condition in analysis.conditions])
+    axes.axhline(1.0, **style.GUIDE)
+    axes.set(yscale="log", xlabel=label, ylabel="strength")
+    style.plain_log(axes.yaxis)
+    axes.set_title("a surface is named with its share of the strengths; dotted: their mean")
 
 
 @style.drawn

@@ -10,7 +10,7 @@ from squeezefilm.core.kit.numbers import shown
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.design.tasks.task import JUDGED
 from squeezefilm.study.identification.information import METHOD
-from squeezefilm.study.tasks.findings import PARTS, TaskAnalysis
+from squeezefilm.study.tasks.findings import EQUALITY, PARTS, TaskAnalysis
 
 if TYPE_CHECKING:
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
@@ -68,20 +68,32 @@ def _identification_first(analysis: IdentificationAnalysis) -> list[str]:
 
 
 def _task_first(analysis: TaskAnalysis) -> list[str]:
+    strongest = [most_and_least(analysis)] if TASKS[analysis.task].ranks else []
     if analysis.pooled is None:
-        return [f"No {analysis.measure} could be computed."]
+        return strongest or [f"No {analysis.measure} could be computed."]
     found = analysis.pooled
     if analysis.measure == "sensitivity d′":
         meaning = f"People tell the surfaces from the reference with d′ = {estimate_words(found)}."
     elif analysis.measure == "exponent":
         judged = JUDGED[analysis.judged].words
-        meaning = f"Numbers grow with {judged} to the power of {estimate_words(found)}."
+        what = "Strengths" if strongest else "Numbers"
+        meaning = f"{what} grow with {judged} to the power of {estimate_words(found)}."
+    elif analysis.measure == EQUALITY:
+        meaning = (
+            f"A typical person calls equal what differs from the reference in "
+            f"{JUDGED[analysis.judged].words} by {estimate_words(found, *scale_of(analysis))}."
+        )
+    elif not analysis.functions:
+        meaning = (
+            f"A typical person's runs turn at {estimate_words(found, *scale_of(analysis))} of "
+            f"{JUDGED[analysis.judged].words}: the {analysis.measure}."
+        )
     else:
         meaning = (
             f"A typical person tells a difference of {estimate_words(found, *scale_of(analysis))} "
             f"in {JUDGED[analysis.judged].words} in 75 % of two intervals: the {analysis.measure}."
         )
-    said = [meaning]
+    said = [*strongest, meaning]
     if analysis.spread is not None:
         spread = analysis.spread
         what = "exponents" if analysis.measure == "exponent" else "logarithms of it"
@@ -92,11 +104,22 @@ def _task_first(analysis: TaskAnalysis) -> list[str]:
     return said
 
 
+def most_and_least(analysis: TaskAnalysis) -> str:
+    """Sentence on the strongest and the weakest surface of a task that orders them."""
+    found = [(c.magnitude, c.name) for c in analysis.conditions if c.magnitude is not None]
+    (least, weak), *_, (most, strong) = sorted(found, key=lambda one: one[0].value)
+    return (
+        f"Put first most often: {strong}, with a strength of {estimate_words(most)}; least often: "
+        f"{weak}, with {estimate_words(least)}."
+    )
+
+
 def scale_of(analysis: TaskAnalysis) -> tuple[float, str]:
     """Factor and unit by which an analysis' measure is shown."""
     judged = JUDGED[analysis.judged]
-    known = {"threshold": (judged.factor, judged.unit), "Weber fraction": (100.0, " %")}
-    return known.get(analysis.measure, (1.0, ""))
+    if analysis.measure in ("Weber fraction", EQUALITY):
+        return 100.0, " %"
+    return (judged.factor, judged.unit) if analysis.measure == "threshold" else (1.0, "")
 
 
 def _screening_first(screening: Screening) -> list[str]:
@@ -121,7 +144,7 @@ def screening_rows(screening: Screening, named: bool = False) -> list[tuple[str,
     return [
         (
             person.person,
-            f"{person.follows:.1f}",
+            "–" if math.isnan(person.follows) else f"{person.follows:.1f}",
             "; ".join(person.reasons) or "; ".join(("does the task", *person.doubts)),
         )
         for person in (screening.named if named else screening.people)
@@ -232,7 +255,7 @@ def _task_rows(analysis: TaskAnalysis) -> Rows:
 
 def _scale_of(name: str) -> tuple[float, str]:
     """Shares and differences in parts are shown in per cent, other numbers as they are."""
-    parts = ("bias", "reversals", "false alarms")
+    parts = ("bias", "reversals", "false alarms", "difference just told")
     return (100.0, " %") if name.startswith(parts) else (1.0, "")
 
 
@@ -313,6 +336,8 @@ def whose(origin: str) -> str:
 def condition_head(analysis: TaskAnalysis) -> tuple[str, ...]:
     """Head of `condition_rows`: what is counted depends on the task."""
     model = TASKS[analysis.task].model
+    if analysis.is_adaptive and analysis.conditions and analysis.conditions[0].share is None:
+        return ("Runs", "Value", "Trials", "People", "Mean of their ends", "d′")
     is_right = analysis.is_adaptive and model is not None and model.rate is None
     counted = "Right" if is_right else TASKS[analysis.task].counted
     return ("Stimulus", "Value", "Trials", "People", counted, "d′")
@@ -325,6 +350,8 @@ def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
     for condition in analysis.conditions:
         answers = condition.magnitude or condition.share
         scale, said = (1.0, "") if condition.magnitude is not None else (100.0, " %")
+        if analysis.is_adaptive and condition.magnitude is not None:
+            scale, said = scale_of(analysis)
         rows.append(
             (
                 condition.name,

@@ -17,6 +17,7 @@ from squeezefilm.physics.perception.observer import NamedObserver
 from squeezefilm.study.design.study_design import NamedDesign
 from squeezefilm.study.identification.confusion import ConfusionMatrix
 from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.record.tables import SURFACES
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.participants import (
     Matches,
@@ -147,9 +148,8 @@ class SimulatedStudy(Result):
                 "trial": int(a.number[at]),
                 "display": a.design.displays[a.display[at]],
                 "phase": str(a.phase[at]),
-                "stimulus": names[a.first[at]],
-                "second_stimulus": names[a.second[at]] if a.second[at] >= 0 else "",
-                "third_stimulus": "" if a.third is None else names[a.third[at]],
+                **dict.fromkeys(SURFACES, ""),
+                **dict(zip(SURFACES, (names[k] for k in a.presented[:, at]), strict=False)),
                 "adaptive_series": series[a.series[at]] if a.series[at] >= 0 else "",
                 "intensity": float(a.intensity[at]),
                 "choice": answers[a.choice[at]] if a.choice[at] >= 0 else "",
@@ -221,8 +221,7 @@ def answers_of(study: Matches) -> Answers:
         phase=np.full(size, "main"),
         display=study.display.ravel(),
         series=none,
-        first=study.stimulus.ravel(),
-        second=none,
+        presented=study.stimulus.reshape(1, -1),
         intensity=nothing,
         choice=study.choice.ravel(),
         right=right_answers(design)[study.stimulus.ravel()],

@@ -15,6 +15,7 @@ import functools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -193,6 +194,7 @@ def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], b
                 one = room.chosen(trial.adaptive, float(intensity[person, at]))
                 shown = [room.place[design.reference], one]
                 shown = shown if trial.reference_first else shown[::-1]
+                shown = shown if design.compares else [one]
             presented[person, at] = shown
         skill = 1.0 + observer.learning_excess * math.exp(-at / observer.learning_trials)
         alike = count, *(1 for _ in room.directions)
@@ -214,9 +216,11 @@ def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], b
         )
         for person, row in enumerate(schedules):
             if row[at].adaptive:
-                right = answers[choice[person, at]] == row[at].answer
+                said: Any = answers[choice[person, at]]
+                if not design.series(row[at].adaptive).in_runs:
+                    said = said == row[at].answer
                 method = _standing(methods, design, person, row[at])
-                method.update(float(intensity[person, at]), bool(right))
+                method.update(float(intensity[person, at]), said)
     who = begin + np.arange(count)
     return _Part(who, schedules, presented, intensity, choice, estimate, time)
 
@@ -360,7 +364,6 @@ def _together(design: StudyDesign, participants: int, room: _Room, parts: list[_
         return np.array(found, dtype=np.int64)
 
     shown = np.concatenate([one.presented.reshape(-1, one.presented.shape[2]) for one in parts]).T
-    none = np.full(shown.shape[1], -1, dtype=np.int64)
     return Answers(
         design=design,
         origin="simulated",
@@ -371,9 +374,7 @@ def _together(design: StudyDesign, participants: int, room: _Room, parts: list[_
         phase=np.array([row.phase for row in rows], dtype=np.str_),
         display=whole([room.display[row.display] for row in rows]),
         series=whole([series.get(row.adaptive, -1) for row in rows]),
-        first=shown[0],
-        second=shown[1] if len(shown) > 1 else none,
-        third=shown[2] if len(shown) > 2 else None,
+        presented=shown,
         intensity=joined("intensity"),
         choice=joined("choice").astype(np.int64),
         right=whole([names.get(row.answer, -1) for row in rows]),

@@ -216,13 +216,19 @@ def pair_scores(answers: Answers, first: str, second: str) -> si.FloatArray:
             / np.maximum(np.bincount(people[rows], minlength=size), 1)
         )
 
+    shown = names[main.presented]
+    if design.described.ranks:
+        first_of = names[main.in_order]
+        both = (first_of == first).any(axis=0) & (first_of == second).any(axis=0)
+        ahead = (first_of == first).argmax(axis=0) < (first_of == second).argmax(axis=0)
+        a, b = (design.judged_value(design.stimulus(name)) for name in (first, second))
+        return mean((ahead == (a > b)).astype(float), both) - 0.5
     if not design.compares:
         less, more = sorted(
             (first, second), key=lambda name: design.judged_value(design.stimulus(name))
         )
         values = main.told.astype(float) if design.answers else np.log(main.estimate)
-        return mean(values, names[main.first] == more) - mean(values, names[main.first] == less)
-    shown = names[main.presented]
+        return mean(values, shown[0] == more) - mean(values, shown[0] == less)
     alike = (shown == shown[0]).all(axis=0)
     here = np.isin(shown, [first, second]).all(axis=0) & ~alike
     if not alike.any():

@@ -18,6 +18,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.called_with import called_with
+from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.study.identification.power import first_lasting, sizes_of
 from squeezefilm.study.identification.proportions import proportion_interval
@@ -29,9 +30,11 @@ from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.simulated.planned_power import Planned, PlannedStudies, on_one_display
 from squeezefilm.study.tasks.by_condition import MEASURE, unlike_persons
+from squeezefilm.study.tasks.choices import rank_exponents
 from squeezefilm.study.tasks.findings import PARTS, PersonEstimate
 from squeezefilm.study.tasks.magnitude import exponents
 from squeezefilm.study.tasks.on_grid import PeopleOnGrid, on_grid
+from squeezefilm.study.tasks.settings import settings_of
 
 PEOPLE = 400
 """Simulated people that studies are drawn from; each one's fit takes some 20 ms."""
@@ -233,6 +236,17 @@ def person_values(main: Answers) -> tuple[str, si.FloatArray]:
     """Name of what the answers to one display measure of a person, and each one's value, as the
     analysis fits it; shape (people,)."""
     people, task = _on_grid(main), main.design.task
+    if any(series.in_runs for series in main.design.adaptive):
+        measure, persons, *_ = settings_of(main, 0.95)
+        if len(persons) < len(main.people):
+            raise InputError(
+                f"{len(main.people) - len(persons)} of {len(main.people)} simulated people end "
+                "fewer than two runs; give the series more trials, or larger steps",
+                quantity="count",
+            )
+        return measure, _values(persons)
+    if main.design.described.ranks and people is None:
+        return "exponent", _values(rank_exponents(main, 0.95))
     if people is not None:
         return main.design.measure, _values(people.estimates(0.95))
     if main.design.described.model is not None:
@@ -246,7 +260,9 @@ def person_values(main: Answers) -> tuple[str, si.FloatArray]:
 
 def _on_grid(main: Answers) -> PeopleOnGrid | None:
     """Each person's threshold, in tasks whose surfaces differ along a scale."""
-    return on_grid(main) if main.design.described.model and main.design.on_a_scale else None
+    design = main.design
+    in_runs = any(series.in_runs for series in design.adaptive)
+    return on_grid(main) if design.described.model and design.on_a_scale and not in_runs else None
 
 
 def _values(persons: list[PersonEstimate]) -> si.FloatArray:

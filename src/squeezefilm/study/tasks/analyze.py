@@ -186,7 +186,7 @@ def _identified(main: Answers, how: _How) -> IdentificationRequest:
     times = main.response_time
     return IdentificationRequest(
         np.array(main.people)[main.participant],
-        np.array([stimuli.index(main.surfaces[k].name) for k in main.first]),
+        np.array([stimuli.index(main.surfaces[k].name) for k in main.presented[0]]),
         order[main.choice],
         right,
         name=how.name,
@@ -256,17 +256,20 @@ def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
 
 
 def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
-    """Conditions of response times: the comparison, the difference or the stimulus."""
+    """Conditions of response times: the comparison, the difference, the stimulus, or what was put
+    first."""
     if (main.series >= 0).any():
         return main.series, tuple(series.name for series in main.design.adaptive)
     # By value, as they are read, and not in the order in which somebody met them first.
     order = np.argsort(main.values, kind="stable")
     place = np.argsort(order, kind="stable")
     names = tuple(main.surfaces[surface].name for surface in order)
+    if main.design.described.ranks:
+        return place[main.in_order[0]], names
     if main.design.compares:
         other, _ = comparisons(main)
         return np.where(other < 0, len(names), place[other]), (*names, "the same")
-    return place[main.first], names
+    return place[main.presented[0]], names
 
 
 def _times(

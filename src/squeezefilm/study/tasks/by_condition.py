@@ -37,12 +37,12 @@ def comparisons(main: Answers) -> tuple[si.IntArray, NDArray[np.bool_]]:
     ordered."""
     shown, ordered = main.presented, main.model.rate is None
     if len(shown) == 1:
-        return main.first, main.told
+        return shown[0], main.told
     names = [surface.name for surface in main.surfaces]
     here = names.index(main.design.reference) if main.design.reference in names else -1
     alike = (shown == shown[0]).all(axis=0)
     other = np.where(alike, -1, np.where(shown != here, shown, -1).max(axis=0))
-    return other, (main.told == (main.first == other)) if ordered else main.told
+    return other, (main.told == (shown[0] == other)) if ordered else main.told
 
 
 def condition_findings(

@@ -17,6 +17,8 @@ from squeezefilm.study.identification.screening import Screening
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.tasks.population import PopulationEstimate
 
+EQUALITY = "point of equality"
+"""Measure of adjustments and of limits about a reference: a difference from it."""
 PARTS = ("Weber fraction", "threshold")
 """Measures whose logarithms are normal over people, and whose precision is in parts of them."""
 

@@ -28,7 +28,7 @@ def exponents(
     persons = []
     for person in people:
         mine = main.participant == person
-        x, y = np.log(main.values[main.first[mine]]), np.log(main.estimate[mine])
+        x, y = np.log(main.values[main.presented[0][mine]]), np.log(main.estimate[mine])
         dx = x - x.mean()
         if not np.any(dx) or x.size < 3:
             continue
@@ -37,8 +37,15 @@ def exponents(
         reach = float(stats.t.isf((1 - level) / 2, x.size - 2)) * math.sqrt(residual / (dx @ dx))
         estimate = Estimate(slope, slope - reach, slope + reach, level, "t, own line")
         persons.append(PersonEstimate(main.people[person], estimate, x.size, False))
+    return persons, *of_exponents(persons, level)
+
+
+def of_exponents(
+    persons: list[PersonEstimate], level: si.Dimensionless
+) -> tuple[Estimate | None, Estimate | None]:
+    """The population's mean exponent and its spread over people; of one person their own."""
     if len(persons) < 2:
-        return persons, persons[0].estimate if persons else None, None
+        return persons[0].estimate if persons else None, None
     slopes = np.array([one.estimate.value for one in persons])
     spread, free = float(slopes.std(ddof=1)), slopes.size - 1
     low, high = (
@@ -47,7 +54,7 @@ def exponents(
     )
     low, high = (float(end) for end in holding(spread, low, high))
     pooled = t_interval(slopes, level)
-    return persons, pooled, Estimate(spread, low, high, level, "χ², over people")
+    return pooled, Estimate(spread, low, high, level, "χ², over people")
 
 
 def magnitude_conditions(
@@ -61,7 +68,7 @@ def magnitude_conditions(
     for person in people:
         mine = main.participant == person
         own[mine] = logs[mine].mean()
-        counts.append(np.bincount(main.first[mine], minlength=len(main.surfaces)).tolist())
+        counts.append(np.bincount(main.presented[0][mine], minlength=len(main.surfaces)).tolist())
     notes = []
     if any(count != counts[0] for count in counts):
         notes.append(
@@ -70,8 +77,8 @@ def magnitude_conditions(
         )
     logs = logs - own + float(np.mean([own[main.participant == one][0] for one in people]))
     findings = []
-    for stimulus in sorted(np.unique(main.first), key=lambda s: main.values[s]):
-        here = main.first == stimulus
+    for stimulus in sorted(np.unique(main.presented[0]), key=lambda s: main.values[s]):
+        here = main.presented[0] == stimulus
         means = np.array(
             [
                 logs[here & (main.participant == person)].mean()
@@ -92,7 +99,7 @@ def magnitude_conditions(
 
 def require_magnitudes(main: Answers) -> None:
     """Refuse stimuli without an amount, which have no logarithm. Raises `InputError`."""
-    for one in np.unique(main.first):
+    for one in np.unique(main.presented[0]):
         if not main.values[one] > 0.0:
             raise InputError(
                 f"stimulus '{main.surfaces[one].name}' has {main.design.judged} 0; a power law "

@@ -18,14 +18,16 @@ from squeezefilm.study.tasks.by_condition import (
     more_numbers,
     unlike_persons,
 )
+from squeezefilm.study.tasks.choices import rank_exponents, strengths
 from squeezefilm.study.tasks.findings import (
     ConditionFinding,
     PersonEstimate,
     PersonFunction,
     of_population,
 )
-from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions
+from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions, of_exponents
 from squeezefilm.study.tasks.on_grid import on_grid
+from squeezefilm.study.tasks.settings import of_settings, settings_of
 
 Tell = Callable[[str], None]
 _POPULATION = "posterior, mixed model"
@@ -51,7 +53,12 @@ def measured(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
 
     `level` is of the intervals (1), `seed` of resampling; `tell` hears each step.
     """
-    analysis = _magnitudes if main.design.described.model is None else _by_difference
+    task = main.design.described
+    analysis = _magnitudes if task.model is None else _by_difference
+    if task.ranks:
+        analysis = _ranked
+    elif any(series.in_runs for series in main.design.adaptive):
+        analysis = _set
     found = analysis(main, level, seed, tell)
     return replace(found, robust=found.robust or _trimmed(found.persons, level))
 
@@ -96,12 +103,39 @@ def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> Measur
         tuple(persons),
         pooled,
         spread,
-        condition_findings(main, level, seed),
+        () if main.design.described.ranks else condition_findings(main, level, seed),
         more_numbers(main, people.bias, level),
         people.functions(level),
         notes,
         robust,
     )
+
+
+def _ranked(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
+    """Strengths, beside the threshold or the exponent where surfaces have amounts."""
+    tell("strengths of the surfaces")
+    conditions, notes = strengths(main, level)
+    design = main.design
+    if design.on_a_scale and design.described.model is not None:
+        found = _by_difference(main, level, seed, tell)
+        return replace(found, conditions=conditions, notes=[*found.notes, *notes])
+    if design.on_a_scale and not design.in_amounts:
+        persons = rank_exponents(main, level)
+        pooled, spread = of_exponents(persons, level)
+        return Measured("exponent", tuple(persons), pooled, spread, conditions, {}, {}, notes)
+    notes.append(
+        f"the surfaces have no amount of {design.judged} with which strengths grow by a power"
+    )
+    return Measured("strength", (), None, None, conditions, {}, {}, notes)
+
+
+def _set(main: Answers, level: float, _seed: int, tell: Tell) -> Measured:
+    tell("runs of each person")
+    measure, persons, conditions, more, notes = settings_of(main, level)
+    pooled = of_settings(measure, persons, level)
+    if len(persons) == 1:
+        notes.append("one participant: the interval is over their runs, and says nothing of others")
+    return Measured(measure, tuple(persons), pooled, None, conditions, more, {}, notes)
 
 
 def _unlike(main: Answers, level: float, seed: int, tell: Tell) -> Measured:

@@ -102,6 +102,11 @@ def _adaptive(design: StudyDesign) -> list[str]:
                 f"a staircase, {series.down} down and 1 up, that settles at {target:.1f} % correct "
                 f"(Levitt 1971, 10.1121/1.1912375), from {100 * series.start:g} %"
             )
+        elif series.in_runs:
+            how = (
+                f"{'adjustments' if series.method == 'adjustment' else 'the method of limits'}, in "
+                f"runs of steps of {100 * series.step:g} %, that began alternately at either end"
+            )
         else:
             by = _QUEST_PLUS if alike else _PSI
             how = f"a Bayesian choice of the most informative difference ({by})"

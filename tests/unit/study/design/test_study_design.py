@@ -263,7 +263,7 @@ def test_whoever_says_where_values_are_from_the_design_is_the_same() -> None:
          "compare with a reference, in task = .*; 'match-to-sample' does not"),
         ({"task": "same-different", "alternatives": (), "reference": "2 mm",
           "adaptive": (AdaptiveCondition("a", "staircase"),)}, "adaptive",
-         "'a' is a staircase, which would settle .* takes method = 'bayesian'"),
+         "'a' is by method = 'staircase', which would settle .* takes method = 'bayesian'"),
         ({"modulus": 10.0}, "modulus", "needs magnitude-estimation and a reference"),
         ({"modulus": 10.0, "reference": "2 mm"}, "modulus", "needs magnitude-estimation"),
         ({"task": "magnitude-estimation", "alternatives": (), "modulus": 10.0}, "modulus",

@@ -14,7 +14,6 @@ from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.special_trials import AdaptiveCondition, CatchTrial
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import (
-    conditions,
     expected_duration,
     latin_square,
     orders,
@@ -102,7 +101,7 @@ def test_the_papers_study_is_balanced_per_participant() -> None:
 
 
 def test_pairs_have_same_and_different_equally_often_and_the_reference_in_both_places() -> None:
-    every = conditions(PAIRS)
+    every = PAIRS.conditions
     answers = [PAIRS.answer_to(*(PAIRS.stimulus(one) for one in pair)) for pair in every]
     assert Counter(answers) == {"same": 4, "different": 4}
     planned = trials(PAIRS, 0, 1)

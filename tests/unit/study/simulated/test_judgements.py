@@ -67,7 +67,9 @@ def tables(design: StudyDesign, d_prime: list[float] | float = 1e6) -> ChainTabl
 def test_the_coarser_is_found_as_often_as_two_percepts_have_it() -> None:
     main = simulate_judgements(PERIODS, EXACT, 200, 1, tables(PERIODS)).main(0)
     for one in PERIODS.stimuli[1:]:
-        pair = np.array([main.surfaces[k].name for k in np.maximum(main.first, main.second)])
+        pair = np.array(
+            [main.surfaces[k].name for k in np.maximum(main.presented[0], main.presented[1])]
+        )
         here = pair == one.name
         expected = ndtr(math.log(one.period / 4e-3) / (math.sqrt(2) * SIGMA))
         error = math.sqrt(expected * (1 - expected) / here.sum())
@@ -78,7 +80,7 @@ def test_the_deeper_is_found_by_its_evidence() -> None:
     strengths = [2.0 + 2.0 * (one.friction_depth - 0.3) / 0.12 for one in DEPTHS.stimuli]
     main = simulate_judgements(DEPTHS, EXACT, 300, 1, tables(DEPTHS, strengths)).main(0)
     names = np.array([one.name for one in main.surfaces])
-    deepest = (names[main.first] == "42 %") | (names[main.second] == "42 %")
+    deepest = (names[main.presented[0]] == "42 %") | (names[main.presented[1]] == "42 %")
     expected = ndtr(2.0 / math.sqrt(2))
     assert main.correct[deepest].mean() == pytest.approx(expected, abs=0.02)
 
@@ -86,7 +88,7 @@ def test_the_deeper_is_found_by_its_evidence() -> None:
 @pytest.mark.slow
 def test_the_same_are_called_different_as_the_criterion_has_it() -> None:
     main = simulate_judgements(ALIKE, EXACT, 100, 1, tables(ALIKE)).main(0)
-    same = main.first == main.second
+    same = main.presented[0] == main.presented[1]
     expected = 2 * ndtr(-EXACT.detection_criterion)
     assert (main.choice[same] == 1).mean() == pytest.approx(expected, abs=0.02)
 
@@ -95,7 +97,7 @@ def test_numbers_are_in_proportion_to_clear_periods() -> None:
     answers = simulate_judgements(NUMBERS, EXACT, 400, 1, tables(NUMBERS))
     main = answers.main(0)
     for k, one in enumerate(NUMBERS.stimuli):
-        mean = math.exp(np.log(main.estimate[main.first == k]).mean())
+        mean = math.exp(np.log(main.estimate[main.presented[0] == k]).mean())
         assert mean == pytest.approx(10 * one.period / 4e-3, rel=0.03)
     digits = [f"{value:.1e}" for value in main.estimate[:50]]
     assert [float(one) for one in digits] == pytest.approx(main.estimate[:50].tolist())

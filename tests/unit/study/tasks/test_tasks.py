@@ -65,10 +65,10 @@ def test_the_comparison_is_found_in_either_order() -> None:
     surface, more = comparisons(main)
     names = np.array([one.name for one in main.surfaces])
     assert "30 %" not in set(names[surface])
-    first = names[main.first] != "30 %"
+    first = names[main.presented[0]] != "30 %"
     assert np.array_equal(more, (main.choice == 0) == first)
     apart = main.differences
-    bigger = main.values[main.first] > main.values[main.second]
+    bigger = main.values[main.presented[0]] > main.values[main.presented[1]]
     assert np.array_equal(apart > 0, bigger)
 
 
@@ -115,7 +115,7 @@ def test_exponents_are_those_of_peoples_own_lines() -> None:
     assert spread is not None
     for one, person in zip(persons, drawn, strict=True):
         mine = main.participant == main.people.index(one.person)
-        x, y = np.log(main.values[main.first[mine]]), np.log(main.estimate[mine])
+        x, y = np.log(main.values[main.presented[0][mine]]), np.log(main.estimate[mine])
         line = stats.linregress(x, y)
         reach = stats.t.ppf(0.975, x.size - 2) * line.stderr
         assert one.estimate.value == pytest.approx(line.slope)

@@ -8,7 +8,6 @@ from tests.task_models import differencing_rate
 from tests.unit.study.design.test_matching import shapes
 
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.design.trials import conditions
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.planned_precision import person_values
 from squeezefilm.study.tasks.analyze import analyze_answers
@@ -28,7 +27,7 @@ def answers(people: int, repetitions: int, seed: int) -> Answers:
     """People who answer by the differencing model, each pair with a d′ of its own."""
     design, random = _design(), np.random.default_rng(seed)
     names = [one.name for one in design.stimuli]
-    pairs = [pair for pair in conditions(design) for _ in range(repetitions)]
+    pairs = [pair for pair in design.conditions for _ in range(repetitions)]
     shown = np.array([[names.index(one) for one in pair] for pair in pairs] * people)
     different = shown[:, 0] != shown[:, 1]
     other = np.where(shown[:, 0] != 0, shown[:, 0], shown[:, 1])
@@ -49,8 +48,7 @@ def answers(people: int, repetitions: int, seed: int) -> Answers:
         phase=np.full(size, "main"),
         display=np.zeros(size, dtype=np.int64),
         series=np.full(size, -1),
-        first=shown[:, 0],
-        second=shown[:, 1],
+        presented=shown.T,
         intensity=nothing,
         choice=(random.random(size) < p).astype(np.int64),
         right=different.astype(np.int64),

@@ -40,7 +40,6 @@ DIRECTION = StudyTask(
     answers=("more", "less"),
     question=lambda judged: f"Was the surface {_QUESTIONS[judged]}?",
     conditions=one_each,
-    most_per_stimulus=1,
     right=nothing_is_right,
     presents=(
         "On each trial one surface was presented, and the participant said whether it had more or "
@@ -54,6 +53,8 @@ DIRECTION = StudyTask(
     counted="More",
     assumed=("The reference is remembered without error.", UNFELT),
     in_plane=(CLEARER,),
+    adaptive=("limits",),
+    series=lambda _: (False, ""),
     decides=_decides,
     model=DifferenceModel(
         difference=from_reference,

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from squeezefilm.study.design.tasks.adjustment import ADJUSTMENT
 from squeezefilm.study.design.tasks.detection import DETECTION
 from squeezefilm.study.design.tasks.direction import DIRECTION
 from squeezefilm.study.design.tasks.odd_one_out import ODD_ONE_OUT
 from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE
+from squeezefilm.study.design.tasks.paired_comparison import PAIRED_COMPARISON
+from squeezefilm.study.design.tasks.ranking import RANKING
 from squeezefilm.study.design.tasks.same_different import SAME_DIFFERENT
 from squeezefilm.study.design.tasks.task import StudyTask
 from squeezefilm.study.design.tasks.two_interval import TWO_INTERVAL
@@ -22,6 +25,9 @@ TASKS: dict[str, StudyTask] = {
         DIRECTION,
         YES_NO,
         DETECTION,
+        PAIRED_COMPARISON,
+        RANKING,
+        ADJUSTMENT,
     )
 }
 """Every task, as designs name it."""

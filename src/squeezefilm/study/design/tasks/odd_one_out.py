@@ -102,7 +102,6 @@ ODD_ONE_OUT = StudyTask(
     answers=_ANSWERS,
     question=lambda _: "Which of the three surfaces was different?",
     conditions=_conditions,
-    most_per_stimulus=6,
     right=_right,
     presents=(
         "On each trial three surfaces were presented one after the other, two of them the same, "

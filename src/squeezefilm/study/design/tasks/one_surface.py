@@ -11,7 +11,6 @@ MATCH_TO_SAMPLE = StudyTask(
     answers=(),
     question=lambda _: "Which of the gratings does the surface feel like?",
     conditions=one_each,
-    most_per_stimulus=1,
     # What is right is the design's: it says what each stimulus matches.
     right=nothing_is_right,
     presents=(
@@ -33,7 +32,6 @@ MAGNITUDE_ESTIMATION = StudyTask(
     answers=(),
     question=lambda _: "Give a number for how coarse the surface feels.",
     conditions=one_each,
-    most_per_stimulus=1,
     right=nothing_is_right,
     presents=(
         "On each trial one surface was presented, and the participant gave a number for its "

@@ -62,7 +62,6 @@ SAME_DIFFERENT = StudyTask(
     answers=("same", "different"),
     question=lambda _: "Were the two surfaces the same or different?",
     conditions=_conditions,
-    most_per_stimulus=4,
     right=_right,
     presents=(
         "On each trial two surfaces were presented one after the other, and the participant said "

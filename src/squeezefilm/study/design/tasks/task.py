@@ -7,7 +7,7 @@ new task is a module beside this one, and its name here and in `every_task`.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -27,6 +27,9 @@ Task = Literal[
     "yes-no",
     "direction",
     "detection",
+    "paired-comparison",
+    "ranking",
+    "adjustment",
 ]
 Condition = tuple[str, ...]
 """The names of what one trial presents, in their order."""
@@ -144,7 +147,6 @@ class StudyTask:
         answers: that may be given; empty for numbers, and for names of a design's own.
         question: of what is judged, as people are asked.
         conditions: of a repetition, from the reference and the other stimuli.
-        most_per_stimulus: as many conditions as a stimulus has at most.
         right: the right answer to surfaces, given how much one has of what is judged; empty where
             nothing is right.
         presents, analysed: sentences of a methods section.
@@ -157,6 +159,8 @@ class StudyTask:
         in_amounts: whether differences are of amounts, and not of their logarithms.
         decides: how simulated people answer; None where that takes more than the percepts.
         model: of the answers to a difference; None where the task has an analysis of its own.
+        ranks: the places of a trial's surfaces that each answer puts from most to least; empty
+            where answers order nothing.
     """
 
     name: Task
@@ -164,8 +168,7 @@ class StudyTask:
     reference: Literal["", "presented", "remembered", "flat"]
     answers: tuple[str, ...]
     question: Callable[[str], str]
-    conditions: Callable[[str, Sequence[str]], tuple[Condition, ...]]
-    most_per_stimulus: int
+    conditions: Callable[[str, Sequence[str]], Iterable[Condition]]
     right: Callable[[Sequence[Stimulus], Judged], str]
     presents: str
     analysed: str
@@ -177,6 +180,7 @@ class StudyTask:
     in_amounts: bool = False
     decides: Callable[[Percepts], Decision] | None = None
     model: DifferenceModel | None = None
+    ranks: tuple[tuple[int, ...], ...] = ()
 
     @property
     def ordered(self) -> bool:
@@ -218,5 +222,17 @@ POPULATION = (
     "2012, 10.1167/12.11.26; Kuss et al. 2005, 10.1167/5.5.8)."
 )
 """Sentence of a methods section about people together; a Weber fraction is a threshold."""
+STRENGTHS = (
+    "Each surface has a strength, of which the share among those that are left is the probability "
+    "that it is named next (Bradley and Terry 1952, 10.1093/biomet/39.3-4.324; Plackett 1975, "
+    "10.2307/2346567), by maximum likelihood, with robust intervals over participants (Liang and "
+    "Zeger 1986, 10.1093/biomet/73.1.13)."
+)
+"""Sentence of a methods section about tasks that order surfaces."""
+SETTINGS = (
+    "Each participant's mean over runs has Student's interval, and so has the mean over "
+    "participants (of thresholds, of their logarithms)."
+)
+"""Sentence of a methods section about runs of adjustments and limits."""
 CLEARER = "Of the two directions the one in which a rhythm is clearer decides."
 """Assumption of tasks on a scale about free exploration."""

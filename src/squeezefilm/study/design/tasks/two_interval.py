@@ -52,7 +52,6 @@ TWO_INTERVAL = StudyTask(
     answers=("first", "second"),
     question=_question,
     conditions=_conditions,
-    most_per_stimulus=2,
     right=_right,
     presents=(
         "On each trial two surfaces were presented one after the other, one of them the reference "

@@ -44,7 +44,6 @@ YES_NO = StudyTask(
     answers=("yes", "no"),
     question=lambda _: "Was there anything to feel on the surface?",
     conditions=_conditions,
-    most_per_stimulus=2,
     right=_right,
     presents=(
         "On each trial one surface was presented, in half of the trials a flat one ({reference}), "
@@ -57,6 +56,8 @@ YES_NO = StudyTask(
     ),
     counted="Yes",
     assumed=("“Yes” is said where the clearest rhythm passes the observer's criterion.", FELT),
+    adaptive=("limits",),
+    series=lambda _: (False, "yes"),
     in_amounts=True,
     decides=_decides,
     model=DifferenceModel(

@@ -23,7 +23,6 @@ from squeezefilm.study.design.tasks.odd_one_out import (
     d_prime_of_three,
 )
 from squeezefilm.study.design.tasks.task import Percepts
-from squeezefilm.study.design.trials import conditions
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.report.page import write_study
 from squeezefilm.study.tasks.analyze import analyze_answers
@@ -33,7 +32,7 @@ PLACES = {name: k for k, name in enumerate(DESIGN.answers)}
 
 
 def test_each_of_six_orders_comes_and_the_odd_one_is_right() -> None:
-    every = conditions(DESIGN)
+    every = DESIGN.conditions
     assert len(every) == len(set(every)) == 6 * 4
     assert Counter(len(set(one)) for one in every) == {2: 24}
     for one in every:
@@ -122,9 +121,7 @@ def made_up(design: StudyDesign, people: int, fraction: float, seed: int) -> Ans
         phase=np.array([t.phase for t in rows]),
         display=np.zeros(choice.size, dtype=np.int64),
         series=none,
-        first=shown[0],
-        second=shown[1],
-        third=shown[2],
+        presented=shown,
         intensity=nothing,
         choice=choice,
         right=np.array([PLACES[t.answer] for t in rows]),

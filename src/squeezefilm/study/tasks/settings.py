@@ -1,0 +1,88 @@
+"""Settings and turning points: what adjustments and limits say of each person, and of all."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.study.adaptive.runs import Ending, Runs
+from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.design.tasks.two_interval import QUARTILE
+from squeezefilm.study.psychometric.estimate import Estimate, t_interval
+from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.tasks.findings import (
+    EQUALITY,
+    ConditionFinding,
+    PersonEstimate,
+    through,
+)
+
+
+def endings(main: Answers, person: int) -> list[Ending]:
+    """Where the runs of a person ended, of all series, in their order."""
+    found: list[Ending] = []
+    names = main.design.answers
+    for number, series in enumerate(main.design.adaptive):
+        mine = (main.participant == person) & (main.series == number)
+        said = [names[k] for k in main.choice[mine]]
+        given = zip(main.intensity[mine].tolist(), said, strict=True)
+        method = adaptive_method(series, given, main.design.task)
+        assert isinstance(method, Runs)
+        found += method.endings
+    return found
+
+
+def settings_of(
+    main: Answers, level: si.Dimensionless
+) -> tuple[str, list[PersonEstimate], tuple[ConditionFinding, ...], dict[str, Estimate], list[str]]:
+    """Name of what is measured; each person's mean with Student's interval over their runs; the
+    mean over people of runs from above and from below; the difference that is just told, by the
+    scatter of runs; and what needs care.
+
+    Against a flat surface it is the threshold, an amount; else the point of equality, a difference
+    from the reference in its parts. Nobody with fewer than two runs has a value.
+    """
+    measure = "threshold" if main.design.described.reference == "flat" else EQUALITY
+    persons, spreads, halves = [], [], {True: [], False: []}
+    people = np.unique(main.participant)
+    for person in people:
+        runs = endings(main, person)
+        if len(runs) < 2:
+            continue
+        ends = np.array([run.level for run in runs])
+        own = t_interval(ends, level)
+        own = Estimate(own.value, own.low, own.high, level, "t, over runs")
+        persons.append(PersonEstimate(main.people[person], own, ends.size, False))
+        spreads.append(QUARTILE * float(ends.std(ddof=1)))
+        for is_down, values in halves.items():
+            some = [run.level for run in runs if run.is_down == is_down]
+            values += [float(np.mean(some))] if some else []
+    conditions = tuple(
+        ConditionFinding(
+            name, math.nan, main.trials, len(halves[is_down]),
+            magnitude=t_interval(np.array(halves[is_down]), level),
+        )
+        for is_down, name in ((True, "from above"), (False, "from below"))
+        if halves[is_down]
+    )  # fmt: skip
+    more = {}
+    if spreads:
+        more["difference just told, by the scatter"] = t_interval(np.array(spreads), level)
+    lacking = people.size - len(persons)
+    notes = [f"{lacking} of {people.size} people ended fewer than two runs"] if lacking else []
+    return measure, persons, conditions, more, notes
+
+
+def of_settings(
+    measure: str, persons: list[PersonEstimate], level: si.Dimensionless
+) -> Estimate | None:
+    """The mean over people with Student's interval, of thresholds of their logarithms; of one
+    person their own."""
+    if len(persons) < 2:
+        return persons[0].estimate if persons else None
+    values = np.array([person.estimate.value for person in persons])
+    if measure == EQUALITY:
+        return t_interval(values, level)
+    return through(t_interval(np.log(values), level), math.exp)
