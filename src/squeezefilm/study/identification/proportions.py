@@ -205,24 +205,9 @@ def permutation_test(
     random = np.random.default_rng(seed)
     totals = np.zeros(permutations, dtype=np.int64)
     for rows, columns in zip(answers, presented, strict=True):
-        left = np.broadcast_to(rows, (permutations, rows.size)).copy()
-        for column, drawn in enumerate(columns):
-            taken = _draw(random, left, int(drawn))
-            totals += taken[:, column]
-            left -= taken
+        shuffled = stats.random_table(rows, columns)
+        totals += np.trace(shuffled.rvs(permutations, random_state=random), axis1=1, axis2=2)
     return float((1 + np.count_nonzero(totals >= observed)) / (1 + permutations))
-
-
-def _draw(random: np.random.Generator, left: si.IntArray, drawn: int) -> si.IntArray:
-    """Draw of a multivariate hypergeometric distribution for each row of `left`."""
-    taken = np.zeros_like(left)
-    wanted = np.full(left.shape[0], drawn)
-    others = left.sum(axis=1)
-    for row in range(left.shape[1]):
-        others = others - left[:, row]
-        taken[:, row] = random.hypergeometric(left[:, row], others, wanted)
-        wanted = wanted - taken[:, row]
-    return taken
 
 
 def _normal_permutation(answers: si.IntArray, presented: si.IntArray, observed: int) -> float:

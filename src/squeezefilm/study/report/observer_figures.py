@@ -1,4 +1,4 @@
-"""Figures of simulated participants: channels, and what the chain gives them of each surface."""
+"""Figure of simulated participants: what the chain gives them of each surface."""
 
 from __future__ import annotations
 
@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.core.kit import style
-from squeezefilm.core.kit.numbers import M, shown
-from squeezefilm.physics.perception.observer import TUNED_AT
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,43 +17,6 @@ if TYPE_CHECKING:
     from squeezefilm.study.simulated.chain_tables import ChainTables
 
 _DISPLAYS = (style.BLUE, style.ORANGE)
-
-
-@style.drawn
-def channels(tables: ChainTables) -> Figure:
-    """Gain of each channel against frequency, and where the study's gratings pass the finger."""
-    observer = tables.observer
-    frequency = np.geomspace(1.0, 1000.0, 400)
-    bands = [
-        f"{style.plain(channel.name, 12)} from {shown(channel.threshold, M, 2)}"
-        for channel in observer.channels
-    ]
-    figure = style.new_figure(
-        f"Channels of '{style.plain(observer.name)}': {', '.join(bands)}",
-        "second-order bands, assumed shapes and thresholds (d′ = 1, skin at rest); marks: textures "
-        "under the median speed; dotted: the displays' envelope bandwidths",
-        3.8,
-    )
-    axes = figure.subplots()
-    for channel, (color, dashes) in zip(observer.channels, style.LINES, strict=False):
-        said = style.plain(channel.name)
-        gain = channel.gain(TUNED_AT / frequency, TUNED_AT)
-        axes.plot(frequency, gain, color=color, ls=dashes, label=said)
-    marks: dict[str, list[str]] = {}
-    for name, why in tables.explain().items():
-        marks.setdefault(f"{why.texture_frequency:.4g}", []).append(name)
-    for place, names in marks.items():
-        # Stimuli of one period pass at one frequency: their names would lie upon each other.
-        said = style.plain(names[0], 10) if len(names) == 1 else f"{len(names)} stimuli"
-        axes.axvline(float(place), **style.ZERO)
-        axes.text(float(place), 1.03, said, ha="center", **style.SLANTED)
-    for index in range(len(tables.design.displays)):
-        width = next(iter(tables.explain(index).values())).envelope_bandwidth
-        axes.axvline(width, color=style.METAL, lw=2.2, ls=":")
-    axes.set(xscale="log", xlim=(1, 1000), ylim=(0, 1.0), xlabel="frequency (Hz)", ylabel="gain")
-    style.plain_log(axes.xaxis)
-    style.legend_below(axes, 3, 0.22)
-    return figure
 
 
 @style.drawn

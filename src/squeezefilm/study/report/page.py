@@ -52,30 +52,19 @@ if TYPE_CHECKING:
 _TIMES = FigureOf(
     "times", "Response times", times.response_times, has=lambda one: one.response_times
 )
-_EXPLORATION = FigureOf(
-    "exploration", "Exploration", times.exploration, has=lambda one: one.exploration
-)
 FIGURES = (
     FigureOf("confusion", "Confusion matrix", draw.confusion),
     FigureOf("correct", "Right answers", draw.proportion_correct),
     FigureOf("sensitivity", "Sensitivity along the stimuli", draw.sensitivity),
     FigureOf("similarities", "Similarities and biases", draw.similarities, file="similarity"),
     _TIMES,
-    _EXPLORATION,
 )
 """The figures of an identification study."""
 
 TASK_FIGURES = (
     FigureOf("answers", "What was answered", task_figures.answers),
     FigureOf("persons", "Each person", task_figures.persons, has=lambda one: one.persons),
-    FigureOf(
-        "sensitivity",
-        "Sensitivity",
-        task_figures.sensitivity,
-        has=lambda one: [c for c in one.conditions if c.d_prime is not None],
-    ),
     _TIMES,
-    _EXPLORATION,
 )
 """The figures of two-interval, same-different and magnitude studies."""
 

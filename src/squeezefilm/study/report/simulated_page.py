@@ -67,15 +67,14 @@ FIGURES = (
     FigureOf(
         "percepts", "Evidence before noise", lambda one: observer_figures.percepts(one.tables)
     ),
-    FigureOf("channels", "Channels", lambda one: observer_figures.channels(one.tables)),
 )
-"""The figures of simulated participants."""
+"""The figure of simulated participants."""
 
 
 def write_simulated(
     study: SimulatedStudy, folder: Path, progress: Callable[[str], None] | None = None
 ) -> Path:
-    """Write simulated.json, trials.csv, two figures and a page; the path of index.html.
+    """Write simulated.json, trials.csv, a figure and a page; the path of index.html.
 
     The page has what to read first of each display, whose folder holds the full analysis, what the
     model sees, and of match-to-sample the confusions, also where nothing is right or wrong.

@@ -223,29 +223,3 @@ def persons(analysis: TaskAnalysis) -> Figure:
     said = f" ({unit.strip()})" if unit else ""
     axes.set(xlabel="participant, by estimate", ylabel=analysis.measure + said)
     return figure
-
-
-@style.drawn
-def sensitivity(analysis: TaskAnalysis) -> Figure:
-    """d′ of each comparison from the reference."""
-    scale, label = _scale(analysis)
-    known = [condition for condition in analysis.conditions if condition.d_prime is not None]
-    unlike = math.isnan(known[0].value)
-    scale = 1.0 if unlike else scale
-    points = [(at if unlike else c.value, c.d_prime) for at, c in enumerate(known) if c.d_prime]
-    best = max(range(len(points)), key=lambda at: points[at][1].value)
-    which = style.plain(known[best].name, 30)
-    figure = style.new_figure(
-        f"Most distinct from the reference: {which}, d′ = {estimate_words(points[best][1])}",
-        f"{data_of(analysis)}; means over people, proportions corrected (Hautus 1995)",
-        3.8,
-    )
-    axes = figure.subplots()
-    _points(axes, *zip(*((scale * value, d) for value, d in points), strict=True))
-    axes.axhline(0, **style.ZERO)
-    if unlike:
-        _named(axes, [condition.name for condition in known])
-    else:
-        axes.axvline(scale * analysis.standard, **style.GUIDE)
-    axes.set(xlabel="the other surface" if unlike else label, ylabel="d′")
-    return figure

@@ -1,4 +1,4 @@
-"""Figures of a study beside its confusions: response times, exploration, power, thresholds."""
+"""Figures of a study beside its confusions: response times, power, thresholds."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import numpy as np
 
 from squeezefilm.core.kit import style
 from squeezefilm.study.report.figures import data_of, named_ticks
-from squeezefilm.study.report.words import key_words
 from squeezefilm.study.tasks.findings import PARTS
 
 if TYPE_CHECKING:
@@ -20,10 +19,6 @@ if TYPE_CHECKING:
     from squeezefilm.study.psychometric.fit import PsychometricFit
     from squeezefilm.study.simulated.planned_precision import PlannedPrecision
     from squeezefilm.study.tasks.analyze import StudyAnalysis
-
-
-_ACROSS = 4
-"""Quantities of exploration side by side."""
 
 
 @style.drawn
@@ -50,31 +45,6 @@ def response_times(analysis: StudyAnalysis) -> Figure:
     named_ticks(axes, [item.name for item in times])
     axes.set(ylabel="response time (s)", xlabel="stimulus")
     axes.set_ylim(0, None)
-    return figure
-
-
-@style.drawn
-def exploration(analysis: StudyAnalysis) -> Figure:
-    """Each quantity of exploration by stimulus, means over people with intervals."""
-    found = {key: rows for key, rows in analysis.exploration.items() if rows}
-    if not found:
-        return style.message_figure("No exploration", "No trace of a finger was given.")
-    level = next(iter(found.values()))[0].level
-    figure = style.new_figure(
-        "How people explored, by stimulus",
-        f"{data_of(analysis)}; means over people with {100 * level:g} % t intervals",
-        3.9 * -(-len(found) // _ACROSS),
-    )
-    down, across = -(-len(found) // _ACROSS), min(len(found), _ACROSS)
-    panels = figure.subplots(down, across, squeeze=False).ravel()
-    for axes in panels[len(found) :]:
-        axes.set_axis_off()
-    for axes, (key, rows) in zip(panels, found.items(), strict=False):
-        style.estimates(axes, ((item.mean, item.low, item.high) for item in rows))
-        names = [style.plain(item.name, 13) for item in rows]
-        axes.set_xticks(range(len(rows)), names, rotation=30, ha="right")
-        axes.set_ylim(0, 1.08 * axes.get_ylim()[1])
-        axes.set_title(style.plain(key_words(key)))
     return figure
 
 

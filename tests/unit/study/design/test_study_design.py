@@ -229,8 +229,8 @@ def test_most_trials_count_all_phases_on_every_display() -> None:
     assert len(trials(design, 0, 1)) <= design.most_trials
     # Of pairs there are the two orders, and for same/different also both alike.
     two = config.load_text(StudyDesign, TWO_INTERVAL)
-    assert two.most_trials == 3 * 3 * 2 + 2 + 4
-    assert dataclasses.replace(two, task="same-different", catch=()).most_trials == 3 * 3 * 4 + 4
+    assert two.most_trials == 3 * 2 * 2 + 2 + 4
+    assert dataclasses.replace(two, task="same-different", catch=()).most_trials == 3 * 2 * 4 + 4
     series = (AdaptiveCondition("a", "staircase", count=7), AdaptiveCondition("b", "bayesian",
                                                                               count=9))  # fmt: skip
     assert dataclasses.replace(two, adaptive=series).most_trials == 7 + 9 + 2 + 4

@@ -1,4 +1,4 @@
-"""Figures of simulated participants: the observer's own channels, and the evidence as tabulated."""
+"""Figure of simulated participants: the evidence as tabulated."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import pytest
 from matplotlib.colors import to_hex
 from tests.unit.drawn import words
 
-from squeezefilm.core.kit.style import BLUE, INK, LINES, METAL, MUTED, ORANGE
+from squeezefilm.core.kit.style import BLUE, INK, ORANGE
 from squeezefilm.physics.perception.observer import SensoryChannel, load_observer
 from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import Candidates, line_periods
 from squeezefilm.study.design.study_design import load_design
-from squeezefilm.study.report.observer_figures import channels, percepts
+from squeezefilm.study.report.observer_figures import percepts
 from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.felt_surfaces import Causes
 
@@ -55,39 +55,6 @@ def tables(**changes: Any) -> ChainTables:
         ),
     )  # fmt: skip
     return dataclasses.replace(found, **changes)
-
-
-def test_channels_are_drawn_as_they_pass_vibration() -> None:
-    figure = channels(tables())
-    axes = figure.axes[0]
-    lines = dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
-    assert list(lines) == ["slow", "fast"]
-    for (line, one), (color, _) in zip(
-        zip(lines.values(), CHANNELS, strict=True), LINES, strict=False
-    ):
-        frequency = line.get_xdata()
-        assert frequency[[0, -1]] == pytest.approx([1, 1000])
-        assert line.get_ydata() == pytest.approx(one.gain(0.1 / frequency, 0.1))
-        assert to_hex(line.get_color()) == color
-    assert axes.get_xscale() == "log"
-    assert axes.get_xlim() == pytest.approx((1, 1000))
-    assert axes.get_ylim() == (0, 1)
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("frequency (Hz)", "gain")
-    assert axes.xaxis.get_major_formatter()(100) == "100"
-    assert words(figure.get_suptitle()) == (
-        "Channels of 'somebody': slow from 20 nm, fast from 0.5 µm"
-    )
-
-
-def test_gratings_and_displays_are_marked_on_the_frequencies() -> None:
-    axes = channels(tables()).axes[0]
-    marks = axes.get_lines()[2:]
-    assert [one.get_xdata()[0] for one in marks] == [40, 20, 100, 250]
-    assert [to_hex(one.get_color()) for one in marks] == [MUTED, MUTED, METAL, METAL]
-    assert [one.get_linestyle() for one in marks] == ["-", "-", ":", ":"]
-    assert [(one.get_text(), one.get_position()) for one in axes.texts] == [
-        ("2 mm", (40, 1.03)), ("4 mm", (20, 1.03)),
-    ]  # fmt: skip
 
 
 def test_percepts_have_a_cell_for_each_surface_and_display() -> None:
@@ -143,9 +110,3 @@ def test_evidence_below_none_is_none_and_the_criterion_is_always_in_sight() -> N
     figure = percepts(tables(virtual=nothing))
     assert "Least evident: 2 mm on first plate, d′ = 0.00" in words(figure.get_suptitle())
     assert figure.axes[0].get_ylim() == pytest.approx((0, 1.15 * 1.5))
-
-
-def test_thresholds_have_the_micro_sign() -> None:
-    one = SensoryChannel("slow", 0.0, 10.0, 2e-6)
-    found = tables(observer=dataclasses.replace(OBSERVER, channels=(one,)))
-    assert "slow from 2 µm" in words(channels(found).get_suptitle())

@@ -143,14 +143,13 @@ def test_numbers_and_figures_are_beside_the_page(
 ) -> None:
     folder = written[0]
     assert sorted(one.name for one in folder.iterdir()) == [
-        "channels.png", "index.html", "percepts.png", "simulated.json", "trials.csv",
+        "index.html", "percepts.png", "simulated.json", "trials.csv",
     ]  # fmt: skip
     text = (folder / "simulated.json").read_text(encoding="utf-8")
     assert text.endswith("}\n")
     data = json.loads(text)
     assert data["participants"] == 2
     assert data["proportion_correct"] == {"biet2008-stator": 0.75, "<b>plate": 1.0}
-    assert "Channels of" in (folder / "channels.png").read_text(encoding="utf-8")
     assert "Least evident" in (folder / "percepts.png").read_text(encoding="utf-8")
 
 
@@ -184,7 +183,7 @@ def test_the_page_says_that_nobody_answered_and_shows_names_as_text(
     for place in ("biet2008-stator", "&lt;b&gt;plate"):
         link = f'<p><a href="{place}/index.html">All numbers and figures</a></p>'
         assert page.count(link) == 1
-    assert page.index('src="percepts.png"') < page.index('src="channels.png"')
+    assert page.count('src="percepts.png"') == 1
 
 
 @pytest.mark.parametrize(
@@ -196,7 +195,6 @@ def test_gratings_that_do_not_pair_up_get_no_analysis_of_right_answers(
     alternatives: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(style, "png", lambda _: b"")
-    monkeypatch.setattr(simulated_page.observer_figures, "channels", lambda _: Figure())
     monkeypatch.setattr(simulated_page.observer_figures, "percepts", lambda _: Figure())
     design = dataclasses.replace(DESIGN, alternatives=alternatives)
     page = write_simulated(study(design), tmp_path).read_text(encoding="utf-8")

@@ -15,7 +15,7 @@ from tests.unit.printed import printed
 from squeezefilm.core.kit import style
 from squeezefilm.study.report import page as report
 from squeezefilm.study.report.page import TASK_FIGURES, study_figures, write_overview, write_study
-from squeezefilm.study.report.task_figures import answers, persons, sensitivity
+from squeezefilm.study.report.task_figures import answers, persons
 from squeezefilm.study.report.terminal_analysis import show_analyses
 from squeezefilm.study.report.words import condition_rows, key_rows, person_rows, read_first
 from squeezefilm.study.tasks.findings import TaskAnalysis
@@ -81,8 +81,6 @@ def test_figures_say_their_message(found: TaskAnalysis) -> None:
     assert f"The {found.measure} is" in words(answers(found).get_suptitle())
     (axes,) = persons(found).axes
     assert len([line for line in axes.get_lines() if len(line.get_xdata()) == 1]) == 4
-    if any(one.d_prime is not None for one in found.conditions):
-        assert "Most distinct from the reference" in words(sensitivity(found).get_suptitle())
 
 
 def test_the_terminal_reads_the_same(found: TaskAnalysis) -> None:

@@ -89,8 +89,8 @@ def test_trials_decide_nothing_by_their_order() -> None:
     mixed = dataclasses.replace(
         main,
         **{
-            key: getattr(main, key)[order]
-            for key in ("participant", "first", "second", "choice", "right", "display", "series")
+            key: getattr(main, key)[..., order]
+            for key in ("participant", "presented", "choice", "right", "display", "series")
         },
     )
     one, other = on_grid(main), on_grid(mixed)
@@ -210,7 +210,7 @@ def test_methods_name_what_was_done_and_cite_it() -> None:
 
 def test_somebody_without_a_same_trial_has_no_share_in_false_alarms() -> None:
     made, _ = group("same-different", 4)
-    lacking = made.take((made.participant != 0) | (made.first != made.second))
+    lacking = made.take((made.participant != 0) | (made.presented[0] != made.presented[1]))
     others = made.take(made.participant != 0)
     assert false_alarms(lacking.main(0), 0.95) == false_alarms(others.main(0), 0.95)
     (found,) = analyze_answers(lacking, "lacking").values()
@@ -221,7 +221,7 @@ def test_somebody_without_a_same_trial_has_no_share_in_false_alarms() -> None:
 def test_no_interval_of_false_alarms_reaches_beyond_what_a_share_can_be() -> None:
     """Of two people, Student's would: here from -5.85 to 6.85."""
     made, _ = group("same-different", 2)
-    same = made.first == made.second
+    same = made.presented[0] == made.presented[1]
     choice = np.where(same, np.where(made.participant == 0, 0, 1), made.choice)
     (found,) = false_alarms(dataclasses.replace(made, choice=choice).main(0), 0.95).values()
     assert (found.low, found.value, found.high) == (0.0, 0.5, 1.0)
@@ -232,7 +232,7 @@ def test_no_interval_of_false_alarms_reaches_beyond_what_a_share_can_be() -> Non
 
 def test_the_same_twice_has_response_times_of_its_own() -> None:
     made, _ = group("same-different")
-    times = np.where(made.first == made.second, 2.0, 1.0)
+    times = np.where(made.presented[0] == made.presented[1], 2.0, 1.0)
     (found,) = analyze_answers(dataclasses.replace(made, response_time=times), "timed").values()
     assert isinstance(found, TaskAnalysis)
     medians = {one.name: one.median for one in found.response_times}
