@@ -105,7 +105,7 @@ def answered(design: StudyDesign, people: list[Person], random: np.random.Genera
             if trial.adaptive:
                 methods[trial.adaptive].update(intensity, given == trial.answer)
             rows.append(_row(design, number, trial, names, place, intensity, given))
-    columns = {key: np.array([row[key] for row in rows]) for key in rows[0]}
+    columns = {key: np.array([row[key] for row in rows]).T for key in rows[0]}
     return Answers(
         design=design,
         origin="made up",
@@ -132,8 +132,7 @@ def _row(
         "phase": trial.phase,
         "display": 0,
         "series": series.get(trial.adaptive, -1),
-        "first": place[names[0]],
-        "second": place[names[1]] if len(names) > 1 else -1,
+        "presented": [place[name] for name in names],
         "intensity": intensity,
         "choice": answers[given] if isinstance(given, str) else -1,
         "right": answers.get(trial.answer, -1),

@@ -118,8 +118,8 @@ def test_people_do_not_depend_on_how_many_there_are(design: StudyDesign) -> None
     few = simulate_judgements(design, EXACT, 3, 4, tables(design, 1.5))
     many = simulate_judgements(design, EXACT, 70, 4, tables(design, 1.5))
     mine = many.participant < 3
-    for key in ("choice", "estimate", "first", "second", "response_time"):
-        assert np.array_equal(getattr(few, key), getattr(many, key)[mine], equal_nan=True)
+    for key in ("choice", "estimate", "presented", "response_time"):
+        assert np.array_equal(getattr(few, key), getattr(many, key)[..., mine], equal_nan=True)
     again = simulate_judgements(design, EXACT, 3, 5, tables(design, 1.5))
     assert not np.array_equal(few.response_time, again.response_time)
 
@@ -226,9 +226,7 @@ def test_a_series_asks_next_what_its_answers_make_it_ask(design: StudyDesign, pe
         mine = found.take((found.participant == person) & (found.series == 0))
         assert len(mine.intensity) == design.adaptive[0].count
         method = adaptive_method(design.adaptive[0], task=design.task)
-        trials_asked = zip(
-            mine.intensity, mine.first, mine.second, mine.choice, mine.right, strict=True
-        )
+        trials_asked = zip(mine.intensity, *mine.presented, mine.choice, mine.right, strict=True)
         for intensity, first, second, choice, right in trials_asked:
             shown = [mine.surfaces[place] for place in (first, second)]
             if design.task == "same-different" and design.answers[right] == "same":
@@ -270,7 +268,7 @@ def test_a_depth_is_a_number_in_proportion_to_what_is_felt_of_it() -> None:
     strengths = [40.0 * levels[one.name] for one in design.stimuli]
     answers = simulate_judgements(design, EXACT, 20, 1, tables(design, strengths)).main(0)
     middle = {
-        one.name: float(np.median(answers.estimate[answers.first == k]))
+        one.name: float(np.median(answers.estimate[answers.presented[0] == k]))
         for k, one in enumerate(design.stimuli)
     }
     assert middle["30 %"] == pytest.approx(10.0, rel=0.1)
