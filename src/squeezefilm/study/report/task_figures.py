@@ -57,7 +57,7 @@ def answers(analysis: TaskAnalysis) -> Figure:
 
 
 def _said(analysis: TaskAnalysis) -> str:
-    if analysis.pooled is None and TASKS[analysis.task].ranks:
+    if TASKS[analysis.task].ranks:
         return most_and_least(analysis).split(";")[0]
     if analysis.pooled is None:
         return f"No {analysis.measure} could be computed"

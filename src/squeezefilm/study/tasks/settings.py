@@ -45,7 +45,8 @@ def settings_of(
     from the reference in its parts. Nobody with fewer than two runs has a value.
     """
     measure = "threshold" if main.design.described.reference == "flat" else EQUALITY
-    persons, spreads, halves = [], [], {True: [], False: []}
+    persons, spreads = [], []
+    halves: dict[bool, list[float]] = {True: [], False: []}
     people = np.unique(main.participant)
     for person in people:
         runs = endings(main, person)

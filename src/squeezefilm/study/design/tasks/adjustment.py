@@ -39,7 +39,7 @@ def _decides(given: Percepts) -> Decision:
     apart = (given.level[1] - given.level[0]) / (math.sqrt(2.0) * given.deviation)
     choice = np.where(np.abs(apart) < given.criterion, 2, np.where(apart > 0, 1, 0))
     doubt = np.exp(-np.abs(np.abs(apart) - given.criterion))
-    return Decision(choice.astype(np.int64), doubt, given.felt.all(axis=0))
+    return Decision(choice.astype(np.int64), doubt, np.asarray(given.felt.all(axis=0)))
 
 
 ADJUSTMENT = StudyTask(

@@ -46,7 +46,7 @@ def _decides(given: Percepts) -> Decision:
     # Orders are numbered as `itertools.permutations` has them.
     choice = 2 * order[0] + (order[1] > order[2])
     gaps = np.diff(np.sort(given.level, axis=0), axis=0).min(axis=0) / given.deviation
-    return Decision(choice.astype(np.int64), np.exp(-gaps), given.felt.all(axis=0))
+    return Decision(choice.astype(np.int64), np.exp(-gaps), np.asarray(given.felt.all(axis=0)))
 
 
 RANKING = StudyTask(

@@ -14,6 +14,7 @@ import pytest
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.study_design import StudyDesign, load_design
+from squeezefilm.study.design.tasks.paired_comparison import PAIRED_COMPARISON
 from squeezefilm.study.design.tasks.ranking import RANKING
 from squeezefilm.study.design.tasks.task import Percepts
 from squeezefilm.study.record.answers import Answers
@@ -229,6 +230,19 @@ def test_every_surface_meets_every_other_as_often_in_each_place() -> None:
     for place in range(3):
         names = [condition[place] for condition in ORDERS.conditions]
         assert {names.count(name) for name in names} == {6}
+
+
+def test_a_catch_trial_has_its_surface_and_others_have_all() -> None:
+    for task, number in ((PAIRED_COMPARISON, 4), (RANKING, 3)):
+        caught = list(task.conditions("caught", ("one", "two")))
+        assert len(caught) == number
+        assert all("caught" in names for names in caught)
+        assert list(task.conditions("one", ("one", "two", "three"))) == list(
+            task.conditions("", ("one", "two", "three"))
+        )
+    one, other = PAIRS.stimuli[:2]
+    assert PAIRED_COMPARISON.right((one, other), lambda s: s.period) == "second"
+    assert PAIRED_COMPARISON.right((one, other), lambda _: math.nan) == ""
 
 
 def test_percepts_are_put_in_their_order() -> None:

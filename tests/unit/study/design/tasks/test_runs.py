@@ -21,12 +21,14 @@ from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.tasks.adjustment import ADJUSTMENT
 from squeezefilm.study.design.tasks.task import Percepts
+from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.report.page import write_study
 from squeezefilm.study.report.words import read_first
 from squeezefilm.study.tasks.analyze import analyze_study
-from squeezefilm.study.tasks.findings import TaskAnalysis
+from squeezefilm.study.tasks.findings import PersonEstimate, TaskAnalysis
+from squeezefilm.study.tasks.settings import of_settings
 
 PERIODS, YES_NO = load_design("period-direction"), load_design("friction-yes-no")
 
@@ -178,6 +180,20 @@ def test_who_ends_no_run_has_no_value(tmp_path: Path) -> None:
     assert found.pooled is None
     assert any("fewer than two runs" in note for note in found.notes)
     write_study(found, tmp_path / "page")
+
+
+def test_thresholds_have_a_geometric_mean_over_people_and_equality_a_plain_one() -> None:
+    people = [
+        PersonEstimate(f"p{k}", Estimate(x, x, x, 0.95, "t, over runs"), 9, False)
+        for k, x in enumerate((0.01, 0.04))
+    ]
+    typical, mean = (of_settings(name, people, 0.95) for name in ("threshold", "point of equality"))
+    assert typical is not None
+    assert mean is not None
+    assert typical.value == pytest.approx(0.02)
+    assert mean.value == pytest.approx(0.025)
+    assert of_settings("threshold", people[:1], 0.95) == people[0].estimate
+    assert of_settings("threshold", [], 0.95) is None
 
 
 def test_what_is_called_equal_differs_by_less_than_the_criterion() -> None:
