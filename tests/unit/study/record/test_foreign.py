@@ -75,7 +75,7 @@ def test_what_a_study_exports_is_read_as_what_it_recorded(name: str, tmp_path: P
     assert found.origin == PEOPLE
     assert (found.people, found.surfaces) == (own.people, own.surfaces)
     for key in (
-        "participant", "number", "phase", "display", "series", "first", "second", "choice", "right",
+        "participant", "number", "phase", "display", "series", "presented", "choice", "right",
         "intensity", "estimate", "response_time",
     ):  # fmt: skip
         np.testing.assert_array_equal(getattr(found, key), getattr(own, key), err_msg=key)
@@ -117,7 +117,7 @@ def test_columns_may_be_called_otherwise_and_what_is_right_follows(given: Given)
     )
     assert found.people == ("anna", "bert")
     assert list(found.number) == [1, 2, 1]
-    assert [found.surfaces[one].name for one in found.first] == ["30 %", "18 %", "30 %"]
+    assert [found.surfaces[one].name for one in found.presented[0]] == ["30 %", "18 %", "30 %"]
     # More is right; nothing is where both are the same.
     assert list(found.right) == [1, 1, -1]
     assert list(found.choice) == [1, 0, 0]
@@ -188,7 +188,8 @@ def test_a_task_of_one_surface_needs_no_second_and_of_numbers_no_choice(given: G
     design: StudyDesign = load_design("coarseness-magnitude")
     one = design.stimuli[0].name
     found = read_answers(given(f"participant_id,stimulus,estimate\na,{one},12\n"), design)
-    assert (found.estimate[0], found.choice[0], found.second[0]) == (12.0, -1, -1)
+    assert (found.estimate[0], found.choice[0]) == (12.0, -1)
+    assert found.presented.tolist() == [[0]]
 
 
 def test_columns_are_told_as_pairs() -> None:

@@ -137,8 +137,10 @@ def test_a_pair_has_its_reference_and_a_series_its_range(
     design: Any = SimpleNamespace(
         task="two-interval",
         reference="ref",
-        described=SimpleNamespace(surfaces=2),
-        series=lambda name: SimpleNamespace(name=name, lowest=0.1, highest=1.0),
+        described=SimpleNamespace(surfaces=2, ranks=()),
+        series=lambda name: SimpleNamespace(
+            name=name, lowest=0.1, highest=1.0, in_runs=name == "runs"
+        ),
     )
     row = {"stimulus": "a", "second_stimulus": "ref", "adaptive_series": "", **changes}
     if said is None:
@@ -151,7 +153,7 @@ def test_a_pair_has_its_reference_and_a_series_its_range(
 
 def test_of_the_same_twice_no_reference_is_asked() -> None:
     alike: Any = SimpleNamespace(
-        task="same-different", reference="ref", described=SimpleNamespace(surfaces=2)
+        task="same-different", reference="ref", described=SimpleNamespace(surfaces=2, ranks=())
     )
     row = {"stimulus": "a", "second_stimulus": "a", "adaptive_series": ""}
     _require_pair("f", 7, alike, row)
