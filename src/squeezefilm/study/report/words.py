@@ -337,7 +337,7 @@ def condition_head(analysis: TaskAnalysis) -> tuple[str, ...]:
     """Head of `condition_rows`: what is counted depends on the task."""
     model = TASKS[analysis.task].model
     if analysis.is_adaptive and analysis.conditions and analysis.conditions[0].share is None:
-        return ("Runs", "Value", "Trials", "People", "Mean of their ends", "d′")
+        return ("Runs", "Value", "Ended", "People", "Mean of their ends", "d′")
     is_right = analysis.is_adaptive and model is not None and model.rate is None
     counted = "Right" if is_right else TASKS[analysis.task].counted
     return ("Stimulus", "Value", "Trials", "People", counted, "d′")

@@ -46,7 +46,7 @@ def settings_of(
     """
     measure = "threshold" if main.design.described.reference == "flat" else EQUALITY
     persons, spreads = [], []
-    halves: dict[bool, list[float]] = {True: [], False: []}
+    halves: dict[bool, list[si.FloatArray]] = {True: [], False: []}
     people = np.unique(main.participant)
     for person in people:
         runs = endings(main, person)
@@ -57,17 +57,20 @@ def settings_of(
         own = Estimate(own.value, own.low, own.high, level, "t, over runs")
         persons.append(PersonEstimate(main.people[person], own, ends.size, False))
         spreads.append(QUARTILE * float(ends.std(ddof=1)))
-        for is_down, values in halves.items():
-            some = [run.level for run in runs if run.is_down == is_down]
-            values += [float(np.mean(some))] if some else []
+        for is_down, each in halves.items():
+            some = np.array([run.level for run in runs if run.is_down == is_down])
+            each += [some] if some.size else []
     conditions = tuple(
         ConditionFinding(
-            name, math.nan, main.trials, len(halves[is_down]),
-            magnitude=t_interval(np.array(halves[is_down]), level),
+            "from above" if is_down else "from below",
+            math.nan,
+            sum(ends.size for ends in each),
+            len(each),
+            magnitude=t_interval(np.array([ends.mean() for ends in each]), level),
         )
-        for is_down, name in ((True, "from above"), (False, "from below"))
-        if halves[is_down]
-    )  # fmt: skip
+        for is_down, each in halves.items()
+        if each
+    )
     more = {}
     if spreads:
         more["difference just told, by the scatter"] = t_interval(np.array(spreads), level)
