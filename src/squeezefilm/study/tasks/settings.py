@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from scipy import stats
 
 from squeezefilm.core import quantities as si
 from squeezefilm.study.adaptive.runs import Ending, Runs
@@ -52,14 +53,14 @@ def settings_of(
         runs = endings(main, person)
         if len(runs) < 2:
             continue
-        ends = np.array([run.level for run in runs])
-        own = t_interval(ends, level)
-        own = Estimate(own.value, own.low, own.high, level, "t, over runs")
-        persons.append(PersonEstimate(main.people[person], own, ends.size, False))
-        spreads.append(QUARTILE * float(ends.std(ddof=1)))
-        for is_down, each in halves.items():
-            some = np.array([run.level for run in runs if run.is_down == is_down])
+        sides = [
+            np.array([run.level for run in runs if run.is_down == is_down]) for is_down in halves
+        ]
+        for each, some in zip(halves.values(), sides, strict=True):
             each += [some] if some.size else []
+        own, deviation = _own([some for some in sides if some.size], level)
+        persons.append(PersonEstimate(main.people[person], own, len(runs), False))
+        spreads.append(QUARTILE * deviation)
     conditions = tuple(
         ConditionFinding(
             "from above" if is_down else "from below",
@@ -77,6 +78,24 @@ def settings_of(
     lacking = people.size - len(persons)
     notes = [f"{lacking} of {people.size} people ended fewer than two runs"] if lacking else []
     return measure, persons, conditions, more, notes
+
+
+def _own(sides: list[si.FloatArray], level: float) -> tuple[Estimate, float]:
+    """The mean of the means from above and from below, so that neither weighs more by ending more
+    runs, and the deviation of runs within a side; with one run from each the deviation of both."""
+    free = sum(some.size - 1 for some in sides)
+    if free < 1:
+        ends = np.concatenate(sides)
+        own = t_interval(ends, level)
+        return Estimate(own.value, own.low, own.high, level, "t, over runs"), float(
+            ends.std(ddof=1)
+        )
+    value = float(np.mean([some.mean() for some in sides]))
+    variance = sum(float(((some - some.mean()) ** 2).sum()) for some in sides) / free
+    error = math.sqrt(variance * sum(1 / some.size for some in sides)) / len(sides)
+    reach = float(stats.t.isf((1 - level) / 2, free)) * error
+    own = Estimate(value, value - reach, value + reach, level, "t, over runs")
+    return own, math.sqrt(variance)
 
 
 def of_settings(

@@ -230,8 +230,8 @@ STRENGTHS = (
 )
 """Sentence of a methods section about tasks that order surfaces."""
 SETTINGS = (
-    "Each participant's mean over runs has Student's interval, and so has the mean over "
-    "participants (of thresholds, of their logarithms)."
+    "Each participant's mean of the runs from above and from below has Student's interval over "
+    "runs, and the mean over participants (of thresholds, of their logarithms) that over them."
 )
 """Sentence of a methods section about runs of adjustments and limits."""
 CLEARER = "Of the two directions the one in which a rhythm is clearer decides."

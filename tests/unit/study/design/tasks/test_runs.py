@@ -28,7 +28,7 @@ from squeezefilm.study.report.page import write_study
 from squeezefilm.study.report.words import read_first
 from squeezefilm.study.tasks.analyze import analyze_study
 from squeezefilm.study.tasks.findings import PersonEstimate, TaskAnalysis
-from squeezefilm.study.tasks.settings import of_settings
+from squeezefilm.study.tasks.settings import _own, of_settings
 
 PERIODS, YES_NO = load_design("period-direction"), load_design("friction-yes-no")
 
@@ -180,6 +180,19 @@ def test_who_ends_no_run_has_no_value(tmp_path: Path) -> None:
     assert found.pooled is None
     assert any("fewer than two runs" in note for note in found.notes)
     write_study(found, tmp_path / "page")
+
+
+def test_runs_from_either_side_weigh_alike() -> None:
+    # Two from above at 0.2 and 0.3, four from below about −0.1: their means are 0.25 and −0.1.
+    own, deviation = _own([np.array([0.2, 0.3]), np.array([-0.15, -0.05, -0.1, -0.1])], 0.95)
+    variance = (2 * 0.05**2 + 2 * 0.05**2) / 4
+    assert deviation == pytest.approx(math.sqrt(variance))
+    assert own.value == pytest.approx(0.075)
+    reach = 2.7764451 * math.sqrt(variance * (1 / 2 + 1 / 4)) / 2
+    assert (own.low, own.high) == pytest.approx((0.075 - reach, 0.075 + reach))
+    one, both = _own([np.array([0.1]), np.array([-0.1])], 0.95)
+    assert one.value == pytest.approx(0.0)
+    assert both == pytest.approx(math.sqrt(0.02))
 
 
 def test_thresholds_have_a_geometric_mean_over_people_and_equality_a_plain_one() -> None:
