@@ -42,9 +42,29 @@ settings.register_profile("properties", max_examples=120 if _EXPLORES else 12, *
 settings.register_profile("dear", max_examples=24 if _EXPLORES else 5, **_HOW)
 settings.load_profile("properties")
 
+_approx = pytest.approx
+
+
+def _approx_of_any_size(
+    expected: Any, rel: Any = None, abs: Any = None, nan_ok: bool = False
+) -> Any:
+    """Compare by share alone unless a test says otherwise: pytest's own absolute tolerance, 1e-12,
+    is a picofarad, a micrometre's millionth and a tenth of what a ceramic yields per volt."""
+    if abs is None:
+        rel, abs = 1e-6 if rel is None else rel, 0.0
+    return _approx(expected, rel=rel, abs=abs, nan_ok=nan_ok)
+
+
+pytest.approx = _approx_of_any_size
+
 # Tests that may go to any process, one by one; of other files one process takes all, since they
 # share what is dear. (xdist's own groups are passed over under pytest 9.2: it names tests anew.)
-_SPREAD = ("tests/e2e/", "tests/faults/", "tests/properties/")
+_SPREAD = (
+    "tests/e2e/",
+    "tests/faults/",
+    "tests/properties/",
+    "tests/verification/test_verbs_agree.py",
+)
 _TOGETHER = ("tests/e2e/test_lab_", "tests/e2e/test_report_page.py")
 
 

@@ -218,7 +218,7 @@ def test_the_gaussian_overlap_is_its_integral() -> None:
         integral, _ = quad(
             lambda z, t=t: (z - t) ** 1.5 * math.exp(-z * z / 2) / math.sqrt(2 * math.pi), t, t + 30
         )
-        assert float(gaussian_overlap(t)) == pytest.approx(integral, rel=1e-7)
+        assert float(gaussian_overlap(t)) == pytest.approx(integral, rel=1e-7, abs=1e-12)
 
 
 @pytest.mark.parametrize("heights", ["exponential", "gaussian"])

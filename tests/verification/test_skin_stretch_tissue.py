@@ -49,7 +49,7 @@ def test_on_the_axes_and_behind_the_edges_no_digits_are_lost() -> None:
     y = np.array([0.0, 0.8e-3, 0.8e-3, -0.8e-3, 0.0, 0.0])
     u, v = tangential_patch(x, y, *SIZE, 0.4)
     mirrored = tangential_patch(-x, -y, *SIZE, 0.4)
-    assert u == pytest.approx(mirrored[0], rel=1e-12)
+    assert u == pytest.approx(mirrored[0], rel=1e-11)
     assert v == pytest.approx(mirrored[1], rel=1e-9, abs=1e-18)
     # Far away it is a point force.
     assert u[-1] == pytest.approx(SIZE[0] * SIZE[1] / (2 * math.pi * 0.1), rel=1e-4)

@@ -34,7 +34,9 @@ def test_places_lead_back_to_the_values() -> None:
     for _ in range(200):
         values = SPACE.at({one.name: draw.random() for one in SPACE.free})
         again = SPACE.at(SPACE.places(values))
-        assert again == pytest.approx(values)
+        assert again.keys() == values.keys()
+        for name, value in values.items():
+            assert again[name] == (value if isinstance(value, str) else pytest.approx(value))
 
 
 def test_what_is_fixed_is_not_free() -> None:

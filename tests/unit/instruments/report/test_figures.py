@@ -211,7 +211,7 @@ def test_lateness_is_drawn_as_it_was_counted() -> None:
     # 801 ways from 0 to 0.6 mm; the hundred unknown ones are in no bar.
     assert (len(bars), bars.sum()) == (60, 801)
     edges = [one.get_x() for one in right.patches]
-    assert (edges[0], edges[-1]) == pytest.approx((0, 0.59))
+    assert (edges[0], edges[-1]) == pytest.approx((0, 0.59), abs=1e-12)
     assert (right.get_xlabel(), right.get_ylabel()) == (
         "way from sample to its command (mm)", "ticks",
     )  # fmt: skip

@@ -96,7 +96,7 @@ def test_presets_are_listed_with_what_was_searched_here(lab: Talk) -> None:
 def test_requirements_are_checked_where_things_are_parsed(lab: Talk) -> None:
     found = lab.say("check requirements", text=TEXT)
     assert (found["type"], found["name"]) == ("requirements checked", "biet2008-plate")
-    wrong = TEXT.replace('length = "83 mm"', 'length = "83"')
+    wrong = TEXT.replace('length = "73 mm"', 'length = "73"')
     assert "line 11" in lab.refused("check requirements", text=wrong)
     assert lab.asked == [("quick", "requirements", "asked_of", False)] * 2
 

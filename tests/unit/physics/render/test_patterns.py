@@ -121,15 +121,17 @@ def test_these_values_of_the_noise_never_change() -> None:
 def test_an_image_is_seen_as_a_picture_is() -> None:
     image = Image(((0.0, 0.2, 0.4), (0.6, 0.8, 1.0)), 1e-3, left=0.01, bottom=0.02)
     centres = np.array([0.0105, 0.0115, 0.0125])
-    assert along(image, centres, 0.0215) == pytest.approx([0.0, 0.2, 0.4])
+    assert along(image, centres, 0.0215) == pytest.approx([0.0, 0.2, 0.4], abs=1e-12)
     assert along(image, centres, 0.0205) == pytest.approx([0.6, 0.8, 1.0])
     assert along(image, 0.011, 0.021) == pytest.approx(0.4)
     assert along(image, [0.0, 1.0], 0.0205) == pytest.approx([0.6, 1.0])
     tiled = Image(image.values, 1e-3, 0.01, 0.02, "repeat")
-    assert along(tiled, centres + 6e-3, 0.0215 - 4e-3) == pytest.approx([0.0, 0.2, 0.4])
+    assert along(tiled, centres + 6e-3, 0.0215 - 4e-3) == pytest.approx([0.0, 0.2, 0.4], abs=1e-12)
     assert along(tiled, 0.013, 0.0205) == pytest.approx((1.0 + 0.6) / 2)
     alone = Image(image.values, 1e-3, 0.01, 0.02, "zero")
-    assert along(alone, [0.0099, 0.0131, 0.012], 0.0205) == pytest.approx([0.0, 0.0, 0.9])
+    assert along(alone, [0.0099, 0.0131, 0.012], 0.0205) == pytest.approx(
+        [0.0, 0.0, 0.9], abs=1e-12
+    )
     array = np.random.default_rng(1).random((4, 5))
     assert Image.from_array(array, 1e-3).values == tuple(map(tuple, array.tolist()))
 

@@ -60,7 +60,7 @@ def test_a_shape_its_rest_and_its_slope(code: int) -> None:
         assert s == pytest.approx(shape_at(code, z), abs=1e-13)
         assert rest == pytest.approx(1 - shape_at(code, z), abs=1e-13)
         centred = (shape_at(code, z + h) - shape_at(code, z - h)) / (2 * h)
-        assert slope == pytest.approx(centred, rel=1e-6)
+        assert slope == pytest.approx(centred, rel=1e-6, abs=1e-12)
     for far, end in ((-1e6, 0.0), (1e6, 1.0)):
         s, rest, slope = kernel.sigmoid(code, far)
         assert (s, rest, slope) == pytest.approx((end, 1 - end, 0.0), abs=1e-12)

@@ -212,10 +212,10 @@ def test_without_nodal_diameters_the_scan_is_a_whole_diameter() -> None:
     right, left, _, *circles = axes.get_lines()
     # It is the middle that moves most: there it is up.
     motion = 12 - 10 * WIDE / 15e-3
-    assert right.get_ydata() == pytest.approx(motion)
+    assert right.get_ydata() == pytest.approx(motion, abs=1e-12)
     assert right.get_xdata() == pytest.approx(1e3 * WIDE)
     assert left.get_xdata() == pytest.approx(-1e3 * WIDE)
-    assert left.get_ydata() == pytest.approx(motion)
+    assert left.get_ydata() == pytest.approx(motion, abs=1e-12)
     assert [one.get_xdata()[0] for one in circles] == pytest.approx([15, -15])
     assert list(labelled(axes)) == ["nodal circle"]
     assert axes.get_xlim() == pytest.approx((-30, 30))
