@@ -67,7 +67,11 @@ th {{ font-weight: 600; }}
 .mark {{ font-weight: 700; }}
 code {{ font-family: ui-monospace, "DejaVu Sans Mono", monospace; font-size: .9em; }}
 footer {{ font-size: .9rem; padding-bottom: 2rem; }}
-@media (max-width: 48rem) {{ ul.verdict li, ul.verdict b {{ display: block; }} }}
+@media (max-width: 48rem) {{
+  ul.verdict li, ul.verdict b {{ display: block; }}
+  main {{ padding: 0 .5rem; }} section, details {{ padding: .9rem; }}
+  table {{ font-size: .88rem; }} th, td {{ padding-right: .5rem; }}
+}}
 @media print {{
   body {{ font-size: 10.5pt; }}
   details::details-content {{ content-visibility: visible; display: block; height: auto; }}
