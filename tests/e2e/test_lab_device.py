@@ -99,7 +99,7 @@ def test_a_twin_passes_every_check(chromium: Browser, running_lab: RunningLab) -
             break
     assert failed == []
     keep(page, "lab-device-checked-dark-1280")
-    assert page.locator(".passed").count() == 18
+    assert page.locator(".passed").count() == 21
     assert page.evaluate(CONTRAST) == []
     assert complaints == []
 
