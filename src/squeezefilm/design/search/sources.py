@@ -47,7 +47,9 @@ def plate_sources(
     base = requirements.started_from
     for part, kind in _PARTS.items():
         sources |= _of_material(base, part, str(settings[part]), kind, display)
-    return sources
+    # As a file has them: what is uncertain is drawn in this order.
+    order = {".".join(map(str, leaf.path)): n for n, leaf in enumerate(leaves(display))}
+    return {at: sources[at] for at in sorted(sources, key=lambda at: order.get(at, len(order)))}
 
 
 def shared_sources(requirements: Requirements) -> dict[str, Provenance]:
