@@ -24,8 +24,7 @@ SOLVED = 300_000
 
 def figures() -> None:
     """What the report and the rendering of the tutorial's plate show."""
-    analysis = sf.analyze(PLATE, samples=0)
-    sf.plot(analysis, "area").savefig(PICTURES / "plate.png", dpi=90)
+    sf.plot(sf.analyze(PLATE)).savefig(PICTURES / "plate.png", dpi=90)
     rendered = sf.render_texture(PLATE, "sine-3mm", "60 mm/s over 4 cm")
     sf.plot(rendered).savefig(PICTURES / "texture.png", dpi=90)
 
