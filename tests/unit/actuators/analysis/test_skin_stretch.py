@@ -60,6 +60,14 @@ def test_load_line_and_skin_meet_where_both_say(found: SkinStretchAnalysis) -> N
     assert abs(found.motion[0]) == pytest.approx(tip.deflection, rel=1e-4)
 
 
+def test_the_power_is_that_of_every_actuator(found: SkinStretchAnalysis) -> None:
+    heat, burnt = found.power
+    bender, voltage, count = found.array.bender, found.voltage, found.array.cradle.count
+    tangent = found.array.actuator.loss_tangent
+    assert heat == pytest.approx(count * np.pi * 100.0 * bender.capacitance * tangent * voltage**2)
+    assert burnt == pytest.approx(count * bender.capacitance * (2 * voltage) ** 2 * 100.0)
+
+
 def test_the_wave_moves_with_the_finger(found: SkinStretchAnalysis) -> None:
     """A quarter of a period later the strain is what it was a quarter of a wave further on."""
     wave = found.wave

@@ -36,3 +36,12 @@ def test_an_odd_reversal_is_left_out_with_the_first_ones() -> None:
         assert stairs.threshold(discard) == pytest.approx(geometric)
     with pytest.raises(InputError, match="no two reversals"):
         stairs.threshold(4)
+
+
+@pytest.mark.parametrize("lowest", [-math.inf, 0.0])
+def test_stairs_of_logarithms_have_no_end_below_where_none_is_above_nothing(lowest: float) -> None:
+    rule = StaircaseRule(8.0, 1.0, 1.0, down_after=1, lowest=lowest, axis="log")
+    stairs = Staircase(rule)
+    for _ in range(5):
+        stairs.update(stairs.next_stimulus(), True)
+    assert stairs.next_stimulus() == pytest.approx(8.0 * math.exp(-5.0))
