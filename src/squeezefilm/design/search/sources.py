@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from collections.abc import Iterator, Mapping
 
 from squeezefilm.core import presets
@@ -43,7 +44,7 @@ def plate_sources(
             sources[path] = _quality(requirements, given)
         elif name not in _PARTS:
             sources[path] = chosen
-    sources |= _tolerances(requirements, display, sources)
+    sources |= dict(_tolerances(requirements, display, sources))
     base = requirements.started_from
     for part, kind in _PARTS.items():
         sources |= _of_material(base, part, str(settings[part]), kind, display)
@@ -98,14 +99,16 @@ def _tolerances(
     """The sources of what a workshop makes, with how well it does."""
     body = display.actuator
     assert isinstance(body, RectangularPlate | DiscPlate), "shapes make no others"
-    for path, of in toleranced(body).items():
-        deviation, (value, _) = getattr(requirements.tolerances, of), value_at(body, path)
+    names = toleranced(body)
+    for at, source in sources.items():
+        # A tolerance is of all ceramics, whatever their number.
+        path = re.sub(r"\.\d+\.", ".*.", at.removeprefix("actuator."))
+        if not at.startswith("actuator.") or path not in names:
+            continue
+        deviation, (value, _) = getattr(requirements.tolerances, names[path]), value_at(body, path)
         # A description's value stays above 0 within three standard deviations.
         if 0 < 3 * deviation < value:
-            for at in (f"actuator.{path.replace('*', str(n))}" for n in range(len(sources))):
-                if at in sources:
-                    spread = Normal(value, deviation)
-                    yield at, dataclasses.replace(sources[at], distribution=spread)
+            yield at, dataclasses.replace(source, distribution=Normal(value, deviation))
 
 
 def _quality(requirements: Requirements, given: Provenance) -> Provenance:

@@ -24,9 +24,9 @@ from squeezefilm.design.search.correction import CORRECTED
 from squeezefilm.design.search.criteria import breaches, criterion_of
 from squeezefilm.design.search.requirements import Requirements, Tolerances, toleranced
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate, resized
+from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.physics.plausibility.checks import checked_before
-from squeezefilm.physics.uncertainty.parameters import value_at, with_values
+from squeezefilm.physics.uncertainty.parameters import made_with, value_at
 
 log = logging.getLogger(__name__)
 
@@ -154,4 +154,4 @@ def as_made(
     quality = body.quality_factor * (1 + off["quality_factor"])
     body = replace(body, substrate=sheet, ceramic=ceramic, quality_factor=quality)
     lengths = {path: value_at(body, path)[0] + off[of] for path, of in toleranced(body).items()}
-    return replace(display, actuator=with_values(resized(body, lengths), lengths))
+    return replace(display, actuator=made_with(body, lengths))

@@ -261,6 +261,8 @@ def resized(
 ) -> RectangularPlate | DiscPlate:
     """The same plate or disc with another `length`, `width` or `diameter` (m, by these names), and
     what lies on it in proportion."""
+    if not sides.keys() & {"length", "width", "diameter"}:
+        return body
     if isinstance(body, DiscPlate):
         larger = sides.get("diameter", body.diameter) / body.diameter
         every = ("diameter", "inner_diameter", "ceramic_outer_diameter", "ceramic_inner_diameter")

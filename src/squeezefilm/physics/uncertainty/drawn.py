@@ -1,4 +1,4 @@
-"""Many draws of a mixture, how many there may be, and kept on disk.
+"""Many draws of a mixture, kept on disk, and the check of how many are asked for.
 
 Whoever analyses a display again, with another texture or report, asks for the same draws again.
 """

@@ -23,7 +23,6 @@ from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.touch import Touch, touch
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.heat.warming import heat_source
-from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate, resized
 from squeezefilm.physics.plate.loaded_mode import LoadedMode
 from squeezefilm.physics.plate.working_mode import WorkingMode
 from squeezefilm.physics.uncertainty.free_amplitude import FreeAmplitude
@@ -44,8 +43,8 @@ from squeezefilm.physics.uncertainty.parameters import (
     FORCE,
     SKIN_COMPLIANCE,
     Parameter,
+    made_with,
     uncertain_parameters,
-    with_values,
 )
 
 Input = Parameter | Choice
@@ -286,11 +285,7 @@ class Mixture:
         if key not in self._parts:
             if len(self._parts) >= _MOST_PARTS:
                 self._parts.clear()
-            whole = getattr(self.display, name)
-            if isinstance(whole, RectangularPlate | DiscPlate):
-                # What lies on a plate goes with its sides: ceramics may fill it.
-                whole = resized(whole, values)
-            self._parts[key] = with_values(whole, values)
+            self._parts[key] = made_with(getattr(self.display, name), values)
         return self._parts[key]
 
     def mode(self, draw: Draw) -> WorkingMode:

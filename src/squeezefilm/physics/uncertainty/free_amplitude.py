@@ -19,10 +19,9 @@ from squeezefilm.physics.plate.layout import (
     AnnularStator,
     DiscPlate,
     RectangularPlate,
-    resized,
 )
 from squeezefilm.physics.plate.working_mode import working_mode
-from squeezefilm.physics.uncertainty.parameters import number_paths, with_values
+from squeezefilm.physics.uncertainty.parameters import made_with, number_paths
 
 # What a rectangular plate is beside its layout; how much each moves it is asked for once.
 _MADE_OF = ("substrate", "ceramic", "glue", "quality_factor")
@@ -105,7 +104,7 @@ class FreeAmplitude:
             return 1.0 if isinstance(actuator, AnnularStator) else value / nominal
         if path not in self._curves:
             less, more = (
-                math.log(self._per_volt(self._with(path, share * nominal)))
+                math.log(self._per_volt(made_with(actuator, {path: share * nominal})))
                 - math.log(self.reference)
                 for share in (1 / _APART, _APART)
             )
@@ -114,13 +113,6 @@ class FreeAmplitude:
         slope, bend = self._curves[path]
         off = math.log(value / nominal)
         return math.exp(slope * off + bend * off**2)
-
-    def _with(self, path: str, value: float) -> Actuator:
-        """The actuator with another number; a disc's ceramic goes with its diameter."""
-        actuator = self.nominal.actuator
-        if isinstance(actuator, DiscPlate) and path == "diameter":
-            return resized(actuator, {path: value})
-        return with_values(actuator, {path: value})
 
     @staticmethod
     # Every question of an analysis asks for the same discs.

@@ -18,6 +18,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import Piezoceramic
 from squeezefilm.physics.contact.finger.fingertip import DECAY_LENGTH_SPREAD
 from squeezefilm.physics.display import DECAY_LENGTH, Display, NamedDisplay
+from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate, resized
 from squeezefilm.physics.plausibility.checks import described_numbers
 
 _Whole = TypeVar("_Whole")
@@ -211,15 +212,17 @@ def uncertain_parameters(
 def _of_batch(display: Display, path: str) -> str:
     """The path, with ``*`` for the number of a ceramic whose thickness all have, as sure: they are
     of one batch, and each draw is of all."""
-    ceramics = f"{path.rpartition('.patches.')[0]}.patches."
+    before, patches, end = path.rpartition(".patches.")
+    if not patches or not end.endswith(".thickness"):
+        return path
+    ceramics = f"{before}{patches}"
     alike = [
-        (value_at(display, other)[0], display.provenance[other].distribution)
-        for other in (path, *display.provenance)
+        (value_at(display, other)[0], origin.distribution)
+        for other, origin in display.provenance.items()
         if other.startswith(ceramics) and other.endswith(".thickness")
     ]
-    is_whole = len(alike) - 1 == len(getattr(display.actuator, "patches", ()))
-    same = is_whole and path.endswith(".thickness") and len(set(alike)) == 1
-    return f"{ceramics}*.thickness" if same else path
+    is_whole = len(alike) == len(getattr(display.actuator, "patches", ()))
+    return f"{ceramics}*.thickness" if is_whole and len(set(alike)) == 1 else path
 
 
 def _has(display: Display, path: str) -> bool:
@@ -336,6 +339,14 @@ def with_values(whole: _Whole, values: Mapping[str, float | str]) -> _Whole:
             node = node.setdefault(part, {})
         node[last] = value
     return typing.cast(_Whole, _with(whole, tree))
+
+
+def made_with(part: _Whole, values: Mapping[str, float]) -> _Whole:
+    """A part of a display as by `with_values`; what lies on a plate or disc goes with its sides,
+    since ceramics may fill it."""
+    if isinstance(part, RectangularPlate | DiscPlate):
+        part = typing.cast(_Whole, resized(part, values))
+    return with_values(part, values)
 
 
 def _with(owner: Any, tree: Mapping[str, Any]) -> Any:

@@ -48,7 +48,7 @@ NUMBERS = ("Quantity", "Value", "Remark")
 _INFLUENCES = ("Drawn", "From", "Share of the variance", "Whose")
 # Of what could be measured: as many rows as one decides from.
 _NEXT = 5
-# And of assumed values as many as one reads.
+# Rows of assumed values that a page shows.
 _ASSUMED = 20
 
 

@@ -97,10 +97,10 @@ def fit_ring_down(recording: RingDown) -> RingDownFit:
         decay.columns, decay.w, decay.start, reach=np.array([decay.wide, 30.0 * decay.rate])
     )
     blocks = _Blocks(t, float(fit.shape[0]))
-    bent: _Bent | None = _Bent.of(decay, fit)
-    if bent is not None and (bent.chance > _CHANCE or blocks.misfits(decay.w - bent.model)):
-        # A dependence on the amplitude that does not describe the decay stands for something else.
-        bent = None
+    curved = _Bent.of(decay, fit)
+    # A dependence on the amplitude that does not describe the decay stands for something else.
+    is_other = curved.chance > _CHANCE or blocks.misfits(decay.w - curved.model)
+    bent = None if is_other else curved
     two = False
     if bent is None and blocks.misfits(fit.residual):
         pair = _with_second(decay, fit)
