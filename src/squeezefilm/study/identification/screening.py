@@ -116,8 +116,11 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
     by_amount = main.design.on_a_scale or not main.design.described.ranks
     # Runs go where the answers lead, so that these say little of whether they follow.
     by_amount = by_amount and not any(series.in_runs for series in main.design.adaptive)
-    models = [_models(mine) if main.design.answers and by_amount else () for mine in people]
-    follows = [_follows(mine, model) for mine, model in zip(people, models, strict=True)]
+    modelled = bool(main.design.answers) and by_amount
+    models = [_models(mine, mine) if modelled else () for mine in people]
+    # Who feels nothing of small differences shows by the catch trials that the task is done.
+    seen = [_with_caught(mine, caught, model) for mine, model in zip(people, models, strict=True)]
+    follows = [_follows(mine, model) for mine, model in zip(people, seen, strict=True)]
     middle, asked = float(np.median(follows)), -float(ndtri(rule.chance))
     excused, said = main.design.task == "match-to-sample" or len(people) < _LEAST_PEOPLE, ""
     if len(people) >= _LEAST_PEOPLE and abs(middle) < _ABOVE_CHANCE:
@@ -175,22 +178,20 @@ def _habits(mine: Answers) -> list[str]:
     return reasons
 
 
-def _models(mine: Answers, lapse: float = _LAPSE) -> _Models:
-    """ln likelihood of each trial's answer by who does the task, who mixes up the answers, and who
-    guesses, each of shape (trials, models)."""
+def _models(mine: Answers, of: Answers, lapse: float = _LAPSE) -> _Models:
+    """ln likelihood of each answer in `of` by who does the task, who mixes up the answers, and who
+    guesses, each of shape (trials, models); models span what the main trials `mine` can tell."""
     model = mine.design.described.model
     if model is None or model.counts < 0:
-        return _among_names(mine)
-    shown = mine.presented
-    x = mine.differences if mine.design.on_a_scale else (shown[0] != shown[-1]).astype(float)
-    y = mine.told
+        return _among_names(mine, of)
+    x, asked, y = _differences(mine), _differences(of), of.told
     reach = max(float(np.abs(x).max()), 1e-9)
     least = float(np.abs(x[x != 0]).min()) if np.any(x) else reach
     least_place, most_place = model.criteria[[0, -1]] if model.rate is None else (-1.0, 1.5)
     places = np.linspace(least_place, most_place, _PLACES) * reach
     spreads = np.geomspace(least / 4, 8 * reach, _SPREADS)
     place, spread = (axis.ravel() for axis in np.meshgrid(places, spreads))
-    rise = ndtr((x[:, None] - place) / spread)
+    rise = ndtr((asked[:, None] - place) / spread)
     p = 0.5 * lapse + (1 - lapse) * rise
     said = y[:, None]
     task, turned = np.log(np.where(said, p, 1 - p)), np.log(np.where(said, 1 - p, p))
@@ -198,16 +199,32 @@ def _models(mine: Answers, lapse: float = _LAPSE) -> _Models:
     return task, turned, np.log(np.where(said, guesses, 1 - guesses))
 
 
-def _among_names(mine: Answers) -> _Models:
+def _differences(answers: Answers) -> si.FloatArray:
+    if answers.design.on_a_scale:
+        return answers.differences
+    return np.asarray(answers.presented[0] != answers.presented[-1], dtype=float)
+
+
+def _with_caught(
+    mine: Answers, caught: Answers, models: _Models | tuple[()]
+) -> _Models | tuple[()]:
+    """The models of a person's main trials, and of their catch trials after them."""
+    own = caught.take(caught.participant == mine.participant[0])
+    if not models or not own.trials:
+        return models
+    pairs = zip(models, _models(mine, own), strict=True)
+    task, turned, guess = (np.concatenate(pair) for pair in pairs)
+    return task, turned, guess
+
+
+def _among_names(mine: Answers, of: Answers) -> _Models:
     """The same of names: a share of the answers is known, the others follow a person's own
     frequencies; mixed up is the scale from its other end."""
     names = len(mine.design.answers)
     own = (np.bincount(mine.choice, minlength=names) + 0.5) / (mine.trials + 0.5 * names)
-    guess = own[mine.choice][:, None]
+    guess = own[of.choice][:, None]
     known = np.linspace(0.0, 1 - _LAPSE, _SPREADS)
-    right, mirrored = (
-        (mine.choice == name)[:, None] for name in (mine.right, names - 1 - mine.right)
-    )
+    right, mirrored = ((of.choice == name)[:, None] for name in (of.right, names - 1 - of.right))
     # Who has the middle of an odd scale right is not mixed up by it.
     mirrored = mirrored & ~right
     task, turned = (np.log(known * hit + (1 - known) * guess) for hit in (right, mirrored))
@@ -255,7 +272,7 @@ def _changed(mine: Answers, models: _Models) -> list[str]:
             said.append(words.format(int(at[gain.argmax()])))
     if len(models[0][0]) == _PLACES * _SPREADS:
         usual, many = (
-            max(_best(_models(mine, times * rule.lapses)[0]) for times in pair)
+            max(_best(_models(mine, mine, times * rule.lapses)[0]) for times in pair)
             for pair in ((0.5, 1.0), (1.5, 2.0))
         )
         if many - max(one_for_all, usual) > _SURE:

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.recovery.task_people import DESIGNS, answered, somebody
+from tests.recovery.task_people import DESIGNS, Person, answered, somebody
 
 from squeezefilm.study.design.rules import ExclusionRule
+from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.identification import screening
 from squeezefilm.study.identification.screening import _habits, judged_people
 
@@ -133,3 +134,24 @@ def test_a_rule_is_the_designs_own_or_one_that_marks() -> None:
     design = dataclasses.replace(DESIGNS["constant"], exclusion=strict)
     assert screening.rule_of(design) is strict
     assert screening.rule_of(dataclasses.replace(design, exclusion=None)).action == "mark"
+
+
+def test_catch_trials_tell_little_sense_from_guessing() -> None:
+    """Who feels hardly any difference but what everybody tells does the task."""
+    design = dataclasses.replace(load_design("friction-jnd"), practice=0)
+    dull = Person(0.7, 0.9, 0.0)
+    named = {"dull": 0, "dull, no catch": 0, "guesses": 0}
+    seeds = 20
+    for seed in range(seeds):
+        random = np.random.default_rng(seed)
+        people = [dull, *(somebody(random) for _ in range(6)), somebody(random)]
+        answers = answered(design, people, random)
+        guesser = answers.participant == 7
+        guess = random.integers(0, 2, answers.trials)
+        answers = dataclasses.replace(answers, choice=np.where(guesser, guess, answers.choice))
+        judged = judged_people(answers, 0)[0]
+        named["dull"] += bool(judged[0].reasons)
+        named["guesses"] += bool(judged[7].reasons)
+        named["dull, no catch"] += bool(judged_people(answers.main(0), 0)[0][0].reasons)
+    assert named["guesses"] >= seeds - 1
+    assert named["dull"] <= named["dull, no catch"] / 2
