@@ -25,7 +25,7 @@ Model = Callable[[si.FloatArray], tuple[si.Array, si.Array]]
 _PASSES = 3
 # A floor under relative noise must be told by this much (twice the logarithm of the likelihood).
 _EVIDENCE = 10.0
-_FLOORS = np.geomspace(3e-3, 3.0, 25)
+_FLOORS = 30
 
 
 @dataclass(frozen=True)
@@ -222,14 +222,14 @@ def noise_floor(residual: si.Array, size: si.FloatArray) -> float:
     rows = np.abs(second) ** 2
     if rows.size < 8 or not np.all(size > 0) or not rows.any():
         return 0.0
-    typical = float(np.mean(size))
 
     def deviance(floor: float) -> float:
         square = size**2 + floor**2
         square = (square[2:] + 4 * square[1:-1] + square[:-2]) / 6
         return float(share * (np.sum(np.log(square)) + rows.size * np.log(np.mean(rows / square))))
 
-    floors = typical * _FLOORS
+    # A floor far above the largest size is noise of one size everywhere.
+    floors = np.geomspace(3e-3 * np.mean(size), 10.0 * np.max(size), _FLOORS)
     tried = [deviance(float(floor)) for floor in floors]
     best = int(np.argmin(tried))
     return float(floors[best]) if deviance(0.0) - tried[best] > _EVIDENCE else 0.0
