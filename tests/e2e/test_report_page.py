@@ -65,7 +65,7 @@ def test_the_cursor_reads_the_values_of_a_line(browser: Browser, report: Path) -
     page.goto(report.as_uri())
     page.evaluate(OPEN)
     # The uppermost: measured points lie on the line's.
-    spot = page.locator("#figure-friction g.read").last
+    spot = page.locator("#figure-friction g.read", has_text="vibration amplitude").last
     text = spot.locator("text")
     assert not text.is_visible()
     spot.locator("circle").hover(force=True)
@@ -73,6 +73,9 @@ def test_the_cursor_reads_the_values_of_a_line(browser: Browser, report: Path) -
     assert re.fullmatch(
         r"vibration amplitude.*: [\d.]+, relative friction.*: [\d.]+", text.inner_html()
     )
+    # Curves on one scale along x say its name, also those drawn over others.
+    said = page.locator("#figure-friction g.read text").all_text_contents()
+    assert not [words for words in said if words.startswith(":")]
     page.close()
 
 

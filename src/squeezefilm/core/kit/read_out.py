@@ -25,6 +25,9 @@ def read_outs(figure: Figure) -> str:
 
 def _of_axes(axes: Axes, height: float) -> str:
     box, data = axes.get_window_extent(), axes.transData
+    # Axes drawn over others have the scale along x in common, and its name stands once.
+    alike = axes.get_shared_x_axes().get_siblings(axes)
+    along_x = next((each.get_xlabel() for each in alike if each.get_xlabel()), "")
     spots = []
     for line in axes.get_lines():
         points = np.asarray(line.get_xydata(), dtype=float)
@@ -38,7 +41,7 @@ def _of_axes(axes: Axes, height: float) -> str:
             path = np.column_stack([np.interp(at, along, path[:, k]) for k in (0, 1)])
         path = path[[box.contains(*place) for place in path]][:: 1 + len(path) // (2 * _MOST)]
         for (across, up), (x, y) in zip(path, data.inverted().transform(path), strict=True):
-            said = f"{axes.get_xlabel()}: {x:.4g}, {axes.get_ylabel()}: {y:.4g}"
+            said = f"{along_x}: {x:.4g}, {axes.get_ylabel()}: {y:.4g}"
             spots.append(
                 f'<g class="read"><circle cx="{across:.1f}" cy="{height - up:.1f}" r="{_RADIUS}"/>'
                 f'<text x="{box.x0 + 4:.0f}" y="{height - box.y1 + 11:.0f}">{escape(said)}</text>'

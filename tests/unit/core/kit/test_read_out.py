@@ -47,3 +47,13 @@ def test_points_without_a_line_have_a_spot_each_within_the_axes() -> None:
 
 def test_a_mark_across_the_axes_has_none() -> None:
     assert spots("mark") == []
+
+
+def test_axes_over_others_name_the_scale_that_they_share() -> None:
+    figure = Figure(figsize=(4.0, 3.0))
+    axes = figure.add_subplot()
+    axes.set(xlabel="f <kHz>", ylabel="amplitude")
+    axes.twinx().set_ylabel("w")
+    figure.axes[1].plot([1, 2], [0, 1], "o", linestyle="None")
+    found = SPOT.findall(style.svg(figure, "a", "A figure"))
+    assert [spot[2:] for spot in found] == [("1", "0"), ("2", "1")]
