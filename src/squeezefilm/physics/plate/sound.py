@@ -32,6 +32,9 @@ _DENSITY, _SOUND_SPEED = 1.204, 343.2
 _COARSEST = 4
 """Points per wavelength in air below which a surface is refused."""
 
+_MOST_WAVES = 500
+"""Waves along a side of a surface; a plate of 300 nodal lines has 150."""
+
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
@@ -93,8 +96,9 @@ def smooth_surface(
 
     Gauss–Legendre quadrature with three points to a wave and six more along each side: levels of
     the plates that come along are within .01 dB of those of a grid of ten times as many points.
-    Raises `InputError` for a velocity of another shape.
+    Raises `InputError` for a velocity of another shape, or more than 500 waves along a side.
     """
+    si.require("wave", wave, si.Unit("m"), at_least=max(sides) / _MOST_WAVES)
     nodes, weights = [], []
     for side in sides:
         point, weight = np.polynomial.legendre.leggauss(6 + math.ceil(3 * side / wave))

@@ -217,3 +217,5 @@ def test_few_points_of_a_smooth_surface_do_what_many_of_a_grid_do() -> None:
         assert np.abs(here - there).max() < 2e-3 * np.abs(there).max()
     with pytest.raises(InputError, match="for these lines"):
         smooth_surface(sides, lambda x, y: velocity(x, y).T, F, wave)
+    with pytest.raises(InputError, match=r"wave = 30 pm .*at least 220 µm"):
+        smooth_surface(sides, velocity, F, 3e-11)
