@@ -39,6 +39,9 @@ def voltages(times: Any) -> Any:
         (lambda: held_forces(np.eye(2), ONES, ONES), "3 contactors have"),
         (lambda: held_forces(np.eye(3), ONES, np.ones(2)), "held"),
         (lambda: held_forces(-np.eye(3), 2 * ONES, ONES), "positive definite"),
+        # Also where all contactors stick, or none touches.
+        (lambda: held_forces(-np.eye(3), 0.5 * ONES, ONES), "positive definite"),
+        (lambda: held_forces(-np.eye(3), ONES, 0 * ONES), "positive definite"),
         (
             lambda: solid_bender(bimorph(length=1.01 * MOST_SLENDER * bimorph().thickness)),
             "times as long as thick",

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, ClassVar
 
 import numpy as np
-from scipy.linalg import solve_triangular
+from scipy.linalg import cho_solve, solve_triangular
 from scipy.optimize import lsq_linear
 
 from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph, solid_bender
@@ -57,7 +57,9 @@ def held_forces(
             f"{(wanted.size, wanted.size)}",
             quantity="compliance",
         )
-    forces = np.asarray(np.linalg.solve(compliance, wanted), dtype=float)
+    # Of all contactors, so that a compliance that is none is refused also where nothing slips.
+    whole = np.linalg.cholesky(compliance)
+    forces = np.asarray(cho_solve((whole, True), wanted), dtype=float)
     if np.all(np.abs(forces) <= held):
         return forces
     touching = held > _HELD * float(np.max(held, initial=0.0))
