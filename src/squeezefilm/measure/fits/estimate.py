@@ -168,7 +168,7 @@ _F = TypeVar("_F", bound=Observing)
 
 
 def guarded_fit(fit: Callable[_P, _F]) -> Callable[_P, _F]:
-    """Have a fit raise `InputError` where its arithmetic ends, or gives what is not finite.
+    """Have a fit raise `InputError` where its arithmetic ends, or an observation is refused.
 
     Trial steps of a search may overflow; that is no message to anybody, and none comes of it.
     """
@@ -183,7 +183,7 @@ def guarded_fit(fit: Callable[_P, _F]) -> Callable[_P, _F]:
                 try:
                     _ = fitted.observations
                 except InputError as error:
-                    raise _no_fit("its numbers are not finite") from error
+                    raise _no_fit(str(error)) from error
         except (ArithmeticError, np.linalg.LinAlgError) as error:
             raise _no_fit(str(error)) from error
         return fitted
