@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
 
 import numpy as np
 from scipy.special import ndtr
@@ -25,7 +24,7 @@ from squeezefilm.study.tasks.findings import TaskAnalysis
 WEBER, WEBER_SPREAD = 0.15, 0.3
 EXPONENT, EXPONENT_SPREAD = 0.9, 0.15
 LAPSE, BIAS, CRITERION, NOISE = 0.02, 0.03, 1.4, 0.25
-QUARTILE, D_PRIME = 0.6744897501960817, 0.9538725524
+D_PRIME = 0.9538725524
 
 DESIGNS = {
     "constant": dataclasses.replace(load_design("friction-jnd"), practice=0, catch=()),
@@ -39,6 +38,22 @@ DESIGNS = {
     ),
     "magnitude": dataclasses.replace(load_design("coarseness-magnitude"), familiarisation=0),
 }
+EVERY = DESIGNS | {
+    name.partition("-")[2]: dataclasses.replace(load_design(name), practice=0)
+    for name in (
+        "period-direction",
+        "period-odd-one-out",
+        "period-pairs",
+        "period-ranking",
+        "period-adjustment",
+        "friction-yes-no",
+        "friction-detection",
+    )
+}
+THRESHOLD = 0.2
+"""Threshold of an amount against a flat surface, over the Weber fraction of the same person."""
+STRENGTH = 8.0
+"""Exponent of strengths in ranks, over that of magnitudes."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -52,19 +67,57 @@ class Person:
     def answer(
         self, design: StudyDesign, pair: tuple[Stimulus, ...], random: np.random.Generator
     ) -> str | float:
-        """To one or two surfaces."""
-        logs = [math.log(design.judged_value(one)) for one in pair]
+        """To the surfaces of a trial."""
+        if design.answers and random.random() < LAPSE:
+            return str(random.choice(design.answers))
+        amounts = [design.judged_value(one) for one in pair]
+        if design.in_amounts:
+            return self.detects(design, amounts, random)
+        logs = [math.log(amount) for amount in amounts]
         if design.task == "magnitude-estimation":
             return math.exp(self.exponent * logs[0] + NOISE * random.standard_normal()) * 1e3
-        if random.random() < LAPSE:
-            return str(random.choice(design.answers))
+        # One percept's deviation, and that of a difference of two.
+        own = math.log1p(self.weber) / D_PRIME
+        spread = math.sqrt(2) * own
         if design.task == "same-different":
-            apart = (logs[0] - logs[1]) / (math.log1p(self.weber) / D_PRIME)
-            noisy = apart + math.sqrt(2) * random.standard_normal()
-            return "different" if abs(noisy) > CRITERION else "same"
-        spread = math.log1p(self.weber) / QUARTILE
+            apart = (logs[0] - logs[1]) / own + math.sqrt(2) * random.standard_normal()
+            return "different" if abs(apart) > CRITERION else "same"
+        if design.task == "direction":
+            more = ndtr((logs[0] - math.log(design.reference_value) + self.bias) / spread)
+            return "more" if random.random() < more else "less"
+        if design.task == "odd-one-out":
+            felt = np.array(logs) + own * random.standard_normal(3)
+            away = [abs(felt[k] - np.delete(felt, k).mean()) for k in range(3)]
+            return design.answers[int(np.argmax(away))]
+        if design.task == "ranking":
+            utility = STRENGTH * self.exponent * np.array(logs) + random.gumbel(size=3)
+            return "".join(str(place + 1) for place in np.argsort(-utility))
+        if design.task == "adjustment":
+            apart = (logs[1] - logs[0] + self.bias) / spread + random.standard_normal()
+            return "equal" if abs(apart) < 1 else "less" if apart > 0 else "more"
         more = ndtr((logs[0] - logs[1] + self.bias) / spread)
         return "first" if random.random() < more else "second"
+
+    def detects(
+        self, design: StudyDesign, amounts: list[float], random: np.random.Generator
+    ) -> str:
+        """To one surface, or two of which one is flat."""
+        own = THRESHOLD * self.weber / D_PRIME
+        if design.task == "yes-no":
+            yes = ndtr(amounts[0] / own - 0.5 * CRITERION)
+            return "yes" if random.random() < yes else "no"
+        first = ndtr((amounts[0] - amounts[1]) / (math.sqrt(2) * own) + self.bias)
+        return "first" if random.random() < first else "second"
+
+    def truth(self, name: str) -> float:
+        """The number that a design of `EVERY` measures of this person."""
+        if EVERY[name].in_amounts:
+            return THRESHOLD * self.weber
+        return {
+            "magnitude": self.exponent,
+            "ranking": STRENGTH * self.exponent,
+            "adjustment": math.expm1(-self.bias),
+        }.get(name, self.weber)
 
 
 def somebody(random: np.random.Generator) -> Person:
@@ -92,7 +145,7 @@ def answered(design: StudyDesign, people: list[Person], random: np.random.Genera
                 intensity, names = 0.0, [design.reference] * 2
             elif trial.adaptive:
                 intensity = methods[trial.adaptive].next_stimulus()
-                series = next(s for s in design.adaptive if s.name == trial.adaptive)
+                series = design.series(trial.adaptive)
                 one = design.comparison(series, intensity)
                 key = f"{one.name} {intensity!r}"
                 if key not in place:
@@ -103,7 +156,10 @@ def answered(design: StudyDesign, people: list[Person], random: np.random.Genera
             pair = tuple(surfaces[place[name]] for name in names)
             given = person.answer(design, pair, random)
             if trial.adaptive:
-                methods[trial.adaptive].update(intensity, given == trial.answer)
+                in_runs = design.series(trial.adaptive).in_runs
+                methods[trial.adaptive].update(
+                    intensity, given if in_runs else given == trial.answer
+                )
             rows.append(_row(design, number, trial, names, place, intensity, given))
     columns = {key: np.array([row[key] for row in rows]).T for key in rows[0]}
     return Answers(
@@ -142,35 +198,42 @@ def _row(
 
 
 def analysed(name: str, people: list[Person], random: np.random.Generator) -> TaskAnalysis:
-    """The analysis of everybody's answers to one of `DESIGNS`."""
-    design = DESIGNS[name]
+    """The analysis of everybody's answers to a design of `EVERY`."""
+    design = EVERY[name]
     found = analyze_answers(answered(design, people, random), name)[design.displays[0]]
     assert isinstance(found, TaskAnalysis)
     return found
 
 
 def coverage(name: str, runs: int, people: int = 8, seed: int = 1) -> dict[str, float]:
-    """Shares of 95 % intervals that hold the truth: of persons, of the population's mean and its
-    spread; and the mean's median length."""
-    truth: Callable[[Person], float] = lambda one: one.weber  # noqa: E731
-    middle, spread = WEBER, WEBER_SPREAD
-    if name == "magnitude":
-        truth, middle, spread = (lambda one: one.exponent), EXPONENT, EXPONENT_SPREAD
-    persons, held, spreads, lengths = [], [], [], []
+    """Shares of 95 % intervals that hold the truth: of persons, of the population's mean and, where
+    there is one, its spread; the mean's median length; and the mean error of the population's
+    number, in parts of the truth but for an adjustment's; and the share of people whom the
+    design's rule names, though all of them do the task."""
+    typical = Person(WEBER, EXPONENT, 0.0).truth(name)
+    spread = EXPONENT_SPREAD if name == "magnitude" else WEBER_SPREAD
+    spread = STRENGTH * EXPONENT_SPREAD if name == "ranking" else spread
+    persons, held, spreads, lengths, errors, named = [], [], [], [], [], []
     for run in range(runs):
         random = np.random.default_rng([seed, run])
         group = [somebody(random) for _ in range(people)]
         found = analysed(name, group, random)
-        for one, person in zip(found.persons, group, strict=True):
-            persons.append(one.estimate.low <= truth(person) <= one.estimate.high)
+        for one in found.persons:
+            truth = group[int(one.person.removeprefix("p"))].truth(name)
+            persons.append(one.estimate.low <= truth <= one.estimate.high)
+        assert found.screening is not None
+        named.append(len(found.screening.named))
         assert found.pooled is not None
-        assert found.spread is not None
-        held.append(found.pooled.low <= middle <= found.pooled.high)
-        spreads.append(found.spread.low <= spread <= found.spread.high)
+        held.append(found.pooled.low <= typical <= found.pooled.high)
+        if found.spread is not None:
+            spreads.append(found.spread.low <= spread <= found.spread.high)
         lengths.append(found.pooled.high - found.pooled.low)
+        errors.append((found.pooled.value - typical) / (typical or 1.0))
     return {
         "persons": float(np.mean(persons)),
         "population": float(np.mean(held)),
-        "spread": float(np.mean(spreads)),
+        "spread": float(np.mean(spreads)) if spreads else math.nan,
         "length": float(np.median(lengths)),
+        "error": float(np.mean(errors)),
+        "named": float(np.mean(named)) / people,
     }

@@ -10,28 +10,30 @@ import math
 
 import pytest
 
-from .task_people import DESIGNS, coverage
+from .task_people import EVERY, coverage
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("name", ["constant", "magnitude"])
+@pytest.mark.parametrize("name", ["constant", "magnitude", "ranking", "adjustment", "pairs"])
 def test_intervals_hold_the_truth(name: str) -> None:
-    """Of two designs that are quick to fit; the campaign has the others."""
+    """Of designs that are quick to fit; the campaign has the others."""
     runs = 40
     found = coverage(name, runs)
     print(name, found)
     for what, count in (("persons", 8 * runs), ("population", runs), ("spread", runs)):
-        # Too wide is no fault that so few runs could show.
-        assert found[what] >= 0.95 - 4 * math.sqrt(0.95 * 0.05 / count), what
+        # Too wide is no fault that so few runs could show; some tasks tell no spread.
+        least = 0.95 - 4 * math.sqrt(0.95 * 0.05 / count)
+        assert found[what] >= least or math.isnan(found[what]), what
 
 
 @pytest.mark.campaign
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", EVERY)
 def test_intervals_of_many_studies_hold_the_truth(name: str) -> None:
-    # A fit of magnitudes is cheap; the others integrate a grid for each of 8 people.
-    cheap = name == "magnitude"
+    # Lines and settings are cheap; the others integrate a grid for each of 8 people.
+    cheap = name in ("magnitude", "ranking", "adjustment")
     found = coverage(name, 2000 if cheap else 500)
     print(name, found)
     low, high = (0.935, 0.965) if cheap else (0.925, 0.975)
     for what in ("persons", "population", "spread"):
-        assert low <= found[what] <= high, what
+        assert low <= found[what] <= high or math.isnan(found[what]), what
+    assert abs(found["error"]) < 0.03
