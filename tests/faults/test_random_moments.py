@@ -31,7 +31,7 @@ pytestmark = [
         sys.platform == "win32", reason="pseudo-terminals and SIGSTOP need a POSIX system"
     ),
 ]
-MOMENTS = 160  # and forty of the lab and its worker, in test_lab_killed.py
+MOMENTS = 80  # and twenty of the lab and its worker, in test_lab_killed.py
 _PATIENCE = 120.0
 
 

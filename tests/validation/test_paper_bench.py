@@ -22,7 +22,7 @@ def test_what_the_paper_measured() -> None:
     assert set(GLUE_PRIORS) <= {one.path for one in calibration_parameters(glued_paper_display())}
 
 
-@pytest.mark.nightly
+@pytest.mark.campaign
 def test_two_numbers_fix_combinations_only() -> None:
     """Soft glue, thin plate and soft ceramic explain them alike; none of them is identified."""
     found = paper_calibration()

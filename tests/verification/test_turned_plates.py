@@ -80,9 +80,15 @@ def test_turned_plates_have_the_same_modes() -> None:
         require_same_modes(random_plate(seed))
 
 
-@pytest.mark.nightly
-def test_fifty_turned_plates_take_the_same_work_and_have_the_same_modes() -> None:
-    for seed in range(1000, 1050):
+@pytest.mark.parametrize(
+    "seeds",
+    [
+        pytest.param(range(1000, 1025), marks=pytest.mark.nightly),
+        pytest.param(range(1025, 1050), marks=pytest.mark.campaign),
+    ],
+)
+def test_turned_plates_take_the_same_work_and_have_the_same_modes(seeds: range) -> None:
+    for seed in seeds:
         plate = random_plate(seed)
         require_same_work(plate)
         if solve_size(plate, plate.working_label, 30e3).seconds < 20:
