@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -143,7 +144,9 @@ def test_a_session_on_the_twin_acknowledges_the_ultrasound(tmp_path: Path) -> No
     done = run(*start, "--acknowledge-ultrasound", cwd=tmp_path, keys=answers)
     assert done.returncode == 0, done.stderr
     assert "7 trials" in done.stdout
-    assert len(list((tmp_path / "a.traces").iterdir())) == 5
+    # Of each surface the trace that studies read, and every tick of the loop.
+    traces = Counter(path.suffix for path in (tmp_path / "a.traces").iterdir())
+    assert traces == {".csv": 5, ".sqft": 5}
     run("export", "a.sqlite", "--out", "csv", cwd=tmp_path)
     text = (tmp_path / "csv" / "tiny_sessions.csv").read_text(encoding="utf-8")
     (row,) = csv.DictReader(io.StringIO(text))
