@@ -102,11 +102,12 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
     """Judgements of all who answered main trials on a display (number in the design's order), by
     the design's rule, and what must be said of all of them; empty for nothing.
 
-    Somebody is at chance whose z is below what the rule asks, or below half of the median over
-    people where that is less: few trials, or small differences, tell nobody so surely. Where the
-    median itself is not above chance, where there are fewer than three people, or where the task is
-    match-to-sample, being at chance may be what there is to be found out about the display: it is
-    then a doubt and no reason.
+    Catch trials count for z, so that somebody who feels nothing of small differences, and tells the
+    clear ones, is not taken for who guesses. Somebody is at chance whose z is below what the rule
+    asks, or below half of the median over people where that is less: few trials, or small
+    differences, tell nobody so surely. Where the median itself is not above chance, where there are
+    fewer than three people, or where the task is match-to-sample, being at chance may be what there
+    is to be found out about the display: it is then a doubt and no reason.
     """
     main, rule = answers.main(display), rule_of(answers.design)
     caught = answers.take((answers.display == display) & (answers.phase == "catch"))
