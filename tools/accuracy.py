@@ -31,10 +31,6 @@ from tests.verification import test_plate_annular as discs
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.folder import markdown_table
-from squeezefilm.measure.fits.friction.friction_folder import (
-    FolderComparison,
-    compare_folder,
-)
 from squeezefilm.measure.recordings.kinds import FrictionCurve
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL
 from squeezefilm.physics.display import load_display
@@ -44,6 +40,10 @@ from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.ring.modes import bending_mode
 from squeezefilm.physics.plate.solid.solve import solve_modes
 from squeezefilm.validation.command import ClaimResult, reproduce
+from squeezefilm.validation.published_friction import (
+    FolderComparison,
+    compare_folder,
+)
 
 PAGE = ROOT / "docs" / "reference" / "accuracy.md"
 Row = tuple[str, ...]

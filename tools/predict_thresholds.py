@@ -4,7 +4,7 @@ read.
     python tools/predict_thresholds.py             # writes predictions/detection-thresholds-….toml
     python tools/predict_thresholds.py --check     # makes it again and compares
 
-Rival senses (`measure.fits.friction.populations`) and their mixture; the file ends with the SHA-256
+Rival senses (`validation.populations`) and their mixture; the file ends with the SHA-256
 of all lines before, as those of `tools/predict_disc.py` do.
 """
 
@@ -20,13 +20,13 @@ import tomlkit
 
 from predict_disc import sealed
 from squeezefilm.core import quantities as si
-from squeezefilm.measure.fits.friction.populations import (
+from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.validation.populations import (
     MEAN_FRICTION,
     RIVALS,
     detection_medians,
     rival_observer,
 )
-from squeezefilm.physics.perception.observer import load_observer
 from threshold_fit import fitted, published
 
 FILE = Path(__file__).parents[1] / "predictions" / "detection-thresholds-at-100-mm-per-s.toml"

@@ -21,11 +21,11 @@ from scipy.special import ndtr
 
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
-from squeezefilm.measure.fits.friction.populations import METHOD_RATIO, detection_medians
 from squeezefilm.measure.recordings.kinds import DetectionThresholds
 from squeezefilm.measure.recordings.read import read_recording
 from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
+from squeezefilm.validation.populations import METHOD_RATIO, detection_medians
 
 PUBLISHED = "bernard2020-detection.toml"
 RULE = StaircaseRule(8.0, math.log(2.0), math.log(1.12), down_after=3, axis="log", most_trials=50)

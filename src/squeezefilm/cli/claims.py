@@ -73,8 +73,8 @@ def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bo
         raise InputError("--write-docs writes a page of --data published, of no other data")
     from squeezefilm.core import presets
     from squeezefilm.core.kit.folder import checkout
-    from squeezefilm.measure.fits.friction.friction_folder import compare_folder
-    from squeezefilm.measure.report.curves import show_comparisons, write_comparisons
+    from squeezefilm.validation.published_friction import compare_folder
+    from squeezefilm.validation.report.published import show_comparisons, write_comparisons
 
     if write_docs:
         # Minutes of work lie before the writing.
@@ -83,7 +83,7 @@ def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bo
         compared = compare_folder(presets.friction_folder() if published else data, step)
         written = None if out is None else write_comparisons(compared, out)
     if write_docs:
-        from squeezefilm.measure.report.curves import write_friction_docs
+        from squeezefilm.validation.report.published import write_friction_docs
 
         typer.echo(f"wrote {write_friction_docs(compared)}", err=True)
     if as_json:

@@ -1,7 +1,7 @@
 """The one set of parameters that every claim on friction under vibration shares, and the published
 directions that each model is asked for at it.
 
-Nothing here is fitted: published curves are compared by `measure.fits.friction.friction_folder`.
+Nothing here is fitted: published curves are compared by `validation.published_friction`.
 The set is the same for all claims and all models; a claim changes only the quantity that its
 statement is about.
 

@@ -86,8 +86,8 @@ def test_a_changed_verdict_is_told_and_ends_with_1(
 def test_measured_curves_are_compared_in_place_of_the_claims(
     claims: SimpleNamespace, stands_in: StandsIn, tmp_path: Path
 ) -> None:
-    compared = stands_in("measure.fits.friction.friction_folder:compare_folder", [])
-    stands_in("measure.report.curves:show_comparisons")
+    compared = stands_in("validation.published_friction:compare_folder", [])
+    stands_in("validation.report.published:show_comparisons")
     done = run("reproduce", "--data", tmp_path)
     assert done.returncode == 0, done.stderr
     assert compared.given[0] == tmp_path
@@ -101,9 +101,9 @@ def test_measured_curves_are_compared_in_place_of_the_claims(
 def test_without_a_checkout_no_curve_is_compared_for_its_page(
     claims: SimpleNamespace, stands_in: StandsIn
 ) -> None:
-    compared = stands_in("measure.fits.friction.friction_folder:compare_folder", [])
-    stands_in("measure.report.curves:show_comparisons")
-    page = stands_in("measure.report.curves:write_friction_docs", "docs/friction.md")
+    compared = stands_in("validation.published_friction:compare_folder", [])
+    stands_in("validation.report.published:show_comparisons")
+    page = stands_in("validation.report.published:write_friction_docs", "docs/friction.md")
     done = run("reproduce", "--data", "published", "--write-docs")
     assert done.returncode == 0, done.stderr
     assert len(claims.checkout.calls) == len(page.calls) == len(compared.calls) == 1

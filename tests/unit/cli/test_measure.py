@@ -21,10 +21,10 @@ from tests.unit.measure.recordings.bench_files import (
 
 from squeezefilm.cli.measure import check, fit
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
-from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
 from squeezefilm.measure.fits.friction.friction_scores import SHAPES
 from squeezefilm.physics.chain.friction_models import MODEL_KINDS
 from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.validation.published_friction import FolderComparison
 
 StandsIn = Callable[..., Any]
 
@@ -111,8 +111,8 @@ def test_measured_curves_are_compared_in_place_of_the_claims(
     stands_in: StandsIn, tmp_path: Path
 ) -> None:
     nothing = FolderComparison((), (), ())
-    asked = stands_in("measure.fits.friction.friction_folder:compare_folder", nothing, tells=False)
-    page = stands_in("measure.report.curves:write_comparisons", tmp_path / "page.html")
+    asked = stands_in("validation.published_friction:compare_folder", nothing, tells=False)
+    page = stands_in("validation.report.published:write_comparisons", tmp_path / "page.html")
     done = run("reproduce", "--data", str(tmp_path), "--out", str(tmp_path / "out"))
     assert done.returncode == 0, done.stderr
     assert asked.given[0] == tmp_path

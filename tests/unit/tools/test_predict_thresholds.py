@@ -11,8 +11,8 @@ import pytest
 
 from predict_disc import is_sealed, sealed
 from predict_thresholds import FILE, PERIODS, text
-from squeezefilm.measure.fits.friction.populations import METHOD_RATIO, RIVALS, detection_medians
 from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.validation.populations import METHOD_RATIO, RIVALS, detection_medians
 from threshold_fit import fitted, method_ratio, published
 
 

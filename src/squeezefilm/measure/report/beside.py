@@ -1,5 +1,4 @@
-"""Measured friction beside every model, and measured thresholds beside the rival senses: rows of
-tables, words and figures."""
+"""Measured friction beside every model: rows of a table, words and the figure."""
 
 from __future__ import annotations
 
@@ -9,51 +8,25 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
-from squeezefilm.core.kit.numbers import HZ, SPEED, N, printable, shown
-from squeezefilm.measure.fits.friction.friction_curve import LEVELS, CurveComparison
-from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
+from squeezefilm.core.kit.numbers import HZ, SPEED, N, shown
+from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.fits.friction.friction_scores import NO_PHYSICS
-from squeezefilm.measure.fits.friction.populations import (
-    MEAN_FRICTION,
-    RIVALS,
-    DetectionComparison,
-    PopulationComparison,
-    detection_medians,
-    rival_observer,
-)
 from squeezefilm.measure.report.figures import measured_points
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL
-from squeezefilm.physics.perception.observer import TUNED_AT, load_observer
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MODELS_HEAD = ("model", "off by", "in spreads", "answered", "fitted")
-TOTALS_HEAD = ("model", "off by", "log score, mean ± s.e.", "fitted")
-COVERAGE_HEAD = ("finger or paper", "points", "in the 50 % interval", "in the 90 % interval")
-PEOPLE_HEAD = ("model", "value", "share of measured below")
-DETECTION_HEAD = ("period", "frequency", "measured", *RIVALS, "temporal over measured")
-FITTED = (
-    "'Off by' is the root mean square of measured less computed friction, over one friction at "
-    "rest that knows no model (the line through the first three points). The friction at rest is "
-    "fitted to each curve, whatever the model; of shapes without physics, and of the levitation "
-    "whose length is fitted, one amplitude too."
-)
-SCORES = (
-    "Each finger counts once, and so does each paper whose fingers are not told apart. The log "
-    "score is the mean natural logarithm of the density of a point, in units of the friction at "
-    "rest, with the model's error over the other fingers and papers as its spread: higher is "
-    "better."
-)
 
 
 def model_rows(compared: CurveComparison) -> list[tuple[str, ...]]:
     """The models and shapes, the nearest first: how far each is off."""
     return [
         (
-            _model_words(score.model),
-            _number(score.difference, 3),
-            _number(score.in_spreads, 1),
+            model_words(score.model),
+            number_words(score.difference, 3),
+            number_words(score.in_spreads, 1),
             f"{score.answered} of {len(compared.inside)}",
             str(score.fitted),
         )
@@ -61,43 +34,15 @@ def model_rows(compared: CurveComparison) -> list[tuple[str, ...]]:
     ]
 
 
-def total_rows(compared: FolderComparison) -> list[tuple[str, ...]]:
-    """The models over all fingers and papers, the nearest first."""
-    return [
-        (
-            _model_words(total.model),
-            _number(total.difference, 3),
-            _number(total.log_score, 2)
-            + ("" if total.log_score_error is None else f" ± {total.log_score_error:.2f}"),
-            str(total.fitted),
-        )
-        for total in compared.totals
-    ]
-
-
-def people_rows(compared: PopulationComparison) -> list[tuple[str, ...]]:
-    """Rows of what each model gives of a number of many people."""
-    return [
-        (
-            _model_words(model),
-            "–" if value is None else _valued(value, compared.unit),
-            "–" if value is None else si.percent(compared.share_below(value)),
-        )
-        for model, value in compared.models
-    ]
-
-
-def _valued(value: float, unit: str) -> str:
-    return f"{1e6 * value:.3g} mg" if unit == "kg" else printable(shown(value, si.Unit(unit), 3))
-
-
-def _model_words(model: str) -> str:
+def model_words(model: str) -> str:
+    """Name of a model or shape, and whether it is the default or no physics."""
     if model in NO_PHYSICS:
         return f"{model} (no physics)"
     return f"{model} (the default)" if model == DEFAULT_MODEL else model
 
 
-def _number(value: float | None, digits: int) -> str:
+def number_words(value: float | None, digits: int) -> str:
+    """A number with so many decimals; a dash for none."""
     return "–" if value is None else f"{value:.{digits}f}"
 
 
@@ -108,43 +53,6 @@ def inside_words(compared: CurveComparison) -> str:
     return (
         f"{within} of {asked} points that vibrate lie in the {level} interval of the default, with "
         "everything but the amplitude uncertain"
-    )
-
-
-def covered_words(compared: FolderComparison) -> str:
-    """Number of fingers and papers that lie in the interval of the default, in words."""
-    within, units, (low, high) = compared.units_covered
-    return (
-        f"{within} of {units} fingers or papers lie in the interval of the default, at least 90 % "
-        f"of their points ({low:.2f}–{high:.2f}, 95 % interval of the share)"
-    )
-
-
-def coverage_rows(compared: FolderComparison) -> list[tuple[str, ...]]:
-    """Rows by finger or paper of the share of points in two central intervals of the default."""
-    at = [LEVELS.index(level) for level in (0.5, 0.9)]
-    return [
-        (unit_name(compared, unit), str(points), *(si.percent(inside[k] / points) for k in at))
-        for unit, (inside, points) in compared.coverage.items()
-    ]
-
-
-def unit_name(compared: FolderComparison, unit: str) -> str:
-    """The name of the first curve of a finger or paper."""
-    return next(
-        printable(curve.curve.told.name) for curve in compared.curves if curve.curve.unit == unit
-    )
-
-
-def people_words(compared: PopulationComparison) -> str:
-    """Distribution of a number over people."""
-    low, median, high = (
-        _valued(float(value), compared.unit)
-        for value in np.quantile(compared.measured, [0.05, 0.5, 0.95])
-    )
-    return (
-        f"{compared.quantity}: median {median}, 5 to 95 % {low} to {high}, "
-        f"{compared.measured.size} measured; {compared.display}, {compared.conditions}"
     )
 
 
@@ -167,41 +75,6 @@ def _assumed(compared: CurveComparison, name: str) -> str:
 def _spanned(values: si.FloatLike, unit: si.Unit) -> str:
     low, high = shown(float(np.min(values)), unit), shown(float(np.max(values)), unit)
     return low if low == high else f"{low} to {high}"
-
-
-def detection_rows(compared: DetectionComparison) -> list[tuple[str, ...]]:
-    """Each period: the measured median and those of the rivals, as friction coefficients."""
-    m, made = compared.measured, dict(compared.rivals)
-    return [
-        (
-            f"{1e3 * m.period[k]:g} mm",
-            f"{m.speed / m.period[k]:.3g} Hz",
-            f"{m.amplitude[k]:.4f}",
-            *(f"{made[rival][k]:.4f}" for rival in RIVALS),
-            f"{made['temporal'][k] / m.amplitude[k]:.2f}",
-        )
-        for k in range(m.period.size)
-    ]
-
-
-def detection_words(compared: DetectionComparison) -> list[str]:
-    """Sentences on what was measured, how near the senses come, and what is assumed."""
-    m, made = compared.measured, dict(compared.rivals)["temporal"]
-    off = np.abs(np.log(made / m.amplitude))
-    return [
-        f"least amplitude (zero-to-peak) of the friction coefficient that is detected: medians of "
-        f"{m.people} people, {1e3 * m.speed:g} mm/s, {m.normal_force:g} N",
-        f"{np.count_nonzero(off < np.log(1.5))} of {m.period.size} medians within a factor of 1.5, "
-        f"the farthest by {np.exp(off.max()):.3f}; two numbers were fitted to those at "
-        f"{1e3 * TUNED_AT:g} mm/s, where the rivals are alike",
-        f"the mean friction coefficient is not published: {MEAN_FRICTION:g} is assumed, and that "
-        "what is detected is in proportion to it; how people differ is not known",
-    ]
-
-
-_TICKS = (0.003, 0.01, 0.03, 0.1)
-# Micrometres and milligrams, on the axis of a figure.
-_SHOWN = {"m": ("µm", 1e6), "kg": ("mg", 1e6)}
 
 
 @style.drawn
@@ -229,64 +102,4 @@ def comparison_figure(compared: CurveComparison) -> Figure:
     axes.plot([], [], **style.GUIDE, label="other models and shapes")
     measured_points(axes, curve)
     style.legend_beside(axes)
-    return figure
-
-
-@style.drawn
-def people_figure(compared: PopulationComparison) -> Figure:
-    """Share of people below each value, and the values of the models."""
-    unit, scale = _SHOWN.get(compared.unit, (compared.unit, 1.0))
-    figure = style.new_figure(
-        f"{compared.quantity}: {compared.measured.size} measured",
-        f"nothing fitted; {compared.display}, {compared.conditions}",
-        4,
-    )
-    axes = figure.subplots()
-    ordered = scale * np.sort(compared.measured)
-    axes.step(
-        ordered,
-        np.arange(1, ordered.size + 1) / ordered.size,
-        color=style.INK,
-        where="post",
-        label="measured",
-    )
-    for model, value in compared.models:
-        if value is not None:
-            look = style.RENDERED if model == DEFAULT_MODEL else style.GUIDE
-            axes.axvline(scale * value, **look, label=model if model == DEFAULT_MODEL else None)
-    axes.set(xlabel=f"{compared.quantity} ({unit})", ylabel="share of measured", ylim=(0, 1))
-    style.legend_beside(axes)
-    return figure
-
-
-@style.drawn
-def detection_figure(compared: DetectionComparison) -> Figure:
-    """Measured medians and the rivals at their speed, and what the rivals say at twice the speed at
-    which they were fitted."""
-    m, observer = compared.measured, load_observer()
-    figure = style.new_figure(
-        "Modulation of friction that is detected",
-        f"rival senses, mean friction {MEAN_FRICTION:g} assumed; {m.people} people, "
-        f"{m.normal_force:g} N",
-        5,
-    )
-    period = np.geomspace(m.period.min(), m.period.max(), 81)
-    cells = figure.subplots(1, 2, sharey=True)
-    looks = dict(zip(RIVALS, style.LINES, strict=False))
-    for axes, speed in zip(cells, (m.speed, 2 * TUNED_AT), strict=True):
-        for rival in RIVALS:
-            colour, dashes = looks[rival]
-            medians = detection_medians(
-                rival_observer(observer, rival), m, speed=speed, period=period
-            )
-            axes.plot(1e3 * period, medians, color=colour, ls=dashes, label=rival)
-        axes.set(xscale="log", yscale="log", xlabel="spatial period (mm)")
-        axes.set_xticks(1e3 * m.period, [f"{x:g}" for x in 1e3 * m.period], minor=False)
-        axes.minorticks_off()
-        axes.set_title(f"at {1e3 * speed:g} mm/s" + ("" if speed == m.speed else ": predicted"))
-    cells[0].plot(1e3 * m.period, m.amplitude, "o", color=style.INK, ms=5)
-    cells[1].plot([], [], "o", color=style.INK, ms=5, label="measured")
-    cells[0].set_yticks(_TICKS, [f"{x:g}" for x in _TICKS])
-    cells[0].set_ylabel("amplitude of the friction coefficient")
-    style.legend_beside(cells[1])
     return figure

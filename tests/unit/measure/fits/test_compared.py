@@ -12,14 +12,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.measure.fits.friction import (
-    friction_curve,
-    friction_folder,
-    person,
-    populations,
-)
+from squeezefilm.measure.fits.friction import friction_curve, person
 from squeezefilm.measure.fits.friction.friction_curve import compare_friction_curve
-from squeezefilm.measure.fits.friction.friction_folder import compare_folder
 from squeezefilm.measure.fits.friction.person import with_finger
 from squeezefilm.measure.recordings.kinds import (
     DetectionThresholds,
@@ -30,6 +24,8 @@ from squeezefilm.measure.recordings.kinds import (
 )
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.physics.display import load_display
+from squeezefilm.validation import populations, published_friction
+from squeezefilm.validation.published_friction import compare_folder
 
 DISPLAY = load_display("biet2008-plate")
 AMPLITUDE = np.array([0.0, 0.5e-6, 1e-6, 1.5e-6])
@@ -157,8 +153,10 @@ def folder_of(monkeypatch: pytest.MonkeyPatch, *checks: Any, refused: Any = ()) 
         return do
 
     found = SimpleNamespace(checks=checks, refused=refused)
-    monkeypatch.setattr(friction_folder, "check_folder", lambda _: found)
-    monkeypatch.setattr(friction_folder, "display_of", lambda name, display: f"{name}: {display}")
+    monkeypatch.setattr(published_friction, "check_folder", lambda _: found)
+    monkeypatch.setattr(
+        published_friction, "display_of", lambda name, display: f"{name}: {display}"
+    )
     for name, answer in (
         ("rest_friction", lambda _: None),
         ("compare_detection", lambda _: "a detection"),
@@ -167,7 +165,7 @@ def folder_of(monkeypatch: pytest.MonkeyPatch, *checks: Any, refused: Any = ()) 
         ("compare_impedances", lambda _: ["damping", "mass"]),
         ("total_scores", lambda curves: ("total", len(curves))),
     ):
-        monkeypatch.setattr(friction_folder, name, kept(name, answer))
+        monkeypatch.setattr(published_friction, name, kept(name, answer))
     return did
 
 

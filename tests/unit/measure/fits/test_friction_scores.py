@@ -16,9 +16,9 @@ from squeezefilm.measure.fits.friction.friction_scores import (
     rest_friction,
     scored,
     shape_scores,
-    total_scores,
 )
 from squeezefilm.measure.recordings.kinds import FrictionCurve, Told
+from squeezefilm.validation.published_friction import total_scores
 
 AMPLITUDE = np.linspace(0.1e-6, 2.5e-6, 13)
 SHAPE = np.exp(-AMPLITUDE / 1.1e-6)

@@ -13,12 +13,12 @@ from scipy.stats import chi2
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.circuit.impedance import _wider
 from squeezefilm.measure.fits.estimate import Estimate
-from squeezefilm.measure.fits.friction import populations
 from squeezefilm.measure.fits.friction.friction_curve import _adequacy, relative_friction
 from squeezefilm.measure.fits.friction.friction_scores import SHAPES, ModelScore
 from squeezefilm.measure.recordings.kinds import FrictionCurve, FrictionDecays, Told
 from squeezefilm.physics.chain.friction_models import MODEL_KINDS
 from squeezefilm.physics.display import load_display
+from squeezefilm.validation import populations
 
 CURVE = FrictionCurve(
     np.array([0.0, 1e-6, 2e-6]), np.array([0.8, 0.6, 0.3]), 3e4, 0.5, 0.05, np.full(3, 0.02)

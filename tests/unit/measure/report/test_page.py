@@ -16,13 +16,9 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit import style
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
-from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
-from squeezefilm.measure.fits.friction.friction_scores import ModelScore, TotalScore
-from squeezefilm.measure.fits.friction.populations import PopulationComparison
+from squeezefilm.measure.fits.friction.friction_scores import ModelScore
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck, Refused
-from squeezefilm.measure.report.beside import coverage_rows
-from squeezefilm.measure.report.curves import show_comparisons, write_comparisons
 from squeezefilm.measure.report.figures import recording_figure
 from squeezefilm.measure.report.fit_figures import fit_figure, modelled
 from squeezefilm.measure.report.page import (
@@ -36,6 +32,10 @@ from squeezefilm.measure.report.page import (
     write_fit,
 )
 from squeezefilm.physics.uncertainty.uncertainty import FrictionBand
+from squeezefilm.validation.populations import PopulationComparison
+from squeezefilm.validation.published_friction import FolderComparison, TotalScore
+from squeezefilm.validation.report.pooled import coverage_rows
+from squeezefilm.validation.report.published import show_comparisons, write_comparisons
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 

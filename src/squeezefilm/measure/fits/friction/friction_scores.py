@@ -58,25 +58,6 @@ class ModelScore:
         return self.answered < self.friction.size, self.difference or 0.0
 
 
-@dataclass(frozen=True)
-class TotalScore:
-    """A model over several units (a finger, or a paper whose fingers are not told apart), each
-    counted once.
-
-    `difference` is the root mean square over units; `log_score` the mean of the logarithmic density
-    of a point, in units of the friction at rest, with the spread of the model's error over the
-    *other* units, `log_score_error` its standard error over units. None where the model does not
-    answer everywhere, or with fewer than two units (of the error fewer than three).
-    """
-
-    model: str
-    fitted: int
-    units: int
-    difference: si.Dimensionless | None
-    log_score: si.Dimensionless | None
-    log_score_error: si.Dimensionless | None
-
-
 def rest_friction(curve: FrictionCurve) -> float:
     """Friction at rest in the curve's unit: the line through its three smallest amplitudes, at
     zero.
@@ -144,48 +125,6 @@ def nearest_scale(
         lambda log: error(curve_of(np.exp(log))), bounds=ends, method="bounded"
     )
     return float(np.exp(nearest.x))
-
-
-def total_scores(
-    curves: Sequence[FrictionCurve], scores: Sequence[Sequence[ModelScore]]
-) -> tuple[TotalScore, ...]:
-    """The scores of each model over all curves, the least difference first; those that do not
-    answer everywhere last."""
-    by_unit: dict[str, list[int]] = {}
-    for number, curve in enumerate(curves):
-        by_unit.setdefault(curve.unit, []).append(number)
-    totals = []
-    for model in (score.model for score in scores[0]):
-        own = [next(score for score in row if score.model == model) for row in scores]
-        totals.append(_total(own, curves, list(by_unit.values())))
-    totals.sort(key=lambda total: (total.difference is None, total.difference or 0.0))
-    return tuple(totals)
-
-
-def _total(
-    scores: Sequence[ModelScore], curves: Sequence[FrictionCurve], units: Sequence[Sequence[int]]
-) -> TotalScore:
-    model, fitted = scores[0].model, scores[0].fitted
-    if any(score.answered < score.friction.size for score in scores):
-        return TotalScore(model, fitted, len(units), None, None, None)
-    errors = [
-        np.concatenate(
-            [(curves[k].friction - scores[k].friction) / rest_friction(curves[k]) for k in unit]
-        )
-        for unit in units
-    ]
-    squares = np.array([np.mean(error**2) for error in errors])
-    difference = float(np.sqrt(np.mean(squares)))
-    if len(units) < 2:
-        return TotalScore(model, fitted, len(units), difference, None, None)
-    others = (squares.sum() - squares) / (len(units) - 1)
-    # A model that fits all other units exactly says nothing of its error on this one.
-    others = np.maximum(others, 1e-12)
-    log_scores = -0.5 * (np.log(2 * np.pi * others) + squares / others)
-    error = None
-    if len(units) > 2:
-        error = float(np.std(log_scores, ddof=1) / np.sqrt(len(units)))
-    return TotalScore(model, fitted, len(units), difference, float(np.mean(log_scores)), error)
 
 
 def _scaled(shape: si.DimensionlessArray, friction: si.FloatArray) -> si.FloatArray:

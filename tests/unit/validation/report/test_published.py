@@ -7,18 +7,18 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.measure.report import curves
+from squeezefilm.validation.report import published
 
 
 def test_curves_come_first_then_people_then_thresholds(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in (
-        "conditions", "inside_words", "model_rows", "comparison_figure", "people_rows",
-        "people_words", "people_figure", "detection_rows", "detection_words", "detection_figure",
-    ):  # fmt: skip
-        monkeypatch.setattr(curves.beside, name, lambda of, name=name: f"{name} of {of.told.name}")
-    monkeypatch.setattr(
-        curves.beside, "detection_words", lambda of: [f"words of {of.told.name}", "more"]
-    )
+    beside, pooled = published.beside, published.pooled
+    for room, names in (
+        (beside, "conditions inside_words model_rows comparison_figure"),
+        (pooled, "people_rows people_words people_figure detection_rows detection_figure"),
+    ):
+        for name in names.split():
+            monkeypatch.setattr(room, name, lambda of, name=name: f"{name} of {of.told.name}")
+    monkeypatch.setattr(pooled, "detection_words", lambda of: [f"words of {of.told.name}", "more"])
     one = SimpleNamespace(
         told=SimpleNamespace(name="a"), adequacy=SimpleNamespace(sentence="it fits"), curve=None
     )
@@ -26,7 +26,7 @@ def test_curves_come_first_then_people_then_thresholds(monkeypatch: pytest.Monke
     people = SimpleNamespace(told=SimpleNamespace(name="b"), quantity="damping")
     seen = SimpleNamespace(told=SimpleNamespace(name="c"))
     compared: Any = SimpleNamespace(curves=[one], populations=[people], detections=[seen])
-    curve, many, threshold = curves._recordings(compared)
+    curve, many, threshold = published._recordings(compared)
     assert [found.told for found in (curve, many, threshold)] == [one.told, people.told, seen.told]
     assert [found.name for found in (curve, many, threshold)] == ["a", "b: damping", "c"]
     assert curve.words == ["conditions of a", "inside_words of a", "it fits"]
@@ -37,7 +37,7 @@ def test_curves_come_first_then_people_then_thresholds(monkeypatch: pytest.Monke
         "How far each model is off", "What each model gives", "What each rival gives",
     ]  # fmt: skip
     assert [found.head for found in (curve, many, threshold)] == [
-        curves.beside.MODELS_HEAD, curves.beside.PEOPLE_HEAD, curves.beside.DETECTION_HEAD,
+        beside.MODELS_HEAD, pooled.PEOPLE_HEAD, pooled.DETECTION_HEAD,
     ]  # fmt: skip
     rows: list[Any] = [found.rows for found in (curve, many, threshold)]
     assert rows == ["model_rows of a", "people_rows of b", "detection_rows of c"]

@@ -10,14 +10,6 @@ import pytest
 
 from squeezefilm.core import presets
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.friction.populations import (
-    METHOD_RATIO,
-    RIVALS,
-    compare_detection,
-    detection_medians,
-    detection_threshold,
-    rival_observer,
-)
 from squeezefilm.measure.recordings.kinds import DetectionThresholds
 from squeezefilm.measure.recordings.read import read_recording
 from squeezefilm.physics.contact.finger.fingerpad import (
@@ -29,6 +21,14 @@ from squeezefilm.physics.perception.observer import (
     Observer,
     SensoryChannel,
     load_observer,
+)
+from squeezefilm.validation.populations import (
+    METHOD_RATIO,
+    RIVALS,
+    compare_detection,
+    detection_medians,
+    detection_threshold,
+    rival_observer,
 )
 
 OBSERVER = load_observer()

@@ -23,9 +23,10 @@ from squeezefilm.core.kit.page_style import (
 from squeezefilm.core.kit.terminal import bullets as printed_bullets
 from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.core.results import stamp, write_whole
-from squeezefilm.measure.fits.friction.friction_folder import FolderComparison
 from squeezefilm.measure.recordings.kinds import Told
 from squeezefilm.measure.report import beside
+from squeezefilm.validation.published_friction import FolderComparison
+from squeezefilm.validation.report import pooled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -36,7 +37,7 @@ Written by `squeezefilm reproduce --data published --write-docs`; do not edit. P
 measurements of fingers on ultrasonic plates that could be read, beside every model of friction and
 beside two shapes without physics and the published levitation model of 2016.
 
-{beside.FITTED}
+{pooled.FITTED}
 
 **What was never measured in them**: metal and coated surfaces, forces above 0.8 N, frequencies
 below 29 kHz, moisture, and speed as the only change. The numbers were read off figures, with an
@@ -70,27 +71,27 @@ def _recordings(compared: FolderComparison) -> Iterator[_Compared]:
         yield _Compared(told, told.name, words, *shown, partial(beside.comparison_figure, curve))
     for people in compared.populations:
         name = f"{people.told.name}: {people.quantity}"
-        shown = ("What each model gives", beside.PEOPLE_HEAD, beside.people_rows(people))
+        shown = ("What each model gives", pooled.PEOPLE_HEAD, pooled.people_rows(people))
         yield _Compared(
             people.told,
             name,
-            [beside.people_words(people)],
+            [pooled.people_words(people)],
             *shown,
-            partial(beside.people_figure, people),
+            partial(pooled.people_figure, people),
         )
     for detected in compared.detections:
         told = detected.told
-        shown = ("What each rival gives", beside.DETECTION_HEAD, beside.detection_rows(detected))
-        figure = partial(beside.detection_figure, detected)
-        yield _Compared(told, told.name, beside.detection_words(detected), *shown, figure)
+        shown = ("What each rival gives", pooled.DETECTION_HEAD, pooled.detection_rows(detected))
+        figure = partial(pooled.detection_figure, detected)
+        yield _Compared(told, told.name, pooled.detection_words(detected), *shown, figure)
 
 
 def _totals(compared: FolderComparison) -> tuple[_Table, _Table]:
     """Caption, head and rows of the models over all curves, and of the points in intervals."""
     held = "Points in the default's intervals"
     return (
-        ("All curves", beside.TOTALS_HEAD, beside.total_rows(compared)),
-        (held, beside.COVERAGE_HEAD, beside.coverage_rows(compared)),
+        ("All curves", pooled.TOTALS_HEAD, pooled.total_rows(compared)),
+        (held, pooled.COVERAGE_HEAD, pooled.coverage_rows(compared)),
     )
 
 
@@ -106,9 +107,9 @@ def show_comparisons(compared: FolderComparison) -> None:
         for _, head, rows in _totals(compared):
             table(console, head, rows, fixed=(0,))
         printed_bullets(
-            console, [("", beside.covered_words(compared), ""), ("", beside.SCORES, "")]
+            console, [("", pooled.covered_words(compared), ""), ("", pooled.SCORES, "")]
         )
-    console.print(f"\n{beside.FITTED}")
+    console.print(f"\n{pooled.FITTED}")
 
 
 def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
@@ -119,11 +120,11 @@ def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
     summary = compared.summary()
     summary_stamp = stamp(summary)
     files: dict[str, str | bytes] = {"curves.json": json_text(summary | {"stamp": summary_stamp})}
-    body = section("What is compared", f"<p>{beside.FITTED}</p>")
+    body = section("What is compared", f"<p>{pooled.FITTED}</p>")
     if len(compared.curves) > 1:
         rows, held = (text_table(*shown) for shown in _totals(compared))
         body += section(
-            "All curves", rows + bullets([beside.covered_words(compared), beside.SCORES]) + held
+            "All curves", rows + bullets([pooled.covered_words(compared), pooled.SCORES]) + held
         )
     for number, recording in enumerate(_recordings(compared), 1):
         figure = recording.figure()
@@ -153,7 +154,7 @@ def write_friction_docs(compared: FolderComparison, root: Path | None = None) ->
     for detected in compared.detections:
         write_whole(
             docs / "pictures" / "published-thresholds.png",
-            style.png(beside.detection_figure(detected)),
+            style.png(pooled.detection_figure(detected)),
         )
     path = docs / "reference" / "published-friction.md"
     write_whole(path, friction_markdown(compared))
@@ -164,7 +165,7 @@ def friction_markdown(compared: FolderComparison) -> str:
     """The text of the page: all curves, each curve, the numbers of many people, and thresholds."""
     lines = [_HEAD, "## All curves", ""]
     totals, held = (markdown_table(shown[1:]) for shown in _totals(compared))
-    lines += [*totals, "", f"{beside.covered_words(compared)}. {beside.SCORES}", "", *held, ""]
+    lines += [*totals, "", f"{pooled.covered_words(compared)}. {pooled.SCORES}", "", *held, ""]
     for recording in _recordings(compared):
         how, *rest = recording.words
         lines += [f"## {recording.name.capitalize()}", "", f"{recording.told.source}. {how}.", ""]

@@ -3,9 +3,12 @@ of its modulation."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
@@ -17,18 +20,7 @@ from squeezefilm.measure.fits.friction.friction_curve import (
     compare_friction_curve,
     display_of,
 )
-from squeezefilm.measure.fits.friction.friction_scores import (
-    TotalScore,
-    rest_friction,
-    total_scores,
-)
-from squeezefilm.measure.fits.friction.populations import (
-    DetectionComparison,
-    PopulationComparison,
-    compare_decays,
-    compare_detection,
-    compare_impedances,
-)
+from squeezefilm.measure.fits.friction.friction_scores import ModelScore, rest_friction
 from squeezefilm.measure.recordings.kinds import (
     DetectionThresholds,
     FingertipImpedances,
@@ -36,6 +28,32 @@ from squeezefilm.measure.recordings.kinds import (
     FrictionDecays,
 )
 from squeezefilm.measure.recordings.read import check_folder
+from squeezefilm.validation.populations import (
+    DetectionComparison,
+    PopulationComparison,
+    compare_decays,
+    compare_detection,
+    compare_impedances,
+)
+
+
+@dataclass(frozen=True)
+class TotalScore:
+    """A model over several units (a finger, or a paper whose fingers are not told apart), each
+    counted once.
+
+    `difference` is the root mean square over units; `log_score` the mean of the logarithmic density
+    of a point, in units of the friction at rest, with the spread of the model's error over the
+    *other* units, `log_score_error` its standard error over units. None where the model does not
+    answer everywhere, or with fewer than two units (of the error fewer than three).
+    """
+
+    model: str
+    fitted: int
+    units: int
+    difference: si.Dimensionless | None
+    log_score: si.Dimensionless | None
+    log_score_error: si.Dimensionless | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,3 +154,45 @@ def compare_folder(folder: str | Path, progress: SayProgress | None = None) -> F
         scores = [compared.models for compared in curves]
         totals = total_scores([compared.curve for compared in curves], scores)
     return FolderComparison(tuple(curves), totals, tuple(populations), detections)
+
+
+def total_scores(
+    curves: Sequence[FrictionCurve], scores: Sequence[Sequence[ModelScore]]
+) -> tuple[TotalScore, ...]:
+    """The scores of each model over all curves, the least difference first; those that do not
+    answer everywhere last."""
+    by_unit: dict[str, list[int]] = {}
+    for number, curve in enumerate(curves):
+        by_unit.setdefault(curve.unit, []).append(number)
+    totals = []
+    for model in (score.model for score in scores[0]):
+        own = [next(score for score in row if score.model == model) for row in scores]
+        totals.append(_total(own, curves, list(by_unit.values())))
+    totals.sort(key=lambda total: (total.difference is None, total.difference or 0.0))
+    return tuple(totals)
+
+
+def _total(
+    scores: Sequence[ModelScore], curves: Sequence[FrictionCurve], units: Sequence[Sequence[int]]
+) -> TotalScore:
+    model, fitted = scores[0].model, scores[0].fitted
+    if any(score.answered < score.friction.size for score in scores):
+        return TotalScore(model, fitted, len(units), None, None, None)
+    errors = [
+        np.concatenate(
+            [(curves[k].friction - scores[k].friction) / rest_friction(curves[k]) for k in unit]
+        )
+        for unit in units
+    ]
+    squares = np.array([np.mean(error**2) for error in errors])
+    difference = float(np.sqrt(np.mean(squares)))
+    if len(units) < 2:
+        return TotalScore(model, fitted, len(units), difference, None, None)
+    others = (squares.sum() - squares) / (len(units) - 1)
+    # A model that fits all other units exactly says nothing of its error on this one.
+    others = np.maximum(others, 1e-12)
+    log_scores = -0.5 * (np.log(2 * np.pi * others) + squares / others)
+    error = None
+    if len(units) > 2:
+        error = float(np.std(log_scores, ddof=1) / np.sqrt(len(units)))
+    return TotalScore(model, fitted, len(units), difference, float(np.mean(log_scores)), error)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from tests.unit.drawn import words
 
-from squeezefilm.measure.fits.friction.populations import RIVALS, DetectionComparison
 from squeezefilm.measure.recordings.kinds import DetectionThresholds, Told
-from squeezefilm.measure.report.beside import (
+from squeezefilm.validation.populations import RIVALS, DetectionComparison
+from squeezefilm.validation.report.pooled import (
     DETECTION_HEAD,
     detection_figure,
     detection_rows,

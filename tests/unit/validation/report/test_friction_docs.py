@@ -8,7 +8,7 @@ import pytest
 from tests.unit.measure.report.test_page import folder
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.report.curves import write_friction_docs
+from squeezefilm.validation.report.published import write_friction_docs
 
 PAGE = Path(__file__).parents[4] / "docs" / "reference" / "published-friction.md"
 
