@@ -1,4 +1,4 @@
-"""d′ of ordered stimuli, the choice model and response times recover what made the data."""
+"""d′ of ordered stimuli and response times recover what made the data."""
 
 from __future__ import annotations
 
@@ -6,16 +6,10 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy import stats
 from tests.known_observers import even_errors, ordered_observer
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.choice_model import (
-    choice_model,
-    choice_probabilities,
-)
 from squeezefilm.study.identification.condition_means import response_time_summary
 from squeezefilm.study.identification.sensitivity import ordered_sensitivity
 
@@ -131,60 +125,6 @@ def test_participant_intervals_of_d_prime_cover(people: int, spacing: float) -> 
         assert found.interval_method.startswith("participant")
         inside += float(np.mean((found.low <= spacing) & (spacing <= found.high))) / 400
     assert 0.93 < inside < 0.97
-
-
-# --- choice model --------------------------------------------------------------------------------
-
-SIMILARITY = np.array([[1, 0.4, 0.1], [0.4, 1, 0.3], [0.1, 0.3, 1]])
-BIAS = np.array([0.5, 0.2, 0.3])
-
-
-def test_exact_data_give_their_model_back() -> None:
-    p = choice_probabilities(SIMILARITY, BIAS)
-    found = choice_model(np.rint(1e9 * p).astype(np.int64))
-    assert found.similarity == pytest.approx(SIMILARITY, rel=1e-6)
-    assert found.bias == pytest.approx(BIAS, rel=1e-6)
-    assert found.probabilities == pytest.approx(p, rel=1e-6)
-    assert found.distance[0, 1] == pytest.approx(-math.log(0.4), rel=1e-6)
-    assert found.degrees_of_freedom == 1
-
-
-@settings(settings.get_profile("dear"))
-@given(st.integers(0, 2**32 - 1))
-def test_fit_meets_margins_and_no_other_is_likelier(seed: int) -> None:
-    random = np.random.default_rng(seed)
-    n = random.integers(1, 40, size=(4, 4))
-    found = choice_model(n)
-    fitted = found.probabilities * n.sum(axis=0)
-    assert fitted.sum(axis=1) == pytest.approx(n.sum(axis=1), abs=1e-3)
-    assert fitted + fitted.T == pytest.approx(n + n.T, abs=1e-3)
-    nudge = np.exp(0.05 * random.standard_normal((4, 4)))
-    other = choice_probabilities(found.similarity * np.sqrt(nudge * nudge.T), found.bias)
-    assert (n * np.log(other)).sum() <= found.log_likelihood + 1e-6
-
-
-def test_similarities_are_recovered_within_their_error() -> None:
-    random = np.random.default_rng(9)
-    p = choice_probabilities(SIMILARITY, BIAS)
-    fits = [choice_model(_draw(p, 200, random)) for _ in range(200)]
-    logs = np.log([f.similarity[0, 1] for f in fits])
-    assert logs.mean() == pytest.approx(math.log(0.4), abs=4 * logs.std() / math.sqrt(200))
-    # One degree of freedom: the deviance has mean 1 where the model holds.
-    assert np.mean([f.deviance for f in fits]) == pytest.approx(1.0, abs=0.4)
-
-
-def test_deviance_finds_asymmetry_beyond_bias() -> None:
-    ring = np.array([[70, 5, 25], [25, 70, 5], [5, 25, 70]])
-    assert choice_model(ring).p_value < 1e-6
-
-
-def test_stimuli_never_confused_are_infinitely_far() -> None:
-    n = np.array([[9, 3, 0], [3, 9, 2], [0, 2, 9]])
-    found = choice_model(n)
-    assert found.distance[0, 2] == np.inf
-    assert np.all(np.isfinite(choice_model(n, 1.0).distance))
-    with pytest.raises(InputError, match="never answered rightly"):
-        choice_model(np.array([[0, 3], [3, 3]]))
 
 
 # --- response times ------------------------------------------------------------------------------

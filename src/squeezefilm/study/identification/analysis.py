@@ -11,12 +11,8 @@ from numpy.typing import ArrayLike
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.called_with import called_with
-from squeezefilm.core.errors import ConvergenceError, InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import Result, stamp, to_json
-from squeezefilm.study.identification.choice_model import (
-    ChoiceModel,
-    choice_model,
-)
 from squeezefilm.study.identification.condition_means import (
     ConditionMean,
     ResponseTimeSummary,
@@ -71,7 +67,6 @@ class IdentificationAnalysis(Result):
         permutation_p: test against answers unrelated to stimuli, preferences kept.
         information: transfer of the answers, with its interval over participants.
         sensitivity: d′ of stimuli in the order of the labels; None where it has none.
-        choice: the biased choice model; None likewise.
         response_times: empty without response times.
         exploration: quantity (with unit in its key) → means by stimulus.
         notes: what could not be computed, and why.
@@ -92,7 +87,6 @@ class IdentificationAnalysis(Result):
     permutation_p: si.Dimensionless
     information: InformationTransfer
     sensitivity: OrderedSensitivity | None
-    choice: ChoiceModel | None
     response_times: tuple[ResponseTimeSummary, ...]
     exploration: Mapping[str, tuple[ConditionMean, ...]]
     notes: tuple[str, ...]
@@ -158,7 +152,6 @@ class IdentificationAnalysis(Result):
             "information_transfer_estimator": METHOD,
             "information": self.information,
             "sensitivity": self.sensitivity,
-            "choice_model": self.choice,
             "response_times": self.response_times,
             "exploration": self.exploration,
             "course": self.course,
@@ -259,8 +252,8 @@ def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
     intervals = _intervals(counts, matrix, asked, notes)
     tell("information transfer")
     information = information_transfer(counts, level, resamples, seed)
-    tell("d′ and choice model")
-    sensitivity, choice_fit = _models(counts, matrix, asked, notes)
+    tell("d′")
+    sensitivity = _sensitivity(counts, asked, notes)
     tell("response times and exploration")
     person = np.unique(np.asarray(asked.participant), return_inverse=True)[1]
     kind = np.asarray(asked.stimulus, dtype=np.int64)
@@ -283,7 +276,6 @@ def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
         permutation_p=permutation_test(counts, resamples, seed),
         information=information,
         sensitivity=sensitivity,
-        choice=choice_fit,
         response_times=times,
         exploration=explored,
         notes=tuple(notes),
@@ -315,28 +307,17 @@ def _by_stimulus(matrix: ConfusionMatrix, level: float) -> tuple[StimulusCorrect
     return tuple(rows)
 
 
-def _models(
-    counts: si.IntArray, matrix: ConfusionMatrix, asked: IdentificationRequest, notes: list[str]
-) -> tuple[OrderedSensitivity | None, ChoiceModel | None]:
-    sensitivity, choice = None, None
+def _sensitivity(
+    counts: si.IntArray, asked: IdentificationRequest, notes: list[str]
+) -> OrderedSensitivity | None:
     try:
-        sensitivity = ordered_sensitivity(counts, asked.level, asked.resamples, asked.seed)
-        if sensitivity.corrected:
-            notes.append(
-                "d′: some stimuli were never confused, or an answer never given; one trial per "
-                "stimulus was added, spread over the answers, and d′ is too low"
-            )
+        found = ordered_sensitivity(counts, asked.level, asked.resamples, asked.seed)
     except InputError as error:
         notes.append(f"d′: {error}")
-    try:
-        square = matrix.counts
-        # Cells in mirrored pairs that are both empty make infinite distances.
-        empty = np.any(square + square.T == 0) or np.any(np.diag(square) == 0)
-        choice = choice_model(square, 1.0 if empty else 0.0)
-        if empty:
-            notes.append(
-                "choice model: some stimuli were never confused; one trial per stimulus was added"
-            )
-    except (InputError, ConvergenceError) as error:
-        notes.append(f"choice model: {error}")
-    return sensitivity, choice
+        return None
+    if found.corrected:
+        notes.append(
+            "d′: some stimuli were never confused, or an answer never given; one trial per "
+            "stimulus was added, spread over the answers, and d′ is too low"
+        )
+    return found

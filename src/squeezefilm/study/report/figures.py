@@ -1,4 +1,4 @@
-"""Figures of an identification study: confusions, right answers, d′, similarities."""
+"""Figures of an identification study: confusions, right answers, d′."""
 
 from __future__ import annotations
 
@@ -17,9 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
-    from squeezefilm.study.identification.choice_model import ChoiceModel
     from squeezefilm.study.identification.confusion import ConfusionMatrix
-    from squeezefilm.study.identification.sensitivity import OrderedSensitivity
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 _SIDE_BY_SIDE = 56
@@ -140,22 +138,19 @@ def _p(p: float) -> str:
     return "< 0.001" if p < 0.001 else f"= {p:.2g}"
 
 
-def _deviance(fit: OrderedSensitivity | ChoiceModel) -> str:
-    """Words for the fit of a model."""
-    freedom = f"{fit.degrees_of_freedom} degrees of freedom"
-    return f"G² = {fit.deviance:.1f} with {freedom} (p {_p(fit.p_value)})"
-
-
 @style.drawn
 def sensitivity(analysis: IdentificationAnalysis) -> Figure:
     """Stimuli and criteria on the decision axis, and d′ of neighbours with intervals."""
     fit = analysis.sensitivity
     if fit is None:
-        return style.message_figure("No d′", _note(analysis, "d′"))
+        why = (note for note in analysis.notes if note.startswith("d′"))
+        return style.message_figure("No d′", next(why, "It was not computed."))
     names = [style.plain(name, 14) for name in analysis.matrix.stimuli]
     weakest = int(np.argmin(fit.d_prime))
     added = "one trial per stimulus added (some never confused): d′ too low"
-    fitted = added if fit.corrected else _deviance(fit)
+    freedom = f"{fit.degrees_of_freedom} degrees of freedom"
+    fitted = f"G² = {fit.deviance:.1f} with {freedom} (p {_p(fit.p_value)})"
+    fitted = added if fit.corrected else fitted
     figure = style.new_figure(
         f"Δ′ = {fit.total:.2f} from {names[0]} to {names[-1]}; "
         f"{names[weakest]} and {names[weakest + 1]} lie closest, d′ = {fit.d_prime[weakest]:.2f}",
@@ -183,49 +178,3 @@ def sensitivity(analysis: IdentificationAnalysis) -> Figure:
     below.set(ylabel="d′ of neighbours", xlim=(-0.5, len(pairs) - 0.5))
     below.set_title(f"{100 * fit.level:g} % intervals: {fit.interval_method}")
     return figure
-
-
-@style.drawn
-def similarities(analysis: IdentificationAnalysis) -> Figure:
-    """Similarities of the choice model, and biases of answers."""
-    fit = analysis.choice
-    if fit is None:
-        return style.message_figure("No choice model", _note(analysis, "choice model"))
-    names = [style.plain(name, 12) for name in analysis.matrix.stimuli]
-    off = np.where(np.eye(len(names), dtype=bool), -1.0, fit.similarity)
-    i, j = sorted(int(v) for v in np.unravel_index(int(np.argmax(off)), off.shape))
-    added = f"{fit.pseudo_trials:g} trial per stimulus added"
-    figure = style.new_figure(
-        f"{names[i]} and {names[j]} are felt most alike (η = {off[i, j]:.2f}); "
-        f"{names[int(np.argmax(fit.bias))]} is the answer preferred",
-        f"{data_of(analysis)}; Luce–Shepard choice model"
-        f", {added if fit.pseudo_trials else _deviance(fit)}",
-        4.6,
-    )
-    left, bars = figure.subplots(1, 2, width_ratios=[1.1, 1])
-    _draw_similarity(left, fit.similarity, names)
-    bars.bar(np.arange(len(names)), 100 * fit.bias, **style.BARS)
-    bars.axhline(100 / len(names), **style.GUIDE)
-    bars.set_xticks(np.arange(len(names)), names)
-    bars.set_ylabel("bias of answer (%)")
-    return figure
-
-
-def _draw_similarity(axes: Axes, similarity: np.ndarray, names: list[str]) -> None:
-    from matplotlib.colors import LinearSegmentedColormap
-
-    shades = LinearSegmentedColormap.from_list("alike", [style.PAPER, style.METAL])
-    below = np.tril(np.ones(similarity.shape, dtype=bool), -1)
-    shown = np.where(below, np.minimum(similarity, 1.0), np.nan)
-    axes.imshow(shown, cmap=shades, vmin=0, vmax=1, aspect="auto")
-    for i, j in np.argwhere(below):
-        axes.text(j, i, f"{similarity[i, j]:.2f}", ha="center", va="center")
-    axes.set_xticks(range(len(names) - 1), names[:-1])
-    axes.set_yticks(range(1, len(names)), names[1:])
-    axes.set(xlim=(-0.5, len(names) - 1.5), ylim=(len(names) - 0.5, 0.5))
-    style.bare(axes)
-    axes.set_title("similarity η (1: not told apart)")
-
-
-def _note(analysis: IdentificationAnalysis, start: str) -> str:
-    return next((note for note in analysis.notes if note.startswith(start)), "It was not computed.")

@@ -56,7 +56,6 @@ FIGURES = (
     FigureOf("confusion", "Confusion matrix", draw.confusion),
     FigureOf("correct", "Right answers", draw.proportion_correct),
     FigureOf("sensitivity", "Sensitivity along the stimuli", draw.sensitivity),
-    FigureOf("similarities", "Similarities and biases", draw.similarities, file="similarity"),
     _TIMES,
 )
 """The figures of an identification study."""

@@ -209,8 +209,7 @@ def _matches(answers: Answers, how: _How) -> IdentificationAnalysis:
             sensitivity=None,
             notes=(
                 *found.notes,
-                "d′ along the stimuli: they have no order; read the confusions and the choice "
-                "model, which need none",
+                "d′ along the stimuli: they have no order; read the confusions, which need none",
             ),
         )
     course = course_of(answers, display)

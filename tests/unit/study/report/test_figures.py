@@ -14,7 +14,6 @@ from squeezefilm.study.report.figures import (
     data_of,
     proportion_correct,
     sensitivity,
-    similarities,
 )
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
@@ -43,11 +42,6 @@ THURSTONE = SimpleNamespace(
     level=0.95, interval_method="a-method", corrected=False, deviance=4.25, degrees_of_freedom=3,
     p_value=0.234,
 )  # fmt: skip
-CHOICE = SimpleNamespace(
-    similarity=np.array([[1, 0.25, 0.125], [0.25, 1, 0.75], [0.125, 0.75, 1]]),
-    bias=np.array([0.25, 0.45, 0.3]), pseudo_trials=0, deviance=1.25, degrees_of_freedom=1,
-    p_value=0.0004,
-)  # fmt: skip
 
 
 def analysis(**changes: Any) -> Any:
@@ -62,7 +56,7 @@ def analysis(**changes: Any) -> Any:
         "participant_correct": np.array([0.5, 0.75, 0.75, 1.0]),
         "counts": np.array([COUNTS, COUNTS // 2]),
         "intervals": [interval(0.5, 0.75), interval(0.4, 0.8)],
-        "sensitivity": THURSTONE, "choice": CHOICE, "notes": (),
+        "sensitivity": THURSTONE, "notes": (),
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
 
@@ -205,43 +199,9 @@ def test_stimuli_and_criteria_lie_on_the_decision_axis() -> None:
     assert "one trial per stimulus added (some never confused): d′ too low" in said
 
 
-def test_what_is_alike_is_named_and_drawn_in_the_lower_triangle() -> None:
-    figure = similarities(analysis())
-    assert words(figure.get_suptitle()) == (
-        "middle and coarse are felt most alike (η = 0.75); middle is the answer preferred"
-    )
-    assert "G² = 1.2 with 1 degrees of freedom (p < 0.001)" in words(figure.get_supxlabel())
-    left, bars = figure.axes
-    assert {one.get_position(): one.get_text() for one in left.texts} == {
-        (0, 1): "0.25", (0, 2): "0.12", (1, 2): "0.75",
-    }  # fmt: skip
-    shown = np.ma.filled(left.images[0].get_array().astype(float), np.nan)
-    expected = np.full((3, 3), np.nan)
-    expected[1, 0], expected[2, 0], expected[2, 1] = 0.25, 0.125, 0.75
-    assert shown == pytest.approx(expected, nan_ok=True)
-    assert [one.get_text() for one in left.get_xticklabels()] == ["fine", "middle"]
-    assert [one.get_text() for one in left.get_yticklabels()] == ["middle", "coarse"]
-    assert list(left.get_yticks()) == [1, 2]
-    assert (left.get_xlim(), left.get_ylim()) == ((-0.5, 1.5), (2.5, 0.5))
-    assert [one.get_height() for one in bars.patches] == pytest.approx([25, 45, 30])
-    assert [one.get_text() for one in bars.get_xticklabels()] == list(NAMES)
-    (even,) = bars.get_lines()
-    assert data(even)[1] == pytest.approx([100 / 3] * 2)
-
-
-def test_trials_added_are_said() -> None:
-    choice = SimpleNamespace(**{**vars(CHOICE), "pseudo_trials": 0.5})
-    figure = similarities(analysis(choice=choice))
-    assert "choice model, 0.5 trial per stimulus added" in words(figure.get_supxlabel())
-
-
 def test_what_was_not_computed_says_why() -> None:
-    notes = ("choice model: too few", "d′: too many")
-    for draw, missing, title, said in (
-        (sensitivity, "sensitivity", "No d′", "d′: too many"),
-        (similarities, "choice", "No choice model", "choice model: too few"),
-    ):
-        figure = draw(analysis(notes=notes, **{missing: None}))
-        assert (figure.get_suptitle(), figure.axes[0].texts[0].get_text()) == (title, said)
-        figure = draw(analysis(**{missing: None}))
-        assert figure.axes[0].texts[0].get_text() == "It was not computed."
+    figure = sensitivity(analysis(notes=("times: none", "d′: too many"), sensitivity=None))
+    assert figure.get_suptitle() == "No d′"
+    assert figure.axes[0].texts[0].get_text() == "d′: too many"
+    figure = sensitivity(analysis(sensitivity=None))
+    assert figure.axes[0].texts[0].get_text() == "It was not computed."
