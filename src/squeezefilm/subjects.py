@@ -51,13 +51,11 @@ from squeezefilm.physics.texture_files.texture_file import TextureFile
 from squeezefilm.study.identification.analysis import IdentificationAnalysis
 from squeezefilm.study.psychometric.fit import PsychometricFit
 from squeezefilm.study.report import time_figures
-from squeezefilm.study.report.felt_path import felt_path
 from squeezefilm.study.report.page import FIGURES as FIGURES_OF_STUDY
 from squeezefilm.study.report.page import TASK_FIGURES, write_study
 from squeezefilm.study.report.simulated_page import FIGURES as FIGURES_OF_SIMULATED
 from squeezefilm.study.report.simulated_page import write_simulated
 from squeezefilm.study.simulated.answers import SimulatedStudy
-from squeezefilm.study.simulated.felt_paths import FeltPath
 from squeezefilm.study.simulated.planned_power import PlannedPower
 from squeezefilm.study.simulated.planned_precision import PlannedPrecision
 from squeezefilm.study.tasks.findings import TaskAnalysis
@@ -110,7 +108,6 @@ SUBJECTS: Mapping[type, _Subject] = {
     IdentificationAnalysis: _Subject(_by_key(FIGURES_OF_STUDY), write_study),
     TaskAnalysis: _Subject(_by_key(TASK_FIGURES), write_study),
     SimulatedStudy: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
-    FeltPath: _Subject({"path": felt_path}),
     PlannedPower: _Subject({"power": lambda planned: time_figures.power(planned.curve)}),
     PlannedPrecision: _Subject({"precision": time_figures.precision}),
     PsychometricFit: _Subject({"function": time_figures.psychometric_function}),
