@@ -278,9 +278,8 @@ def gratings(
 ) -> None:
     """Write what a workshop needs to make the real gratings that a study compares with: drawing,
     DXF, widths with tolerances, and what the design calls period."""
-    from squeezefilm.study.design.boards import boards
     from squeezefilm.study.design.study_design import load_design
-    from squeezefilm.study.report.boards import HEAD, board_rows, write_boards
+    from squeezefilm.study.report.boards import HEAD, board_rows, boards, write_boards
     from squeezefilm.study.report.terminal import show_boards
 
     found = load_design(design)

@@ -1,39 +1,100 @@
-"""`write_boards`: what a workshop needs to make a study's real gratings."""
+"""Boards of a study's real gratings: where each ridge lies, and what a workshop needs."""
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError
 from squeezefilm.core.formats.drawing import Dimension, Drawing, Item, Layer, Text, rectangle
 from squeezefilm.core.formats.dxf import dxf_text
+from squeezefilm.core.hard_limits import HardLimit, require_within
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import M, printable, shown
-from squeezefilm.core.kit.page_style import (
-    bullets,
-    links,
-    page,
-    picture_files,
-    picture_sections,
-    section,
-    stamped,
-    text_table,
-)
+from squeezefilm.core.kit.page_style import bullets, links, page, section, stamped, text_table
+from squeezefilm.core.kit.sheet import sheet_figure
 from squeezefilm.core.results import stamp, to_json
-from squeezefilm.study.design.boards import Board, boards
+from squeezefilm.physics.perception.stimuli import Grating
 from squeezefilm.study.design.study_design import StudyDesign
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 TOLERANCE: si.Metre = 20e-6
 """Tolerance of widths, where none is asked for: what an etched board keeps; assumed."""
 
 _GAP: si.Metre = 12e-3
-_LAYERS = {"BOARD": Layer(7), "RIDGES": Layer(1)}
+_MARGIN: si.Metre = 10e-3
+_LAYERS = {"BOARD": Layer(7), "RIDGES": Layer(1, fill="own")}
+_RIDGES = HardLimit("ridges of a board", 1, 20_000, "a drawing of so many opens nowhere")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Board:
+    """A grating as it is made: a plate with ridges across the stroke.
+
+    Attributes:
+        grating: what it is.
+        ridge_width, groove_width: along the stroke (m).
+        begin: where each ridge begins, from the board's left end (m), shape (ridges,).
+        end: where it ends (m), likewise; the last may be cut by the board's end.
+    """
+
+    grating: Grating
+    ridge_width: si.Metre
+    groove_width: si.Metre
+    begin: si.MetreArray
+    end: si.MetreArray
+
+    @property
+    def ridges(self) -> int:
+        """Number of ridges, a cut one too."""
+        return int(self.begin.size)
+
+    @property
+    def says(self) -> str:
+        """Words for the length that the study calls period."""
+        grating = self.grating
+        asked, period = (
+            si.format_quantity(x, si.Unit("m"), 4) for x in (grating.spatial_period, grating.period)
+        )
+        if grating.period_means == "period":
+            return f"'{grating.name}': the study's {asked} is the whole period, groove plus ridge"
+        return f"'{grating.name}': the study's {asked} is the groove width; the period is {period}"
+
+
+def board_of(grating: Grating) -> Board:
+    """The board of a real grating: it begins with a ridge, and each period has its groove after it.
+
+    Raises `InputError` for a board shorter than a period, or with too many ridges to draw.
+    """
+    count = math.ceil(grating.length / grating.period * (1 - 1e-12))
+    require_within(_RIDGES, float(count), enough="make the board shorter or the period longer")
+    if grating.length < grating.period:
+        period, length = (
+            si.format_quantity(one, si.Unit("m"), 4) for one in (grating.period, grating.length)
+        )
+        raise InputError(
+            f"board '{grating.name}' of {length} holds no whole period of {period}; make it longer",
+            quantity="length",
+        )
+    begin: si.MetreArray = grating.period * np.arange(count, dtype=float)
+    ridge = grating.period * grating.ridge_share
+    end: si.MetreArray = np.minimum(begin + ridge, grating.length)
+    return Board(grating, ridge, grating.groove_width, begin, end)
+
+
+def boards(design: StudyDesign) -> tuple[Board, ...]:
+    """The boards of a design's real gratings. Raises `InputError` for a design without any."""
+    if not design.alternatives:
+        raise InputError(
+            f"'{design.name}' is a study of {design.task} and compares with no real gratings, so "
+            "that there are no boards to make; take a match-to-sample design"
+        )
+    return tuple(board_of(alternative) for alternative in design.alternatives)
 
 
 def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERANCE) -> Path:
@@ -48,7 +109,7 @@ def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERA
     narrow = min(min(board.groove_width, board.ridge_width) for board in found)
     si.require("tolerance", tolerance, si.Unit("m"), below=narrow / 2)
     folder = require_folder(folder)
-    figures = {"boards": ("The boards, to scale", draw_boards(found))}
+    drawing = drawing_of(found)
     numbers = {
         "study": design.name,
         "tolerance_m": tolerance,
@@ -56,12 +117,13 @@ def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERA
         "provenance": stamp(design),
     }
     files: dict[str, str | bytes] = {
-        **picture_files(figures),
-        "boards.dxf": dxf_text(drawing_of(found)),
+        "boards.png": style.png(sheet_figure(drawing)),
+        "boards.dxf": dxf_text(drawing),
         **{f"board-{k + 1}.dxf": dxf_text(drawing_of((one,))) for k, one in enumerate(found)},
         "boards.json": json_text(numbers),
     }
     names = [name for name in files if not name.endswith(".png")]
+    picture = '<img src="boards.png" alt="The boards from above, to scale">'
     title = escape(printable(f"{design.name}: boards of real gratings"))
     files["index.html"] = page(
         title,
@@ -69,8 +131,8 @@ def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERA
         "for a workshop; lengths in millimetres in the DXF",
         section("What the study calls its lengths", bullets(board.says for board in found))
         + section("The boards", _table(found, tolerance))
-        + picture_sections(figures)
-        + section("Files", f"<p>{links(names)}</p>"),
+        + section("The boards, to scale", f'<figure class="scroll" tabindex="0">{picture}</figure>')
+        + section("Files", f"<p>{links(name for name in files if name != 'boards.png')}</p>"),
         stamped(numbers["provenance"], "SHA-256 of the design") + ".",  # type: ignore[arg-type] # made above
     )
     write_folder(folder, files)
@@ -148,41 +210,11 @@ def drawing_of(found: tuple[Board, ...]) -> Drawing:
             Text(f"{grating.name}: ridges {1e6 * grating.ridge_height:g} um high", 0.0, y - 4e-3),
         ]
         y += grating.width + 1.5 * _GAP + 6e-3
-    return Drawing(_LAYERS, items)
+    paper = max(board.grating.length for board in found) + 2 * _MARGIN, y + _MARGIN
+    return Drawing(_LAYERS, items, paper=paper, corner=(-_MARGIN, -_MARGIN))
 
 
 def _along(start: si.Metre, end: si.Metre, y: si.Metre) -> Dimension:
     """A dimension along the stroke, its line 4 mm above a height (m)."""
     at = y + 4e-3
     return Dimension(start, y, end, y, at, (start + end) / 2, at + 1.5e-3)
-
-
-@style.drawn
-def draw_boards(found: tuple[Board, ...]) -> Figure:
-    """Every board from above, to scale."""
-    from matplotlib.collections import PatchCollection
-    from matplotlib.patches import Rectangle
-
-    narrow = min(found, key=lambda one: one.groove_width)
-    height = 1.2 + 0.62 * len(found)
-    figure = style.new_figure(
-        f"{len(found)} boards; the narrowest groove is {shown(narrow.groove_width, M, 3)}, of "
-        f"{style.plain(narrow.grating.name, 16)}",
-        "from above, to scale along the stroke; ridges dark, grooves light",
-        height,
-    )
-    axes = figure.subplots()
-    for row, board in enumerate(found):
-        grating = board.grating
-        ridges = [
-            Rectangle((1e3 * b, row - 0.3), 1e3 * (e - b), 0.6)
-            for b, e in zip(board.begin, board.end, strict=True)
-        ]
-        axes.add_collection(PatchCollection(ridges, color=style.METAL, lw=0))
-        outline = Rectangle((0, row - 0.3), 1e3 * grating.length, 0.6, fill=False, **style.OUTLINED)
-        axes.add_patch(outline)
-    longest = max(one.grating.length for one in found)
-    axes.set(xlim=(-1, 1e3 * longest + 1), ylim=(len(found) - 0.4, -0.6), xlabel="stroke (mm)")
-    axes.set_yticks(range(len(found)), [style.plain(one.grating.name, 16) for one in found])
-    axes.grid(False)
-    return figure
