@@ -122,7 +122,6 @@ def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERA
         **{f"board-{k + 1}.dxf": dxf_text(drawing_of((one,))) for k, one in enumerate(found)},
         "boards.json": json_text(numbers),
     }
-    names = [name for name in files if not name.endswith(".png")]
     picture = '<img src="boards.png" alt="The boards from above, to scale">'
     title = escape(printable(f"{design.name}: boards of real gratings"))
     files["index.html"] = page(

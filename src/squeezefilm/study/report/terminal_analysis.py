@@ -109,15 +109,6 @@ def show_precision(precision: PlannedPrecision) -> None:
             "of these people are not.",
             highlight=False,
         )
-    stops = precision.sequential
-    console.print(
-        f"A study that adds people until its interval is that narrow stops at {stops.mean:.3g} in "
-        f"the mean ({stops.low:.0f} to {stops.high:.0f}); its interval then holds the value in "
-        f"{100 * stops.held:.1f} % of the studies ({100 * stops.held_low:.1f} to "
-        f"{100 * stops.held_high:.1f} %), where 95 % are promised. {100 * stops.unfinished:.0f} % "
-        f"give up at {stops.most} people.",
-        highlight=False,
-    )
     console.print(
         f"The people's own value is {precision.truth:.3g}; "
         f"{_rests_on(precision, precision.studies)}",

@@ -1,10 +1,7 @@
-"""Number of people who make a study's answer precise, and the errors of stopping then.
+"""Number of people who make a study's answer precise.
 
 For any task: simulated people do the whole design, each one's answers are fitted once, and studies
-are put together of people drawn with replacement. A *sequential* study adds people one at a time
-and stops as soon as its interval is narrow enough; how often the interval of the stopped study
-holds the value of all people is counted, since looking at data to decide when to stop is what
-spoils intervals that ignore it.
+are put together of people drawn with replacement.
 """
 
 from __future__ import annotations
@@ -38,42 +35,12 @@ from squeezefilm.study.tasks.settings import settings_of
 
 PEOPLE = 400
 """Simulated people that studies are drawn from; each one's fit takes some 20 ms."""
-_FEWEST, _MOST = 4, 96
-"""People with whom a sequential study first looks at its interval, and at which it gives up."""
-
-_AT_ONCE = 20
-"""Sequential studies that are kept together: seconds of work."""
 
 _TRUTHS: Kept[tuple[str, float]] = Kept("simulated-truths", tuple[str, float])
 _SHARES: Kept[tuple[float, float]] = Kept("simulated-shares", tuple[float, float])
-_STOPPED: Kept[tuple[tuple[int, bool, bool], ...]] = Kept(
-    "simulated-stops", tuple[tuple[int, bool, bool], ...]
-)
 
 Ends = tuple[float, float, float]
 Interval = Callable[[si.IntArray], Ends]
-
-
-@dataclass(frozen=True, slots=True)
-class SequentialStudies:
-    """Results of studies that stopped as soon as their interval was narrow enough.
-
-    Attributes:
-        mean, low, high: people when they stopped: mean, and central 95 % of the studies.
-        unfinished: share that gave up at `most` people.
-        held: share of all studies whose interval held the value of all people, with its 95 %
-            bounds from the finite number of studies; 0.95 is promised.
-        most: people at which they give up.
-    """
-
-    mean: float
-    low: float
-    high: float
-    unfinished: si.Dimensionless
-    held: si.Dimensionless
-    held_low: si.Dimensionless
-    held_high: si.Dimensionless
-    most: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,7 +58,6 @@ class PlannedPrecision(Planned):
         target: share asked for.
         needed: fewest people that reach it, and all larger numbers too; None if none does.
         studies: simulated per number.
-        sequential: what becomes of stopping once the interval is narrow enough.
     """
 
     measure: str
@@ -105,7 +71,6 @@ class PlannedPrecision(Planned):
     target: si.Dimensionless
     needed: int | None
     studies: int
-    sequential: SequentialStudies
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -173,10 +138,6 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
         bounds.append(
             proportion_interval(round(reached[at] * studies), studies, method="Clopper–Pearson")
         )
-    asked.tell("sequential studies")
-    sequential = _sequential(
-        interval, precise, truth, people, studies, asked.seed, f"{of_people} {precision}"
-    )
     return PlannedPrecision(
         design=asked.design.name,
         display=alone.displays[0],
@@ -195,7 +156,6 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
         target=asked.target,
         needed=first_lasting(sizes, reached >= asked.target),
         studies=studies,
-        sequential=sequential,
     )
 
 
@@ -267,46 +227,3 @@ def _on_grid(main: Answers) -> PeopleOnGrid | None:
 
 def _values(persons: list[PersonEstimate]) -> si.FloatArray:
     return np.array([person.estimate.value for person in persons])
-
-
-def _sequential(
-    interval: Interval,
-    precise: Callable[[Ends], bool],
-    truth: float,
-    people: int,
-    studies: int,
-    seed: int,
-    asked: str,
-) -> SequentialStudies:
-    """Simulate so many sequential studies; those of each few are kept under what was `asked`."""
-
-    def stop(who: si.IntArray) -> tuple[int, bool, bool]:
-        """Number of people at which a study stops, and whether it gives up and whether it holds."""
-        for count in range(_FEWEST, _MOST + 1):
-            found = interval(who[:count])
-            if is_precise := bool(precise(found)):
-                break
-        return count, not is_precise, bool(found[1] <= truth <= found[2])
-
-    def stops(groups: list[si.IntArray]) -> tuple[tuple[int, bool, bool], ...]:
-        return tuple(map(stop, groups))
-
-    random = np.random.default_rng([seed, 0])
-    drawn = [random.integers(0, people, _MOST) for _ in range(studies)]
-    ends: list[tuple[int, bool, bool]] = []
-    for first in range(0, studies, _AT_ONCE):
-        some = drawn[first : first + _AT_ONCE]
-        ends += _STOPPED.found(f"{asked} {first} {len(some)}", functools.partial(stops, some))
-    stopped, unfinished, held = (np.array(column) for column in zip(*ends, strict=True))
-    low, high = np.quantile(stopped, [0.025, 0.975])
-    bounds = proportion_interval(int(held.sum()), studies, method="Clopper–Pearson")
-    return SequentialStudies(
-        mean=float(np.mean(stopped)),
-        low=float(low),
-        high=float(high),
-        unfinished=float(unfinished.mean()),
-        held=float(held.mean()),
-        held_low=bounds.low,
-        held_high=bounds.high,
-        most=_MOST,
-    )
