@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
@@ -64,9 +64,8 @@ def _own_columns(description: Description, table: RawTable) -> ImpedanceColumns:
     if not table.described:
         raise description.error(
             "the table [columns] is missing, and the file does not say itself what its columns "
-            "hold; "
-            'write [columns] with lines like frequency = { column = 1, unit = "Hz" } (the file has '
-            f"{table.columns_in_words})",
+            'hold; write [columns] with lines like frequency = { column = 1, unit = "Hz" } (the '
+            f"file has {table.columns_in_words})",
             ["columns"],
         )
     return ImpedanceColumns(
@@ -340,15 +339,6 @@ def _sweeps(reading: Reading) -> kinds.VoltageSweeps:
     )
     reading.facts.append(("sweeps", ", ".join(told)))
     return kinds.VoltageSweeps(tuple(sweeps), tuple(directions), reading.told())
-
-
-def joined_sweeps(
-    parts: Sequence[tuple[kinds.FrequencyResponse, Reading]], told: kinds.Told
-) -> kinds.VoltageSweeps:
-    """Sweeps that were read from files of their own, as one recording."""
-    down = [any(how.startswith("swept downwards") for _, how in read.facts) for _, read in parts]
-    directions = tuple("down" if fell else "up" for fell in down)
-    return kinds.VoltageSweeps(tuple(sweep for sweep, _ in parts), directions, told)
 
 
 def _runs(frequency: si.HertzArray, voltage: si.VoltArray) -> list[tuple[int, int]]:

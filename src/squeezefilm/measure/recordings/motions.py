@@ -31,8 +31,7 @@ def motion_per_volt(
         raise reading.wanting(
             "voltage",
             "the motion is not over volts, so that the drive's voltage is needed, as a column or "
-            "as "
-            'voltage = { amplitude = "10 V", given_as = "zero-to-peak" }',
+            'as voltage = { amplitude = "10 V", given_as = "zero-to-peak" }',
         )
     still = np.flatnonzero(np.abs(voltage) < _LEAST_VOLTAGE)
     if still.size:

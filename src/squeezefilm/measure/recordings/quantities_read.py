@@ -52,7 +52,6 @@ class Quantity(NamedTuple):
 
 
 _M, _HZ, _S, _N, _V = (si.Unit(symbol) for symbol in ("m", "Hz", "s", "N", "V"))
-_KG, _DAMPING = si.Unit("kg"), si.Unit("N*s/m")
 _FARAD, _HENRY = si.Unit("F"), si.Unit("H")
 _OHM, _SIEMENS, _RAD, _ONE = (si.Unit(symbol) for symbol in ("ohm", "S", "rad", "1"))
 _SPEED, _PER_VOLT, _SPEED_PER_VOLT = si.Unit("m/s"), si.Unit("m/V"), si.Unit("m/s/V")
@@ -100,8 +99,8 @@ QUANTITIES: dict[str, Quantity] = {
     "relative_friction": Quantity(_ONE, 1e3),
     "spread": Quantity(_ONE, 1e3, 0.0),
     "speed": Quantity(_SPEED, FINGER_SPEED.most, FINGER_SPEED.least),
-    "damping": Quantity(_DAMPING, 1e4),
-    "mass": Quantity(_KG, 1.0),
+    "damping": Quantity(si.Unit("N*s/m"), 1e4),
+    "mass": Quantity(si.Unit("kg"), 1.0),
 }
 _PER_VOLT_OF = {
     "displacement": Quantity(_PER_VOLT, VIBRATION.most),
@@ -134,9 +133,8 @@ class Reading:
         """The error of a quantity for which no column is named."""
         unit = QUANTITIES[name].unit.symbol
         return self.description.error(
-            f"no column is named for the {words(name)}: {why}; write {name} = "
-            f"{{ column = …, unit = "
-            f'"{unit}" }} (the file has {self.table.columns_in_words})',
+            f"no column is named for the {words(name)}: {why}; write {name} = {{ column = …, "
+            f'unit = "{unit}" }} (the file has {self.table.columns_in_words})',
             ["columns"],
         )
 
@@ -191,9 +189,10 @@ class Reading:
                 ["columns", name, "given_as"],
             )
         self._require_believable(name, values, meant)
-        low, high = (quantity(value, meant.unit) for value in (values.min(), values.max()))
+        ends = values.min(), values.max()
+        low, high = (quantity(value, meant.unit) for value in ends)
         if name == "phase":
-            low, high = (f"{np.degrees(value):.1f} deg" for value in (values.min(), values.max()))
+            low, high = (f"{np.degrees(value):.1f} deg" for value in ends)
         self.facts.append((words(name), f"{low} to {high}, from {said}"))
         return np.asarray(values)
 
@@ -237,18 +236,15 @@ class Reading:
         for key, text in (("unit", unit), ("scale", column.scale)):
             if text is None:
                 continue
-            number = 1.0
-            if key == "unit" and decibels is not None and (match := _SCALE.fullmatch(text)):
-                number, text = float(match[1]), match[2]
-            if key == "scale":
-                match = _SCALE.fullmatch(text)
-                if match is None:
-                    raise self.description.error(
-                        f"'{text}' is no scale; write what one recorded unit stands for, like "
-                        '"125 mm/s/V"',
-                        ["columns", name, key],
-                    )
-                number, text = float(match[1]), match[2]
+            scaled = key == "scale" or decibels is not None
+            match = _SCALE.fullmatch(text) if scaled else None
+            if key == "scale" and match is None:
+                raise self.description.error(
+                    f"'{text}' is no scale; write what one recorded unit stands for, like "
+                    '"125 mm/s/V"',
+                    ["columns", name, key],
+                )
+            number, text = (1.0, text) if match is None else (float(match[1]), match[2])
             try:
                 scale, dimension = si.parse_unit(text)
             except QuantityError as error:
@@ -319,9 +315,8 @@ class Reading:
         if column.given_as is None:
             raise self.description.error(
                 f"it must be said how the amplitude of the {words(name)} is given, since that "
-                "changes "
-                'it twofold; write given_as = "zero-to-peak", "peak-to-peak" or "rms" in its '
-                "braces",
+                'changes it twofold; write given_as = "zero-to-peak", "peak-to-peak" or "rms" in '
+                "its braces",
                 ["columns", name],
             )
         return CONVENTIONS[column.given_as]

@@ -12,7 +12,7 @@ from squeezefilm.core.config import load_text
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import Result, to_json, write_whole
-from squeezefilm.measure.recordings.assembled import assembled, joined_sweeps
+from squeezefilm.measure.recordings.assembled import assembled
 from squeezefilm.measure.recordings.described import Described
 from squeezefilm.measure.recordings.description import (
     KINDS,
@@ -32,7 +32,7 @@ from squeezefilm.measure.recordings.files.touchstone import SUFFIX as TOUCHSTONE
 from squeezefilm.measure.recordings.files.touchstone import read_touchstone
 from squeezefilm.measure.recordings.files.universal import SUFFIXES, read_universal
 from squeezefilm.measure.recordings.fixture import fixture_description, without_fixture
-from squeezefilm.measure.recordings.kinds import FrequencyResponse, Recording
+from squeezefilm.measure.recordings.kinds import FrequencyResponse, Recording, VoltageSweeps
 from squeezefilm.measure.recordings.quantities_read import Reading
 
 
@@ -215,7 +215,10 @@ def _read(file: Path, description: Description) -> tuple[Recording, list[Reading
         sweep = dataclasses.replace(description, kind="frequency response", said=response)
         sweep_read, reading = assembled(sweep, _table(file.parent / response.file, sweep))
         parts.append((cast(FrequencyResponse, sweep_read), reading))
-    return joined_sweeps(parts, said.told(file)), [reading for _, reading in parts]
+    readings = [reading for _, reading in parts]
+    down = [any(how.startswith("swept downwards") for _, how in read.facts) for read in readings]
+    directions = tuple("down" if fell else "up" for fell in down)
+    return VoltageSweeps(tuple(sweep for sweep, _ in parts), directions, said.told(file)), readings
 
 
 def check_folder(folder: str | Path) -> FolderCheck:

@@ -1,22 +1,6 @@
 """A study's design: its task, what is presented, how often and in which order; from a TOML file.
 
-Tasks, each a record of `design.tasks`:
-
-- "match-to-sample": one virtual surface; which of the real gratings (`alternatives`) is it like?
-  Or, with `matched_with` = "stimuli", which of the stimuli, shapes and maps too, was it?
-- "same-different": two surfaces one after the other; the same or different?
-- "two-interval": two surfaces; which is coarser (`judged` = "spatial_period") or has the deeper
-  friction change (`judged` = "friction_depth")? One of them is always `reference`.
-- "odd-one-out": three surfaces, two of them the same; which is the other? One kind is `reference`.
-- "magnitude-estimation": one surface; a number for how coarse, rough or strong it is.
-- "direction": one surface; does it have more or less than the reference, known from before?
-- "yes-no": one surface, the flat `reference` in half of the trials; was anything felt?
-- "detection": two surfaces, one of them the flat `reference`; which had something to feel?
-- "paired-comparison": two of all surfaces, each with each other; which has more?
-- "ranking": three of all surfaces; in which order do they have more?
-- "adjustment": the second of two surfaces is made equal to the `reference`, by an adaptive series
-
-`squeezefilm.study.design.trials` makes each participant's trials of a design.
+Each task is a record of `design.tasks`; `design.trials` makes each participant's trials.
 """
 
 from __future__ import annotations
@@ -66,7 +50,7 @@ class StudyDesign:
         name, title: what it is called, in files and for people.
         displays: presets or files of displays; every participant does the trials on each, in an
             order balanced over participants.
-        task: one of this module.
+        task: name of a record of `design.tasks`.
         stimuli: the conditions.
         alternatives: real gratings; for match-to-sample only, where they are the answers.
         matched_with: what match-to-sample offers as answers: the "real gratings", or the "stimuli"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from html import escape
 from pathlib import Path
@@ -32,8 +33,6 @@ from squeezefilm.study.report.words import (
     condition_head,
     condition_rows,
     confusion_rows,
-    exploration_head,
-    exploration_rows,
     key_rows,
     person_rows,
     read_first,
@@ -215,7 +214,7 @@ def _screening(analysis: StudyAnalysis) -> str:
 def _worked(analysis: StudyAnalysis) -> str:
     """Sections on exploration and attention, and the methods section."""
     found = ""
-    if head := exploration_head(analysis):
+    if head := _exploration_head(analysis):
         caption = "Means over people by stimulus; in brackets the t interval over people"
         found += section(
             "Exploration in numbers", text_table(caption, head, exploration_rows(analysis))
@@ -231,6 +230,40 @@ def _worked(analysis: StudyAnalysis) -> str:
     if analysis.methods:
         found += section("Methods, for a paper", f"<p>{as_html(analysis.methods)}</p>")
     return found
+
+
+def _exploration_head(analysis: StudyAnalysis) -> tuple[str, ...]:
+    """Head of `exploration_rows`; empty where no path was kept."""
+    known = [key for key, rows in analysis.exploration.items() if rows]
+    return ("Stimulus", *map(_key_words, known)) if known else ()
+
+
+def exploration_rows(analysis: StudyAnalysis) -> list[tuple[str, ...]]:
+    """Exploration of each stimulus: means over people with their intervals."""
+    known = [rows for rows in analysis.exploration.values() if rows]
+    names = list(dict.fromkeys(row.name for rows in known for row in rows))
+    found = []
+    for name in names:
+        cells = []
+        for rows in known:
+            mine = [row for row in rows if row.name == name]
+            if not mine:
+                cells.append("–")
+                continue
+            first = mine[0]
+            bounds = "" if math.isnan(first.low) else f" ({first.low:.3g} to {first.high:.3g})"
+            cells.append(f"{first.mean:.3g}{bounds}")
+        found.append((name, *cells))
+    return found
+
+
+def _key_words(key: str) -> str:
+    """A key with its unit as a person reads it: mean_speed_m_per_s → mean speed (m/s)."""
+    for unit in ("m/s", "mm/s", "m", "mm", "N", "s"):
+        suffix = "_" + unit.replace("/", "_per_")
+        if key.endswith(suffix):
+            return f"{key.removesuffix(suffix).replace('_', ' ')} ({unit})"
+    return key.replace("_", " ")
 
 
 def _judged(attended: bool) -> str:

@@ -382,37 +382,3 @@ def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
         )
         for person in analysis.persons
     ]
-
-
-def exploration_head(analysis: StudyAnalysis) -> tuple[str, ...]:
-    """Head of `exploration_rows`; empty where no path was kept."""
-    known = [key for key, rows in analysis.exploration.items() if rows]
-    return ("Stimulus", *map(key_words, known)) if known else ()
-
-
-def exploration_rows(analysis: StudyAnalysis) -> list[tuple[str, ...]]:
-    """Exploration of each stimulus: means over people with their intervals."""
-    known = [rows for rows in analysis.exploration.values() if rows]
-    names = list(dict.fromkeys(row.name for rows in known for row in rows))
-    found = []
-    for name in names:
-        cells = []
-        for rows in known:
-            mine = [row for row in rows if row.name == name]
-            if not mine:
-                cells.append("–")
-                continue
-            first = mine[0]
-            bounds = "" if math.isnan(first.low) else f" ({first.low:.3g} to {first.high:.3g})"
-            cells.append(f"{first.mean:.3g}{bounds}")
-        found.append((name, *cells))
-    return found
-
-
-def key_words(key: str) -> str:
-    """A key with its unit as a person reads it: mean_speed_m_per_s → mean speed (m/s)."""
-    for unit in ("m/s", "mm/s", "m", "mm", "N", "s"):
-        suffix = "_" + unit.replace("/", "_per_")
-        if key.endswith(suffix):
-            return f"{key.removesuffix(suffix).replace('_', ' ')} ({unit})"
-    return key.replace("_", " ")

@@ -6,7 +6,7 @@ import math
 from types import SimpleNamespace
 from typing import Any
 
-from squeezefilm.study.report.words import exploration_rows
+from squeezefilm.study.report.page import exploration_rows
 
 
 def mean(name: str, value: float, low: float = math.nan, high: float = math.nan) -> Any:
