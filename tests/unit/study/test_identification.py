@@ -73,7 +73,7 @@ def test_names_and_order_of_trials_do_not_matter() -> None:
 
 def test_one_person_is_said_to_be_one() -> None:
     found = analyze_identification(**trials(1, 12), labels=LABELS, resamples=50)
-    assert found.interval.method == "Wilson"
+    assert found.main_number.method == "Wilson"
     assert any("one participant" in note for note in found.notes)
     assert found.information.interval is None
 

@@ -27,7 +27,6 @@ from squeezefilm.study.identification.information import (
     information_transfer,
 )
 from squeezefilm.study.identification.proportions import (
-    StatedInterval,
     chance_test,
     participant_interval,
     permutation_test,
@@ -80,7 +79,7 @@ class IdentificationAnalysis(Result):
     origin: str
     matrix: ConfusionMatrix
     counts: si.IntArray
-    intervals: tuple[StatedInterval, ...]
+    intervals: tuple[Estimate, ...]
     by_stimulus: tuple[StimulusCorrect, ...]
     participant_correct: si.DimensionlessArray
     chance_p: si.Dimensionless
@@ -112,15 +111,10 @@ class IdentificationAnalysis(Result):
         return self.matrix.proportion_correct
 
     @property
-    def interval(self) -> StatedInterval:
-        """The interval to quote: over participants, or Wilson's where there is one."""
-        return _quoted(self.intervals, self.participants)
-
-    @property
     def main_number(self) -> Estimate:
-        """The share of right answers with the interval to quote."""
-        found = self.interval
-        return Estimate(self.proportion_correct, found.low, found.high, found.level, found.method)
+        """The share of right answers with the interval to quote: over participants, or Wilson's
+        where there is one."""
+        return self.intervals[-1]
 
     def summary(self) -> dict[str, Any]:
         """All numbers as plain JSON values, units in the keys; `confusion` in the paper's layout:
@@ -222,8 +216,7 @@ def proportion_correct(asked: IdentificationRequest) -> Estimate:
     """The share of right answers (1) with the interval that an analysis quotes, and nothing else.
     Raises as `analyze_identification` does."""
     counts, matrix = _counted(asked)
-    found = _quoted(_intervals(counts, matrix, asked, []), counts.shape[0])
-    return Estimate(matrix.proportion_correct, found.low, found.high, found.level, found.method)
+    return _intervals(counts, matrix, asked, [])[-1]
 
 
 def _counted(asked: IdentificationRequest) -> tuple[si.IntArray, ConfusionMatrix]:
@@ -234,11 +227,6 @@ def _counted(asked: IdentificationRequest) -> tuple[si.IntArray, ConfusionMatrix
         raise InputError(f"{k} labels cannot be confused; at least 2 are wanted")
     _, counts = participant_counts(asked.participant, asked.stimulus, asked.choice, k, k)
     return counts, ConfusionMatrix(counts.sum(axis=0), names, names)
-
-
-def _quoted(intervals: tuple[StatedInterval, ...], people: int) -> StatedInterval:
-    """The interval to quote: over participants, or Wilson's where there is one."""
-    return intervals[-1] if people > 1 else intervals[0]
 
 
 def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
@@ -285,8 +273,8 @@ def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
 
 def _intervals(
     counts: si.IntArray, matrix: ConfusionMatrix, asked: IdentificationRequest, notes: list[str]
-) -> tuple[StatedInterval, ...]:
-    """Intervals of the proportion correct: over trials, and over people where there are two."""
+) -> tuple[Estimate, ...]:
+    """The proportion correct over trials, and over people where there are two."""
     level = asked.level
     intervals = [proportion_interval(matrix.correct, matrix.trials, level)]
     if counts.shape[0] > 1:

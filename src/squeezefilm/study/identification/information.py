@@ -23,10 +23,10 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.proportions import (
-    StatedInterval,
     recentred_interval,
     resampled_counts,
 )
+from squeezefilm.study.psychometric.estimate import Estimate
 
 Bit = Annotated[float, si.Unit("bit")]
 
@@ -97,7 +97,7 @@ class InformationTransfer:
     """
 
     estimate: Bit
-    interval: StatedInterval | None
+    interval: Estimate | None
     greatest: Bit
     trials: int
     participants: int

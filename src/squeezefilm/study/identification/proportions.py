@@ -9,7 +9,6 @@ bootstrap; Davison & Hinkley 1997, 10.1017/CBO9780511802843, section 3.8).
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
@@ -19,20 +18,7 @@ from scipy import stats
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.confusion import ConfusionMatrix, whole_counts
-from squeezefilm.study.psychometric.estimate import holding
-
-
-@dataclass(frozen=True, slots=True)
-class StatedInterval:
-    """An interval: its bounds, its level, and how it was made."""
-
-    low: float
-    high: float
-    level: si.Dimensionless
-    method: str
-
-    def __contains__(self, value: float) -> bool:
-        return self.low <= value <= self.high
+from squeezefilm.study.psychometric.estimate import Estimate, holding
 
 
 def resampled_counts(counts: ArrayLike, resamples: int, seed: int) -> si.IntArray:
@@ -84,7 +70,7 @@ def recentred_interval(
     level: float = 0.95,
     least: float = -np.inf,
     greatest: float = np.inf,
-) -> StatedInterval:
+) -> Estimate:
     """The spread of a bootstrap laid around the estimate, not around the bootstrap's own mean.
 
     Resampling repeats people, and statistics with a bias that grows as data thin out (information
@@ -103,7 +89,7 @@ def recentred_interval(
     low, high = estimate + wide * (np.quantile(values, [tail, 1 - tail]) - values.mean())
     # An unbiased estimate may lie beyond what can be, and all resamples to one side of their mean.
     low, high = holding(estimate, *np.clip([low, high], least, greatest))
-    return StatedInterval(float(low), float(high), level, "participant bootstrap, recentred")
+    return Estimate(estimate, float(low), float(high), level, "participant bootstrap, recentred")
 
 
 Method = Literal["Wilson", "Jeffreys", "Clopper–Pearson"]
@@ -112,8 +98,8 @@ METHODS: tuple[Method, ...] = get_args(Method)
 
 def proportion_interval(
     successes: int, trials: int, level: si.Dimensionless = 0.95, method: Method = "Wilson"
-) -> StatedInterval:
-    """An interval of a proportion; trials are taken as independent.
+) -> Estimate:
+    """A proportion with an interval; trials are taken as independent.
 
     Wilson's score interval (1927, 10.1080/01621459.1927.10502953); the equal-tailed posterior
     under Jeffreys' prior Beta(1/2, 1/2), whose bound at 0 or all successes is 0 or 1 (Brown, Cai &
@@ -130,24 +116,25 @@ def proportion_interval(
             f"{successes} successes of {trials} trials cannot be; successes must lie between 0 and "
             "the trials, of which at least 1 is wanted"
         )
+    share = successes / trials
     if method != "Jeffreys":
         exact = method == "Clopper–Pearson"
         interval = stats.binomtest(successes, trials).proportion_ci(
             level, "exact" if exact else "wilson"
         )
-        return StatedInterval(float(interval.low), float(interval.high), level, method)
+        return Estimate(share, float(interval.low), float(interval.high), level, method)
     posterior = stats.beta(successes + 0.5, trials - successes + 0.5)
     tail = (1 - level) / 2
     low = 0.0 if successes == 0 else float(posterior.ppf(tail))
     high = 1.0 if successes == trials else float(posterior.isf(tail))
-    ends = holding(successes / trials, low, high)
-    return StatedInterval(float(ends[0]), float(ends[1]), level, method)
+    ends = holding(share, low, high)
+    return Estimate(share, float(ends[0]), float(ends[1]), level, method)
 
 
 def participant_interval(
     counts: ArrayLike, level: si.Dimensionless = 0.95, resamples: int = 2000, seed: int = 0
-) -> StatedInterval:
-    """Percentile interval of the proportion correct over resampled participants.
+) -> Estimate:
+    """The proportion correct with its percentile interval over resampled participants.
 
     The percentiles lie further out than the level says, for few people (`expansion`).
 
@@ -166,7 +153,7 @@ def participant_interval(
     tail = float(stats.norm.sf(expansion(whole.shape[0], level)))
     correct = float(np.trace(whole.sum(axis=0)) / whole.sum())
     low, high = holding(correct, *np.quantile(right, [tail, 1 - tail]))
-    return StatedInterval(float(low), float(high), level, "participant bootstrap")
+    return Estimate(correct, float(low), float(high), level, "participant bootstrap")
 
 
 def chance_test(matrix: ConfusionMatrix) -> si.Dimensionless:

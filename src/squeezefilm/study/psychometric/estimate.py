@@ -21,6 +21,9 @@ class Estimate:
     level: si.Dimensionless
     method: str
 
+    def __contains__(self, value: float) -> bool:
+        return self.low <= value <= self.high
+
 
 def holding(
     estimate: si.FloatLike, low: si.FloatLike, high: si.FloatLike

@@ -90,7 +90,7 @@ def _worst(matrix: ConfusionMatrix) -> str:
 @style.drawn
 def proportion_correct(analysis: IdentificationAnalysis) -> Figure:
     """Right answers by stimulus and over all, with intervals; the people themselves beside."""
-    bounds = analysis.interval
+    bounds = analysis.main_number
     p = analysis.permutation_p
     said = "better than" if p < 0.05 else "not shown to be better than"
     figure = style.new_figure(

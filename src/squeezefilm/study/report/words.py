@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
     from squeezefilm.study.identification.confusion import ConfusionMatrix
     from squeezefilm.study.identification.course import Course
-    from squeezefilm.study.identification.proportions import StatedInterval
     from squeezefilm.study.identification.screening import Screening
     from squeezefilm.study.psychometric.estimate import Estimate
     from squeezefilm.study.tasks.analyze import StudyAnalysis
@@ -51,7 +50,7 @@ def _people(analysis: StudyAnalysis) -> str:
 
 
 def _identification_first(analysis: IdentificationAnalysis) -> list[str]:
-    interval, carried = analysis.interval, analysis.information
+    interval, carried = analysis.main_number, analysis.information
     low, high = 100 * interval.low, 100 * interval.high
     chance = 100 * analysis.matrix.chance
     above = "above" if interval.low > analysis.matrix.chance else "not surely above"
@@ -259,7 +258,7 @@ def _scale_of(name: str) -> tuple[float, str]:
     return (100.0, " %") if name.startswith(parts) else (1.0, "")
 
 
-def between(interval: StatedInterval | Estimate | None, scale: float = 1.0, unit: str = "") -> str:
+def between(interval: Estimate | None, scale: float = 1.0, unit: str = "") -> str:
     """Both ends, the method and the level; a dash for none."""
     if interval is None:
         return "–"

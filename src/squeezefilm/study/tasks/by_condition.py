@@ -94,8 +94,7 @@ def _finding(
 ) -> ConditionFinding:
     """The share of hits in some of the trials, with its interval over trials."""
     hits, trials = int(hit[rows].sum()), int(hit[rows].size)
-    bounds = proportion_interval(hits, trials, level)
-    share = Estimate(hits / trials, bounds.low, bounds.high, level, "Wilson, over trials")
+    share = proportion_interval(hits, trials, level)
     people = int(np.unique(main.participant[rows]).size)
     return ConditionFinding(name, value, trials, people, share, d_prime)
 
@@ -123,9 +122,7 @@ def _d_prime_of_right(main: Answers, rows: NDArray[np.bool_], level: float) -> E
     assert d_prime is not None
     mine = [hit[rows & (main.participant == one)] for one in np.unique(main.participant[rows])]
     if len(mine) == 1:
-        hits, trials = int(mine[0].sum()), mine[0].size
-        bounds = proportion_interval(hits, trials, level, "Jeffreys")
-        share = Estimate(hits / trials, bounds.low, bounds.high, level, "Jeffreys, over trials")
+        share = proportion_interval(int(mine[0].sum()), mine[0].size, level, "Jeffreys")
         return through(share, d_prime)
     shares = [corrected_proportion(int(answers.sum()), answers.size) for answers in mine]
     return t_interval(np.array([d_prime(one) for one in shares]), level)

@@ -100,8 +100,7 @@ def strengths(
     for k, surface in enumerate(shown.tolist()):
         here = (order == k).any(axis=0)
         wins, pairs = int(before[k].sum()), int(before[k].sum() + before[:, k].sum())
-        bounds = proportion_interval(wins, pairs, level)
-        share = Estimate(wins / pairs, bounds.low, bounds.high, level, "Wilson, over pairs")
+        share = proportion_interval(wins, pairs, level)
         ln_strength = Estimate(logs[k], logs[k] - reach[k], logs[k] + reach[k], level, how)
         findings.append(
             ConditionFinding(

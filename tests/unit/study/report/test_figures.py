@@ -48,7 +48,7 @@ def analysis(**changes: Any) -> Any:
     values: dict[str, Any] = {
         "origin": "made-up", "name": "a study", "participants": 4, "matrix": matrix(),
         "trials": 28,
-        "proportion_correct": 18 / 28, "interval": interval(0.5, 0.75), "permutation_p": 0.0004,
+        "proportion_correct": 18 / 28, "main_number": interval(0.5, 0.75), "permutation_p": 0.0004,
         "by_stimulus": [
             SimpleNamespace(stimulus=name, low=p - 0.125, high=p + 0.125, proportion_correct=p)
             for name, p in zip(NAMES, (0.75, 0.5, 0.625), strict=True)
