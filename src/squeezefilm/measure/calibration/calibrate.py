@@ -263,7 +263,7 @@ def _calibration(
         observations=observations,
         values=_values(plate, finger, joint),
         identification=_identified(plate, finger),
-        laws={} if finger.posterior is None else {k: v for k, _, v in finger.posterior.shares()},
+        laws={} if finger.posterior is None else finger.posterior.shares(),
         misfits=tuple(misfits),
         before=before,
         after=after,

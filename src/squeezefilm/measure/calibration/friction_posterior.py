@@ -12,7 +12,6 @@ from __future__ import annotations
 import copy
 import dataclasses
 import json
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -143,16 +142,17 @@ class FrictionPosterior:
         rows, scales = np.divmod(chosen, GRID.size)
         return FrictionDraws(self, rows, self.points[rows], GRID[scales], self.curves[rows])
 
-    def shares(self) -> Iterator[tuple[str, dict[str, float], dict[str, float]]]:
-        """Path of each choice of a law, and the weights of its options before and after."""
+    def shares(self) -> dict[str, dict[str, float]]:
+        """Weights of the options of each choice of a law, by its path."""
         from squeezefilm.physics.uncertainty.model_choices import Choice
 
-        weight = self.weights.sum(axis=1)
+        weight, after = self.weights.sum(axis=1), {}
         for k, item in enumerate(self.mixture.inputs):
             if isinstance(item, Choice):
                 drawn = np.array(item.drawn(self.points[:, k]))
-                after = {o.name: float(weight[drawn == o.name].sum()) for o in item.options}
-                yield item.path, {o.name: o.weight for o in item.options}, after
+                shares = {o.name: float(weight[drawn == o.name].sum()) for o in item.options}
+                after[item.path] = shares
+        return after
 
 
 @dataclass(frozen=True, eq=False)

@@ -234,17 +234,6 @@ class NormalScores:
             coordinates[:, self._glue] = np.stack([thick - stiff, thick + stiff], axis=1) / 2
         return coordinates
 
-    def scores(self, values: si.FloatArray) -> si.DimensionlessArray:
-        """The scores of values, shape (points, parameters); those beyond a prior at its end."""
-        from scipy.special import ndtri
-
-        scores = np.empty(np.shape(values))
-        for k, parameter in enumerate(self.parameters):
-            scores[:, k] = ndtri(
-                np.clip(share_of(parameter.distribution, values[:, k]), 1e-9, 1 - 1e-9)
-            )
-        return scores
-
 
 def share_of(prior: Distribution, values: si.FloatArray) -> si.DimensionlessArray:
     """The probabilities (the shape of `values`, in the quantity's unit) with which values are not

@@ -124,12 +124,11 @@ def fit_separable(
     data: si.Array,
     start: si.FloatArray,
     *,
-    real_weights: bool = False,
     reach: float | si.FloatArray = np.inf,
 ) -> SeparableFit:
     """Shape and weights that describe `data` (points,) best in the sense of least squares.
 
-    Complex data get complex weights unless `real_weights`. The shape stays within `reach` of its
+    Complex data get complex weights. The shape stays within `reach` of its
     start. Raises `InputError` where there are fewer data than numbers.
     """
     both = np.iscomplexobj(data)
@@ -139,8 +138,6 @@ def fit_separable(
         if not both:
             return np.asarray(part, dtype=float)
         rows = np.concatenate([part.real, part.imag], axis=-2)
-        if real_weights:
-            return rows
         other = np.concatenate([-part.imag, part.real], axis=-2)
         return np.concatenate([rows, other], axis=-1)
 
@@ -171,7 +168,7 @@ def fit_separable(
     n = data.size
     residual = left[:n] + 1j * left[n:] if both else left
     fitted = model[:n] + 1j * model[n:] if both else model
-    m = weights.size // 2 if both and not real_weights else weights.size
+    m = weights.size // 2 if both else weights.size
     own = weights[:m] + 1j * weights[m:] if m < weights.size else weights
     widening = correlation_factor(residual)
     return SeparableFit(shape, own, covariance * widening**2, residual, fitted, freedom, widening)

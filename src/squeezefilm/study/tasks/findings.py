@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.core.results import Result, stamp
 from squeezefilm.physics.perception.stimuli import Varied
 from squeezefilm.study.design.tasks.task import JUDGED, Task
 from squeezefilm.study.identification.condition_means import ConditionMean, ResponseTimeSummary
@@ -143,33 +143,14 @@ class TaskAnalysis(Result):
         """All numbers as plain JSON values, units in the keys."""
         judged = JUDGED[self.judged].si_unit
         unit = "" if judged == "1" else f"_{judged}"
-        values = {
-            "name": self.name,
-            "origin": self.origin,
-            "task": self.task,
-            "judged": self.judged,
+        values = Result.summary(self)
+        values[f"standard{unit}"] = values.pop("standard")
+        values["spread_over_people"] = values.pop("spread")
+        return {
+            **values,
             "participants": self.participants,
-            "trials": self.trials,
-            f"standard{unit}": self.standard,
-            "measure": self.measure,
-            "pooled": self.pooled,
-            "spread_over_people": self.spread,
-            "persons": self.persons,
-            "conditions": self.conditions,
-            "more": self.more,
-            "functions": self.functions,
-            "response_times": self.response_times,
-            "course": self.course,
-            "exploration": self.exploration,
-            "assumed": self.assumed,
-            "notes": self.notes,
-            "methods": self.methods,
-            "screening": self.screening,
-            "robust": self.robust,
             "provenance": stamp({"name": self.name, "persons": self.persons}, self.seed),
         }
-        plain: dict[str, Any] = to_json(values)
-        return plain
 
     def _table(self) -> Any:
         """Table with a row a condition."""
