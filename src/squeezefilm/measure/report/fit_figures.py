@@ -9,12 +9,12 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
+from squeezefilm.core.kit.numbers import HZ, SPEED, N, shown
 from squeezefilm.measure.fits.by_kind import Fit
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.read import RecordingCheck
-from squeezefilm.measure.report.beside import comparison_figure
-from squeezefilm.measure.report.figures import scattered
+from squeezefilm.measure.report.figures import measured_points, scattered
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -176,3 +176,52 @@ _OWN: dict[type, Callable[[_Subject], Figure]] = {
     kinds.RawSignals: _raw,
     kinds.FrictionBench: _bench,
 }
+
+
+def conditions(compared: CurveComparison) -> str:
+    """Words for the display on which a curve was measured, and how."""
+    c = compared.curve
+    words = [
+        compared.display,
+        _spanned(c.frequency, HZ),
+        _spanned(compared.normal_force, N) + _assumed(compared, "normal_force"),
+        f"finger at {_spanned(compared.speed, SPEED)}" + _assumed(compared, "speed"),
+    ]
+    return ", ".join(words)
+
+
+def _assumed(compared: CurveComparison, name: str) -> str:
+    return " (assumed)" if name in compared.assumed else ""
+
+
+def _spanned(values: si.FloatLike, unit: si.Unit) -> str:
+    low, high = shown(float(np.min(values)), unit), shown(float(np.max(values)), unit)
+    return low if low == high else f"{low} to {high}"
+
+
+@style.drawn
+def comparison_figure(compared: CurveComparison) -> Figure:
+    """The measured points, our interval, and the models: the nearest, the default, all others."""
+    curve, nearest = compared.curve, compared.nearest
+    name = style.plain(curve.told.name, 50)
+    title = f"{name}: nearest is {nearest.model}, off by {nearest.difference or np.nan:.3f}"
+    figure = style.new_figure(title, f"friction at rest fitted; {conditions(compared)}", 5)
+    axes = figure.subplots()
+    amplitude = 1e6 * curve.vibration_amplitude
+    level = si.percent(compared.band.level)
+    axes.fill_between(
+        amplitude,
+        compared.fitted_at_rest * compared.band.low,
+        compared.fitted_at_rest * compared.band.high,
+        color=style.BAND,
+        label=f"{level} interval of the default",
+    )
+    strong = {compared.default.model: style.RENDERED, nearest.model: style.WANTED}
+    for score in compared.models:
+        look = strong.get(score.model, style.GUIDE)
+        label = score.model if score.model in strong else None
+        axes.plot(amplitude, score.friction, **look, label=label)
+    axes.plot([], [], **style.GUIDE, label="other models and shapes")
+    measured_points(axes, curve)
+    style.legend_beside(axes)
+    return figure

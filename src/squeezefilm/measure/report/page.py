@@ -28,10 +28,11 @@ from squeezefilm.core.results import stamp, to_json
 from squeezefilm.measure.fits.by_kind import Fit
 from squeezefilm.measure.fits.estimate import LEVEL, Adequacy, Estimate
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
+from squeezefilm.measure.fits.friction.friction_scores import NO_PHYSICS
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
-from squeezefilm.measure.report.beside import MODELS_HEAD, inside_words, model_rows
 from squeezefilm.measure.report.figures import recording_figure
 from squeezefilm.measure.report.fit_figures import fit_figure
+from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -82,6 +83,45 @@ def _show_one(title: str, fit: Fit) -> None:
         table(console, HEAD, rows, fixed=(0, 1))
     word, look = ("adequate", "green") if fit.adequacy.adequate else ("INADEQUATE", "bold red")
     printed_bullets(console, [(word, fit.adequacy.sentence, look)])
+
+
+MODELS_HEAD = ("model", "off by", "in spreads", "answered", "fitted")
+
+
+def model_rows(compared: CurveComparison) -> list[tuple[str, ...]]:
+    """The models and shapes, the nearest first: how far each is off."""
+    return [
+        (
+            model_words(score.model),
+            number_words(score.difference, 3),
+            number_words(score.in_spreads, 1),
+            f"{score.answered} of {len(compared.inside)}",
+            str(score.fitted),
+        )
+        for score in compared.models
+    ]
+
+
+def model_words(model: str) -> str:
+    """Name of a model or shape, and whether it is the default or no physics."""
+    if model in NO_PHYSICS:
+        return f"{model} (no physics)"
+    return f"{model} (the default)" if model == DEFAULT_MODEL else model
+
+
+def number_words(value: float | None, digits: int) -> str:
+    """A number with so many decimals; a dash for none."""
+    return "–" if value is None else f"{value:.{digits}f}"
+
+
+def inside_words(compared: CurveComparison) -> str:
+    """Number of points that lie in the interval of the default, in words."""
+    within, asked = compared.points_inside
+    level = si.percent(compared.band.level)
+    return (
+        f"{within} of {asked} points that vibrate lie in the {level} interval of the default, with "
+        "everything but the amplitude uncertain"
+    )
 
 
 HEAD = ("quantity", "value", si.percent(LEVEL) + " interval", "standard error")

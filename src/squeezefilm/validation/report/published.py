@@ -24,7 +24,8 @@ from squeezefilm.core.kit.terminal import bullets as printed_bullets
 from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.core.results import stamp, write_whole
 from squeezefilm.measure.recordings.kinds import Told
-from squeezefilm.measure.report import beside
+from squeezefilm.measure.report.fit_figures import comparison_figure, conditions
+from squeezefilm.measure.report.page import MODELS_HEAD, inside_words, model_rows
 from squeezefilm.validation.published_friction import FolderComparison
 from squeezefilm.validation.report import pooled
 
@@ -66,9 +67,9 @@ def _recordings(compared: FolderComparison) -> Iterator[_Compared]:
     shown: _Table
     for curve in compared.curves:
         told = curve.curve.told
-        words = [beside.conditions(curve), beside.inside_words(curve), curve.adequacy.sentence]
-        shown = ("How far each model is off", beside.MODELS_HEAD, beside.model_rows(curve))
-        yield _Compared(told, told.name, words, *shown, partial(beside.comparison_figure, curve))
+        words = [conditions(curve), inside_words(curve), curve.adequacy.sentence]
+        shown = ("How far each model is off", MODELS_HEAD, model_rows(curve))
+        yield _Compared(told, told.name, words, *shown, partial(comparison_figure, curve))
     for people in compared.populations:
         name = f"{people.told.name}: {people.quantity}"
         shown = ("What each model gives", pooled.PEOPLE_HEAD, pooled.people_rows(people))

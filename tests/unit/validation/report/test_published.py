@@ -11,9 +11,9 @@ from squeezefilm.validation.report import published
 
 
 def test_curves_come_first_then_people_then_thresholds(monkeypatch: pytest.MonkeyPatch) -> None:
-    beside, pooled = published.beside, published.pooled
+    pooled = published.pooled
     for room, names in (
-        (beside, "conditions inside_words model_rows comparison_figure"),
+        (published, "conditions inside_words model_rows comparison_figure"),
         (pooled, "people_rows people_words people_figure detection_rows detection_figure"),
     ):
         for name in names.split():
@@ -37,7 +37,7 @@ def test_curves_come_first_then_people_then_thresholds(monkeypatch: pytest.Monke
         "How far each model is off", "What each model gives", "What each rival gives",
     ]  # fmt: skip
     assert [found.head for found in (curve, many, threshold)] == [
-        beside.MODELS_HEAD, pooled.PEOPLE_HEAD, pooled.DETECTION_HEAD,
+        published.MODELS_HEAD, pooled.PEOPLE_HEAD, pooled.DETECTION_HEAD,
     ]  # fmt: skip
     rows: list[Any] = [found.rows for found in (curve, many, threshold)]
     assert rows == ["model_rows of a", "people_rows of b", "detection_rows of c"]
