@@ -43,7 +43,7 @@ void sf_loop_begin(sf_loop_state *s, const sf_loop_gains *g);
 sf_loop_command sf_loop_step(
     const sf_loop_gains *g, sf_loop_state *s, int32_t p, int32_t q, int64_t wanted, int64_t applied);
 
-/* A loop that holds friction: see instruments/control/friction_loop.py. All uN and uV. */
+/* A loop that holds friction: see tests/friction_loop.py. All uN and uV. */
 #define SF_FRICTION_POINTS 33
 enum { SF_OUT_OF_REACH = 1, SF_CORRECTION_HELD = 2 };
 

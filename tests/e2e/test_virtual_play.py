@@ -8,15 +8,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tests import virtual_play as bench
+from tests.virtual_play import virtual_play
 
 from squeezefilm.instruments.bench.played_session import PlayedSession, judge_session
 from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.instruments.control.gains import identified_plate
-from squeezefilm.instruments.session.play import simulated as bench
 from squeezefilm.instruments.session.play.plan import Ending
 from squeezefilm.instruments.session.play.player import Player
 from squeezefilm.instruments.session.play.real_time import PlayOutcome
-from squeezefilm.instruments.session.play.simulated import virtual_play
 from squeezefilm.instruments.session.record.trace import read_trace
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import hand_from

@@ -11,15 +11,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-
-from squeezefilm.core.compiled import compiled
-from squeezefilm.instruments.control import plate_loop as loop
-from squeezefilm.instruments.control.fixed_point import QUARTER, quotient, scaled, sine
-from squeezefilm.instruments.control.friction_loop import (
+from tests.friction_loop import (
     FrictionState,
     friction_gains,
     friction_step,
 )
+
+from squeezefilm.core.compiled import compiled
+from squeezefilm.instruments.control import plate_loop as loop
+from squeezefilm.instruments.control.fixed_point import QUARTER, quotient, scaled, sine
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
 from squeezefilm.instruments.control.plate_loop import LoopGains, first_state, plate_step
 

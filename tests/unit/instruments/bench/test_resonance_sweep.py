@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.virtual_play import VirtualStream
 
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.bench import resonance_sweep
@@ -15,7 +16,6 @@ from squeezefilm.instruments.bench.resonance_sweep import ResonanceSweep, peak, 
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.wire.link import Link
 from squeezefilm.instruments.device.wire.states import State
-from squeezefilm.instruments.session.play.simulated import VirtualStream
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.settings import PickupModel, PlateDrift, TwinSettings

@@ -4,11 +4,7 @@ import math
 
 import numpy as np
 import pytest
-
-from squeezefilm.core import quantities as si
-from squeezefilm.core.compiled import compiled
-from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.instruments.control.friction_loop import (
+from tests.friction_loop import (
     CORRECTION_HELD,
     OUT_OF_REACH,
     FrictionGains,
@@ -16,6 +12,10 @@ from squeezefilm.instruments.control.friction_loop import (
     friction_gains,
     friction_step,
 )
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.compiled import compiled
+from squeezefilm.core.errors import InputError, OutOfRangeError
 
 STEP, EVERY, LAG, BANDWIDTH = 2e-4, 5, 1.5e-3, 30.0
 """5 kHz, a sensor at 1 kHz, a plate of 1.5 ms."""

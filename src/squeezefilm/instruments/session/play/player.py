@@ -1,7 +1,7 @@
 """Playing a texture: sensor → loop → link → device, and all that happened into the record.
 
 `Player` is one pass of bookkeeping after the other; it neither waits nor has a clock of its own.
-On hardware its clock is the loop's, on a simulated bench (`virtual_play`) a variable: one code.
+On hardware its clock is the loop's, in `tests/virtual_play.py` a variable: one code.
 
 The loop's commands carry the time at which they are meant to act. The player turns that into the
 device's clock and sends them ahead, so that what the link's jitter shifts is only when the device
