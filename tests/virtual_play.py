@@ -12,11 +12,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from tests.simulated_loop import SimulatedLoop
+
 from squeezefilm.core import quantities as si
 from squeezefilm.core.results import to_json
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.wire.link import Link
-from squeezefilm.instruments.session.loop.simulated import SimulatedLoop
 from squeezefilm.instruments.session.play.plan import PlayPlan
 from squeezefilm.instruments.session.play.player import Player
 from squeezefilm.instruments.session.play.real_time import PAUSE, PlayOutcome, played

@@ -14,11 +14,11 @@ from typing import Literal
 import numpy as np
 import pytest
 from tests.loop_runs import SimulatedRun, run_ticks, stream_samples
+from tests.simulated_loop import SimulatedLoop
 
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.lateness import CLASSES, lateness_class
 from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
-from squeezefilm.instruments.session.loop.simulated import SimulatedLoop
 from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.physics.render.motion.estimator import MotionEstimator

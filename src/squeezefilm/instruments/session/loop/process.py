@@ -28,9 +28,8 @@ from squeezefilm.instruments.session.loop import shared
 from squeezefilm.instruments.session.loop.atomics import load_acquire, store_release
 from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.loop.ring import DROPPED, ring_put_all
-from squeezefilm.instruments.session.loop.rows import COMMAND_TIME
-from squeezefilm.instruments.session.loop.simulated import lateness_in, sample_block, taken
+from squeezefilm.instruments.session.loop.ring import DROPPED, ring_put_all, taken
+from squeezefilm.instruments.session.loop.rows import COMMAND_TIME, SAMPLE_COLUMNS
 from squeezefilm.instruments.session.loop.worker import Orders
 
 PRIORITY = 50
@@ -351,6 +350,29 @@ class LoopProcess:
                 SqueezefilmWarning,
                 stacklevel=3,
             )
+
+
+def sample_block(samples: si.FloatArray) -> si.FloatArray:
+    """Samples as the rings take them. Raises `InputError` for a shape other than (n, 6)."""
+    block = np.ascontiguousarray(samples, dtype=float)
+    if block.ndim != 2 or block.shape[1] != len(SAMPLE_COLUMNS):
+        raise InputError(
+            f"samples of shape {block.shape} cannot be taken; give rows of "
+            f"{', '.join(SAMPLE_COLUMNS)}"
+        )
+    return block
+
+
+def lateness_in(plan: LoopPlan, memory: shared.Shared) -> Lateness:
+    """The lateness that stands in a loop's memory; while it runs, as of some recent tick."""
+    counts = memory.histogram.copy()
+    return Lateness(
+        rate=plan.rate,
+        made=int(counts.sum()),
+        lost=int(memory.control[shared.LOST]),
+        longest=int(memory.control[shared.LONGEST]) * 1e-9,
+        counts=counts,
+    )
 
 
 def _anonymous_file(size: int) -> int:

@@ -10,6 +10,8 @@ wrap within the life of anything (2^63 rows).
 
 from __future__ import annotations
 
+import numpy as np
+
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.instruments.session.loop.atomics import load_acquire, store_release
@@ -63,3 +65,9 @@ def ring_put_all(counters: si.Array, rows: si.Array, block: si.Array) -> int:
 def ring_waiting(counters: si.Array) -> int:
     """Number of rows that wait to be read."""
     return int(load_acquire(counters, HEAD) - load_acquire(counters, TAIL))
+
+
+def taken(counters: si.Array, rows: si.Array) -> si.FloatArray:
+    """All rows that wait in a ring."""
+    out = np.empty((ring_waiting(counters), rows.shape[1]))
+    return out[: ring_take(counters, rows, out)]

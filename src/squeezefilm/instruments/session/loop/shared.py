@@ -77,5 +77,5 @@ def shared_views(memory: mmap.mmap | bytearray) -> Shared:
 
 
 def private_views() -> Shared:
-    """The same parts in memory of this process alone, for a simulated clock."""
+    """The same parts in memory of this process alone."""
     return shared_views(bytearray(shared_size()))

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -34,10 +34,6 @@ from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, PlayView
 from squeezefilm.instruments.session.play.usability import TickCount, Usability
 from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 
-if TYPE_CHECKING:
-    from squeezefilm.instruments.session.loop.process import LoopProcess
-    from squeezefilm.instruments.session.loop.simulated import SimulatedLoop
-
 RESTING_SAMPLE: si.Second = 20e-3
 """A sensor slower than the reports repeats its last place; such repeats are fed this seldom."""
 LOOP_LIMIT: si.Second = 25e-3
@@ -48,6 +44,22 @@ FADE: si.Second = 30e-3
 """Time from muting the loop to stopping the device: the last commands ramp to zero in it."""
 _STOP_LIMIT: si.Second = 0.5
 _MICRO = 1e-6
+
+
+class Loop(Protocol):
+    """A loop that makes commands, see `LoopProcess`."""
+
+    def feed(self, samples: si.FloatArray) -> int:
+        """Give finger samples."""
+
+    def take_commands(self) -> si.FloatArray:
+        """The commands since the last call."""
+
+    def take_rows(self) -> si.FloatArray:
+        """The rows since the last call."""
+
+    def mute(self) -> None:
+        """Play nothing from the next tick on."""
 
 
 class Player:
@@ -66,7 +78,7 @@ class Player:
     def __init__(
         self,
         plan: PlayPlan,
-        loop: LoopProcess | SimulatedLoop,
+        loop: Loop,
         host: DeviceHost,
         writer: TraceWriter,
         clock: Callable[[], si.Second],

@@ -37,8 +37,9 @@ from squeezefilm.instruments.device.wire.safety import Use, require_safe_drive
 from squeezefilm.instruments.device.wire.states import Fault
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.loop.process import LoopProcess
+from squeezefilm.instruments.session.loop.ring import ring_put_all, taken
 from squeezefilm.instruments.session.loop.rows import SAMPLE_COLUMNS
-from squeezefilm.instruments.session.loop.simulated import SimulatedLoop
+from squeezefilm.instruments.session.loop.shared import private_views
 from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, PlayView
 from squeezefilm.instruments.session.play.player import FADE, Player
 from squeezefilm.instruments.session.play.usability import Usability
@@ -131,7 +132,7 @@ def run_play(
         require_safe_drive(drives, plan.limits, use)
         eyes = None if sensor is None else sensor(clock)
         player = Player(plan, loop, host, writer, clock, eyes, tap)
-        _compile(plan)
+        _compile()
         with _collected():
             loop.start()
             try:
@@ -151,13 +152,12 @@ def run_play(
         return PlayOutcome(ending, message, trace, writer.acknowledged, silent, verdict)
 
 
-def _compile(plan: PlayPlan) -> None:
+def _compile() -> None:
     """Compile what the player calls, which would hold it up for longer than a watchdog waits."""
-    spare = SimulatedLoop(plan.loop)
-    spare.feed(np.zeros((1, len(SAMPLE_COLUMNS))))
-    spare.advance(2 * plan.loop.period)
-    spare.take_commands()
-    spare.take_rows()
+    spare = private_views()
+    ring_put_all(spare.sample_counters, spare.samples, np.zeros((1, len(SAMPLE_COLUMNS))))
+    taken(spare.command_counters, spare.commands)
+    taken(spare.row_counters, spare.rows)
 
 
 def played(

@@ -8,12 +8,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from tests.loop_runs import run_ticks, stream_samples
+from tests.simulated_loop import SimulatedLoop
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.loop.simulated import SimulatedLoop
 from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_stream
 
 PlanOf = Callable[..., LoopPlan]

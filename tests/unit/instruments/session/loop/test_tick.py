@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from numba.core.runtime import _nrt_python, rtsys
 from tests.loop_runs import run_ticks
+from tests.simulated_loop import SimulatedLoop
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
 from squeezefilm.instruments.session.loop.shared import COMMANDS, ROWS
-from squeezefilm.instruments.session.loop.simulated import SimulatedLoop
 from squeezefilm.instruments.session.loop.tick import interpolated
 from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.render.program import layout

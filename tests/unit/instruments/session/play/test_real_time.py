@@ -64,7 +64,7 @@ class Bench:
             "DeviceHost": lambda _: SimpleNamespace(stop=lambda: self.note("host stop")),
             "SerialDrive": lambda host, period: "drive",
             "require_safe_drive": lambda *given, **how: self.note(("safe", given, how)),
-            "Player": self.player_of, "_compile": lambda _: self.note("compiled"),
+            "Player": self.player_of, "_compile": lambda: self.note("compiled"),
             "time": SimpleNamespace(sleep=self.sleep, monotonic=lambda: self.now + 1000.0),
         }.items():  # fmt: skip
             monkeypatch.setattr(real_time, name, made)

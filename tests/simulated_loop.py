@@ -4,25 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import shared
 from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.pacing import due_ns, make_due_tick
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.instruments.session.loop.ring import (
-    ring_put_all,
-    ring_take,
-    ring_waiting,
-)
-from squeezefilm.instruments.session.loop.rows import (
-    MUTED,
-    SAMPLE_COLUMNS,
-)
+from squeezefilm.instruments.session.loop.process import lateness_in, sample_block
+from squeezefilm.instruments.session.loop.ring import ring_put_all, taken
+from squeezefilm.instruments.session.loop.rows import MUTED
 from squeezefilm.instruments.session.loop.shared import private_views
 
 
@@ -96,32 +87,3 @@ class SimulatedLoop:
     def lateness(self) -> Lateness:
         """Lateness of the ticks so far."""
         return lateness_in(self.plan, self._memory)
-
-
-def sample_block(samples: si.FloatArray) -> si.FloatArray:
-    """Samples as the rings take them. Raises `InputError` for a shape other than (n, 6)."""
-    block = np.ascontiguousarray(samples, dtype=float)
-    if block.ndim != 2 or block.shape[1] != len(SAMPLE_COLUMNS):
-        raise InputError(
-            f"samples of shape {block.shape} cannot be taken; give rows of "
-            f"{', '.join(SAMPLE_COLUMNS)}"
-        )
-    return block
-
-
-def taken(counters: si.Array, rows: si.Array) -> si.FloatArray:
-    """All rows that wait in a ring."""
-    out = np.empty((ring_waiting(counters), rows.shape[1]))
-    return out[: ring_take(counters, rows, out)]
-
-
-def lateness_in(plan: LoopPlan, memory: shared.Shared) -> Lateness:
-    """The lateness that stands in a loop's memory; while it runs, as of some recent tick."""
-    counts = memory.histogram.copy()
-    return Lateness(
-        rate=plan.rate,
-        made=int(counts.sum()),
-        lost=int(memory.control[shared.LOST]),
-        longest=int(memory.control[shared.LONGEST]) * 1e-9,
-        counts=counts,
-    )
