@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import KW_ONLY, dataclass
 from typing import get_args
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.progress import Deadline, Pace, SayProgress, said_with_time_left
 from squeezefilm.design.analysis.analysis import Analysis
 from squeezefilm.design.analysis.area_odds import judged_area
 from squeezefilm.design.analysis.curves import friction_curve
 from squeezefilm.design.analysis.sensitivities import Effort
 from squeezefilm.design.analysis.verdict import verdict
-from squeezefilm.design.analysis.wanted import wanted_friction as friction_wanted
+from squeezefilm.design.analysis.wanted import wanted_friction
 from squeezefilm.design.textures.gratings_left import what_survives
 from squeezefilm.physics.chain.friction_models import FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace
@@ -32,28 +34,34 @@ from squeezefilm.physics.uncertainty.uncertainty import (
 _INTERVAL = 6.0
 
 
-@reads_text
 @si.checked_numbers
-def analyze(
-    display: NamedDisplay,
-    *,
-    voltage: si.Volt | None = None,
-    frequency: si.Hertz | None = None,
-    vibration_amplitude: si.Metre | None = None,
-    normal_force: si.Newton | None = None,
-    surface: str | None = None,
-    theory: PlateTheory | None = None,
-    model: FrictionModel | None = None,
-    speed: si.MetrePerSecond | None = None,
-    place: FacePlace | None = None,
-    strict: bool = False,
-    samples: int = SAMPLES,
-    wanted_friction: WantedFriction | None = None,
-    sensitivities: Effort | None = None,
-    whole: bool = False,
-    progress: SayProgress | None = None,
-    budget: si.Second | None = None,
-) -> Analysis:
+@dataclass(frozen=True, slots=True, eq=False)
+class AnalysisRequest:
+    """Arguments of `analyze`."""
+
+    display: NamedDisplay
+    _: KW_ONLY
+    voltage: si.Volt | None = None
+    frequency: si.Hertz | None = None
+    vibration_amplitude: si.Metre | None = None
+    normal_force: si.Newton | None = None
+    surface: str | None = None
+    theory: PlateTheory | None = None
+    model: FrictionModel | None = None
+    speed: si.MetrePerSecond | None = None
+    place: FacePlace | None = None
+    strict: bool = False
+    samples: int = SAMPLES
+    wanted_friction: WantedFriction | None = None
+    sensitivities: Effort | None = None
+    whole: bool = False
+    progress: SayProgress | None = None
+    budget: si.Second | None = None
+
+
+@reads_text
+@called_with(AnalysisRequest)
+def analyze(asked: AnalysisRequest) -> Analysis:
     """The whole analysis of a display at one working point.
 
     Arguments and errors are those of `prediction.predict`; `samples` (0: none) is the base of the
@@ -64,37 +72,45 @@ def analyze(
     bounds the plate's solve, and the interval is left out where nothing is left for it: what is
     missing is said.
     """
+    display, budget = asked.display, asked.budget
     if budget is not None:
         si.require("budget", budget, si.Unit("s"), above=0)
-    if sensitivities is not None:
-        si.require_one_of("sensitivities", sensitivities, get_args(Effort))
-    if samples:
-        require_samples(samples)
-    tell = progress or (lambda _: None)
+    if asked.sensitivities is not None:
+        si.require_one_of("sensitivities", asked.sensitivities, get_args(Effort))
+    if asked.samples:
+        require_samples(asked.samples)
+    tell = asked.progress or (lambda _: None)
     deadline = Pace(budget).deadline()
     tell("resonance, amplitude and friction")
     prediction = predict(
         display,
-        voltage=voltage,
-        frequency=frequency,
-        normal_force=normal_force,
-        surface=surface,
-        vibration_amplitude=vibration_amplitude,
-        theory=theory,
-        model=model,
-        speed=speed,
-        place=place,
-        strict=strict,
+        voltage=asked.voltage,
+        frequency=asked.frequency,
+        normal_force=asked.normal_force,
+        surface=asked.surface,
+        vibration_amplitude=asked.vibration_amplitude,
+        theory=asked.theory,
+        model=asked.model,
+        speed=asked.speed,
+        place=asked.place,
+        strict=asked.strict,
         pace=Pace(None if budget is None else budget / 2, said_with_time_left(tell)),
     )
-    analysis = _what_follows(display, prediction, samples, tell, deadline)
-    if wanted_friction is None:
-        return dataclasses.replace(analysis, effort=sensitivities, whole=whole)
-    tell("the voltage for the friction wanted")
-    wanted = friction_wanted(
-        display, prediction, wanted_friction, samples=samples, strict=False, progress=tell
+    wanted = None
+    analysis = _what_follows(display, prediction, asked.samples, tell, deadline)
+    if asked.wanted_friction is not None:
+        tell("the voltage for the friction wanted")
+        wanted = wanted_friction(
+            display,
+            prediction,
+            asked.wanted_friction,
+            samples=asked.samples,
+            strict=False,
+            progress=tell,
+        )
+    return dataclasses.replace(
+        analysis, wanted=wanted, effort=asked.sensitivities, whole=asked.whole
     )
-    return dataclasses.replace(analysis, wanted=wanted, effort=sensitivities, whole=whole)
 
 
 def _what_follows(
