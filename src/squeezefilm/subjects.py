@@ -26,9 +26,8 @@ from squeezefilm.design.friction.command import FrictionAnalysis
 from squeezefilm.design.friction.report import figures as friction
 from squeezefilm.design.plate.command import PlateAnalysis
 from squeezefilm.design.plate.report import page as plate_page
-from squeezefilm.design.plate.report import plate, ring, sensitivity_figures
+from squeezefilm.design.plate.report import plate, ring
 from squeezefilm.design.plate.ring import RingAnalysis
-from squeezefilm.design.plate.sensitivity import SensitivityTable
 from squeezefilm.design.search.found import DesignSearch
 from squeezefilm.design.search.report.figures import FIGURES as FIGURES_OF_DESIGN
 from squeezefilm.design.search.report.page import write_design
@@ -93,7 +92,6 @@ SUBJECTS: Mapping[type, _Subject] = {
     FilmMap: _Subject({"map": film_map.film_map}, film_map.write_film_map),
     PlateAnalysis: _Subject(_by_key(plate.FIGURES), plate_page.write_plate),
     RingAnalysis: _Subject(_by_key(ring.FIGURES), plate_page.write_plate),
-    SensitivityTable: _Subject({"tornado": sensitivity_figures.tornado}),
     Sweep: _Subject({"sweep": sweep_figure}, write_sweep),
     DesignSearch: _Subject(_by_key(FIGURES_OF_DESIGN), write_design),
     TextureFile: _Subject({"texture": textures.picture}),

@@ -10,7 +10,6 @@ import dataclasses
 
 from squeezefilm.core.distributions import Distribution, Uniform
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.design.plate.sensitivity import with_glue
 from squeezefilm.measure.calibration.calibrate import USUAL_EFFORT, Effort, calibrate
 from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.priors import calibration_parameters
@@ -21,6 +20,7 @@ from squeezefilm.validation.explanations import (
     MEASURED_AMPLITUDE,
     MEASURED_FREQUENCY,
     paper_plate,
+    with_glue,
 )
 
 # The paper states no errors: half of the last digit of the frequency, 5 % for a vibrometer.

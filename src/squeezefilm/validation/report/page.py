@@ -11,7 +11,6 @@ from squeezefilm.core.kit.folder import checkout, json_text, markdown_table, wri
 from squeezefilm.core.kit.page_style import bullets, page_head
 from squeezefilm.core.results import write_whole
 from squeezefilm.design.analysis.paper_procedure import Design
-from squeezefilm.design.plate.report.sensitivity_figures import tornado
 from squeezefilm.validation.command import ClaimResult, Reproduction
 from squeezefilm.validation.explanations import PrototypeStudy
 from squeezefilm.validation.report.claim_rows import (
@@ -30,7 +29,6 @@ from squeezefilm.validation.report.prototype import (
     explanation_table,
     identifiability,
     prototype_markdown,
-    sensitivity_table,
     sentences,
     separation_table,
 )
@@ -226,14 +224,9 @@ def _direction_sections(result: Reproduction) -> str:
 
 
 def prototype_sections(study: PrototypeStudy) -> list[str]:
-    """HTML sections: the comparison, the sensitivities, what would identify the cause."""
+    """HTML sections: the comparison, and what would identify the cause."""
     parts = (
         ("The plate: the paper, the solved plate, the prototype", _table(comparison(study))),
-        (
-            "What could shift the frequency",
-            _framed(style.svg(tornado(study.sensitivities), "tornado", "Sensitivities"))
-            + _table(sensitivity_table(study)),
-        ),
         (
             "What one frequency cannot tell",
             bullets(sentences(study))

@@ -22,8 +22,6 @@ from squeezefilm.design.plate.report.plate import (
     mode_surface,
     plan_view,
 )
-from squeezefilm.design.plate.report.sensitivity_figures import tornado
-from squeezefilm.design.plate.sensitivity import Sensitivity, SensitivityTable, WorkingPoint
 from squeezefilm.physics.display import load_display
 
 
@@ -93,31 +91,6 @@ def test_a_name_in_the_page_is_text(result: PlateAnalysis) -> None:
     page = plate_page(dataclasses.replace(result, display=display), figures)
     assert "<script>" not in page
     assert 'src="line-scan.png"' in page
-    assert "Sensitivities" not in page
-
-
-def _table() -> SensitivityTable:
-    point = WorkingPoint((8, 0), 33e3, 10.0, 1e-7, 60.0, 34e3)
-
-    def row(name: str, shift: float, amplitude: float | None) -> Sensitivity:
-        return Sensitivity(name, "changed", 33e3, shift, None, amplitude, 1.0)
-
-    rows = (row("huge", 0.9, 9.0), row("a", 0.01, -0.02), row("b", -0.02, None),
-            row("c", 0.015, 0.01), row("still", 0.0, 0.0))  # fmt: skip
-    return SensitivityTable(point, rows)
-
-
-def test_the_tornado_cuts_a_bar_that_hides_the_others_and_says_so() -> None:
-    figure = tornado(_table())
-    left, right = figure.axes
-    texts = [one.get_text() for one in left.texts]
-    assert texts[0] == "+90 % (cut)"
-    assert "−2.0 %" in texts
-    assert sum("no drive" in one.get_text() for one in right.texts) == 1
-    # What changes nothing is left out.
-    assert [one.get_text() for one in left.get_yticklabels()] == [
-        "huge: changed", "b: changed", "c: changed", "a: changed",
-    ]  # fmt: skip
 
 
 def test_a_volume_is_written_of_a_plate_and_under_its_own_ending(tmp_path: Path) -> None:
