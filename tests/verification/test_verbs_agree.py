@@ -16,7 +16,7 @@ from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.design.analysis.analysis import Analysis
 from squeezefilm.design.analysis.analyze import analyze
 from squeezefilm.design.analysis.report.first_screen import first_screen
-from squeezefilm.design.analysis.report.rows import vibration_rows
+from squeezefilm.design.analysis.report.folds import vibration_rows
 from squeezefilm.design.plate.command import PlateAnalysis, solve_plate
 from squeezefilm.design.plate.modes import list_modes
 from squeezefilm.design.search.criteria import numbers_of_prediction, numbers_of_solved

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from squeezefilm.actuators.motor import parts, plane_kernel
+from squeezefilm.actuators.motor import parts, plane
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
 from squeezefilm.actuators.motor.averaged import averaged
 from squeezefilm.actuators.motor.in_time import simulate
@@ -171,5 +171,5 @@ def test_a_march_begins_at_rest_on_the_feet_with_the_modes_as_they_are_held() ->
 def test_kernels_agree_on_the_works_they_count() -> None:
     from squeezefilm.actuators.motor import kernel
 
-    assert kernel.GUIDE_LOSS + 1 == kernel.THRUST == plane_kernel.TOTALS - 3
+    assert kernel.GUIDE_LOSS + 1 == kernel.THRUST == plane.TOTALS - 3
     assert parts.Stator._fields[-1] == "held"

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import brentq
 
 from squeezefilm.actuators.motor.parts import Feet, Slider, Stator
-from squeezefilm.actuators.motor.plane_kernel import TOTALS, PlaneMarch, march_plane
+from squeezefilm.actuators.motor.plane import TOTALS, PlaneMarch, march_plane
 
 MODES, FEET, H = 2, 5, 0.01
 NAMES = ("q", "dq", "ddq", "slider", "last", "depth", "stretch", "force", "totals", "shares")

@@ -9,16 +9,21 @@ from __future__ import annotations
 
 import contextlib
 import functools
+import logging
 import multiprocessing
 import signal
+import time
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from typing import Annotated, Any
 
+from squeezefilm import __version__
 from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import WorkersError, optional
 from squeezefilm.core.interrupts import end_with_parent, hear_interrupts, interrupts_held
+from squeezefilm.core.kept.computed_by import computed_by
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.design.sweep.tasks import (
     A,
@@ -31,6 +36,158 @@ from squeezefilm.design.sweep.tasks import (
     grouped,
     tried_again,
 )
+
+_LOOK: si.Second = 0.02  # between two looks for answers
+_ANSWERS: si.Second = 20.0
+_PATIENCE: si.Second = 120.0
+"""Longest silence of a scheduler, and longest wait for the first worker of a cluster."""
+
+
+class Cluster:
+    """The workers of the scheduler at an address, as many as there are at any time.
+
+    Raises `MissingPackageError` where Dask is not installed, and on entry `WorkersError` where
+    nothing answers at the address.
+    """
+
+    def __init__(self, address: str, tell: SayProgress) -> None:
+        with optional("cluster", "a scheduler (not the processes of this machine, jobs)"):
+            import distributed
+        self._dask: Any = distributed
+        self._address, self._tell = address, tell
+        self._client: Any = None
+
+    def __enter__(self) -> Cluster:
+        # What it says of a scheduler that is gone is said by us, and in one sentence.
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
+        client: Any = self._dask.Client
+        try:
+            self._client = client(self._address, timeout=_ANSWERS, set_as_default=False)
+        except (OSError, ValueError, TypeError) as error:
+            raise WorkersError(
+                f"no scheduler answers at {self._address}; start one with: dask scheduler"
+            ) from error
+        offered = self._client.scheduler_info(n_workers=0).get("services", {})
+        where = f", dashboard at {self._client.dashboard_link}" if "dashboard" in offered else ""
+        self._tell(f"scheduler at {self._address}{where}")
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        # One that is gone is not waited for.
+        with contextlib.suppress(Exception):
+            self._client.close(timeout=2)
+
+    def answers(
+        self,
+        function: Callable[..., A],
+        tasks: Mapping[K, tuple[Any, ...]],
+        alike: Mapping[K, Hashable] | None = None,
+    ) -> Iterator[tuple[K, A | Lost]]:
+        """Answers as by `Workers.answers`. Workers come and go; a task is tried again as often as
+        the scheduler's `allowed-failures` says, and then once alone. Where the iteration is closed
+        early, workers end the task they are at."""
+        yield from tried_again(
+            functools.partial(self._asked, function, tasks), grouped(tasks, alike)
+        )
+
+    def _asked(
+        self,
+        function: Callable[..., A],
+        tasks: Mapping[K, tuple[Any, ...]],
+        groups: Sequence[Sequence[K]],
+    ) -> Iterator[tuple[K, A | Lost]]:
+        self._require_workers()
+        keys: dict[Any, K] = {}
+        for group in groups:
+            # Dask gives a task to who has what it needs: here, the first answer of its group.
+            first = None
+            for key in group:
+                future = self._client.submit(
+                    _work, _code_here(), first, function, tasks[key], pure=False
+                )
+                first = first or future
+                keys[future] = key
+        # An answer is fetched as soon as it is there, so that it outlives its worker.
+        coming: Any = self._dask.as_completed(
+            list(keys), loop=self._client.loop, with_results=True, raise_errors=False
+        )
+        try:
+            while keys:
+                done = coming.next_batch(block=False)
+                for future, result in done:
+                    key, answer = keys.pop(future), self._answer(future, result)
+                    future.release()  # nobody does it again when its worker dies
+                    yield key, answer
+                # An answer that was on its way when the scheduler ended would never come.
+                if not done and self._client.status != "running":
+                    raise self._gone()
+                if not done:
+                    time.sleep(_LOOK)
+        finally:
+            with contextlib.suppress(Exception):
+                self._client.cancel(list(keys))
+
+    def _require_workers(self) -> None:
+        """Wait for a worker. Raises `WorkersError` where none comes for too long."""
+        try:
+            if not self._client.nthreads():
+                self._tell(f"waiting for workers at {self._address}")
+                self._client.wait_for_workers(1, timeout=_PATIENCE)
+        except TimeoutError as error:
+            raise WorkersError(
+                f"the scheduler at {self._address} has had no worker for {_PATIENCE:.0f} s; start "
+                f"some with: dask worker {self._address} --nworkers 2 --nthreads 1"
+            ) from error
+        except OSError as error:
+            raise self._gone() from error
+
+    def _answer(self, future: Any, result: Any) -> Any:
+        """The answer of a task that is done, or what is to be raised for it."""
+        if isinstance(result, self._dask.client.FutureCancelledError):
+            raise self._gone()
+        if future.status != "error":
+            return result
+        error = future.exception()
+        if isinstance(error, self._dask.KilledWorker):
+            return Lost()
+        if isinstance(error, ModuleNotFoundError):
+            raise WorkersError(
+                f"a worker of {self._address} lacks {error.name}; install squeezefilm "
+                f"{__version__} there"
+            ) from error
+        raise error
+
+    def _gone(self) -> WorkersError:
+        return WorkersError(
+            f"the scheduler at {self._address} answers no more; start it and its workers again, "
+            "and ask again: what was answered and kept is not computed again"
+        )
+
+
+def _code_here() -> str:
+    return f"{__version__} (code {computed_by()[:8]})"
+
+
+def _work(
+    asked_by: str, first: object, function: Callable[..., A], arguments: tuple[Any, ...]
+) -> A:
+    """Do one task at a worker, whose code must be that of who asks, after the `first` like it."""
+    from distributed import get_worker
+
+    worker, there = get_worker(), _code_here()
+    if worker.state.nthreads > 1:
+        raise WorkersError(
+            f"the worker at {worker.address} has {worker.state.nthreads} threads, which would wait "
+            f"for each other; start workers with one thread each: dask worker "
+            f"{worker.scheduler.address} --nworkers 2 --nthreads 1"
+        )
+    if there != asked_by:
+        raise WorkersError(
+            f"the worker at {worker.address} has squeezefilm {there}, and here it is {asked_by}; "
+            "install the same squeezefilm, NumPy, SciPy and numba there and start it again, so "
+            "that answers are of one code"
+        )
+    return computed(function, arguments)
 
 
 class Processes:
@@ -164,7 +321,7 @@ def workers(
     ``if __name__ == "__main__":``.
     """
     if scheduler is not None:
-        from squeezefilm.design.sweep.cluster import Cluster
+        from squeezefilm.design.sweep.workers import Cluster
 
         with Cluster(scheduler, tell or (lambda _: None)) as cluster:
             yield cluster

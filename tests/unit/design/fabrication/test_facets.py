@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import squeezefilm as sf
 from squeezefilm.core.quantities import FloatArray
-from squeezefilm.design.fabrication.facets import (
+from squeezefilm.design.fabrication.step_file import (
     CHORD_ERROR,
     facets_round,
     triangles_of,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.fabrication.facets import stl_bytes, triangles_of
+from squeezefilm.design.fabrication.step_file import stl_bytes, triangles_of
 from squeezefilm.physics.plate.parts import Part, Sector
 
 

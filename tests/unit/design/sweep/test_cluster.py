@@ -9,7 +9,7 @@ from tests.counted_tasks import counted, deadly, held, lines, refused, whose
 
 import squeezefilm as sf
 from squeezefilm.core.errors import WorkersError
-from squeezefilm.design.sweep import cluster as clusters
+from squeezefilm.design.sweep import workers as clusters
 from squeezefilm.design.sweep.sweep import SweepRequest, sweep_until_stopped
 from squeezefilm.design.sweep.tasks import Lost
 from squeezefilm.design.sweep.workers import workers

@@ -11,9 +11,9 @@ import pytest
 
 from squeezefilm import __version__
 from squeezefilm.core.errors import WorkersError
-from squeezefilm.design.sweep import cluster as clusters
-from squeezefilm.design.sweep.cluster import Cluster
+from squeezefilm.design.sweep import workers as clusters
 from squeezefilm.design.sweep.tasks import Lost
+from squeezefilm.design.sweep.workers import Cluster
 
 AT = "tcp://here:1"
 

@@ -27,22 +27,218 @@ from squeezefilm.design.analysis.report.point_rows import (
     electronics_rows,
     place_rows,
 )
-from squeezefilm.design.analysis.report.rows import (
-    electrical_rows,
-    more_rows,
-    rival_rows,
-    sound_rows_at_ear,
-    surface_rows,
-    texture_rows,
-    unsaid_warnings,
-    vibration_rows,
-    with_measured,
-    working_point,
-)
 from squeezefilm.design.plate.report.heat_and_sound import heat_rows
 
 if TYPE_CHECKING:
     from squeezefilm.design.analysis.analysis import Analysis
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit.numbers import (
+    HZ,
+    PER_VOLT,
+    SPEED,
+    A,
+    M,
+    N,
+    S,
+    V,
+    W,
+    printable,
+    shown,
+    span,
+)
+from squeezefilm.design.analysis.report.decisions import felt_rows
+from squeezefilm.design.analysis.report.point_rows import reduction_row
+from squeezefilm.physics.chain.pad_place import place_words
+
+if TYPE_CHECKING:
+    from squeezefilm.design.analysis.analysis import Analysis
+    from squeezefilm.design.analysis.ears import EarExposure
+    from squeezefilm.design.analysis.other_models import MeasuredBeside
+    from squeezefilm.physics.chain.prediction import Prediction
+    from squeezefilm.physics.plate.electronics import ElectricalLoad
+    from squeezefilm.physics.plate.working_mode import WorkingMode
+
+
+def working_point(p: Prediction) -> str:
+    """Words for the point at which the key numbers are."""
+    driven = shown(p.vibration_amplitude, M, 3) if p.voltage is None else shown(p.voltage, V)
+    return (
+        f"at {driven} and {shown(p.frequency, HZ)}, finger of {shown(p.normal_force, N)} at "
+        f"{shown(p.speed, SPEED)} on {printable(p.surface.name)}"
+    )
+
+
+def vibration_rows(p: Prediction) -> list[Row]:
+    """Resonance and drive, and the amplitude with and without the finger."""
+    mode, free = p.mode, p.touch.free_amplitude
+    # The resonance is defined to many digits only: an off-resonance drive is worth a remark.
+    off = abs(p.frequency / mode.resonance_frequency - 1) > 1e-6
+    at = f"{shown(p.frequency, HZ)}, {'beside the' if off else 'the'} resonance"
+    per_volt = shown(mode.amplitude_per_volt, PER_VOLT)
+    place = p.law.place
+    of = "at antinodes" if place is None else f"at {place.antinode_said}"
+    drive, made = ("Drive", "none", f"amplitude given, at {at}"), f"zero-to-peak, {of}"
+    if p.voltage is not None:
+        drive = ("Drive", shown(p.voltage, V), f"peak, at {at}")
+        made = f"{per_volt} × {shown(p.voltage, V)}, {of}"
+        if off:
+            made = f"{of}; at the resonance {per_volt}"
+    kept = f"the finger leaves {100 * p.touch.kept:.3g} %"
+    if p.touch.mode is None:
+        kept = "the finger is taken to change nothing: no modal mass is known"
+    held, under_finger = shown(p.vibration_amplitude, M, 3), list[Row]()
+    # A finger at the antinode has that amplitude: no number is printed twice.
+    if place is not None and shown(p.amplitude_at_place, M, 3) != held:
+        where = f"r.m.s. over its contact, at {place_words(p.place)}"
+        under_finger = [("Amplitude under the finger", shown(p.amplitude_under_pad, M, 3), where)]
+    return [
+        ("Resonance frequency", shown(mode.resonance_frequency, HZ), _solved(mode)),
+        drive,
+        ("Amplitude, free", shown(free, M, 3), made),
+        ("Peak amplitude, finger on", held, f"{of}; {kept}"),
+        *under_finger,
+    ]
+
+
+def with_measured(
+    rows: Iterable[Row], beside: Iterable[MeasuredBeside], voltage: si.Volt | None
+) -> list[Row]:
+    """Rows whose remarks begin with what was measured of their quantity on the real display, and by
+    how much the computed number differs; of an amplitude at another voltage (V) that is said."""
+    said = dict[str, str]()
+    for measured in beside:
+        more = "+" if measured.difference > 0 else "−"
+        text = f"{more}{si.percent(abs(measured.difference))} on measured "
+        text += shown(measured.measured, si.Unit(measured.unit), 3)
+        if measured.voltage not in (None, voltage):
+            text += f" at {shown(measured.voltage, V)}"
+        said[measured.quantity] = f"{text} ({printable(measured.source) or 'source not stated'})"
+    return [
+        (label, value, "; ".join(part for part in (said.get(label), remark) if part))
+        for label, value, remark in rows
+    ]
+
+
+def _solved(mode: WorkingMode) -> str:
+    """The mode's label, with the solver's error where one solved it."""
+    if mode.frequency_error is None:
+        return mode.label
+    return f"{mode.label}, solved to ± {shown(mode.frequency_error, HZ, 2)}"
+
+
+def surface_rows(analysis: Analysis) -> list[Row]:
+    """Rows of what is touched, and of what the paper's criterion takes."""
+    p = analysis.prediction
+    finger = f"{shown(p.normal_force, N)} at {shown(p.speed, SPEED)}"
+    name = printable(p.surface.name)
+    reached = _reached(analysis.own_curve.amplitude_for_criterion)
+    return [
+        ("Surface roughness", shown(p.surface.roughness, M), f"{name}; finger {finger}"),
+        ("Amplitude for µ′/µ = 0.7", reached, "under the finger"),
+    ]
+
+
+def rival_rows(analysis: Analysis) -> list[Row]:
+    """Rows of the range of rival models, beside the interval's width, which leaves them out."""
+    rivals, unsure = analysis.rivals.values(), analysis.uncertainty
+    if unsure is None or not rivals:
+        return []
+    low, high = unsure.interval
+    said = f"interval {high - low:.2f} wide, without them"
+    return [("Rival models give µ′/µ", span(min(rivals), max(rivals)), said)]
+
+
+def _reached(amplitude: float | None) -> str:
+    return "out of reach" if amplitude is None else shown(amplitude, M, 3)
+
+
+def texture_rows(analysis: Analysis) -> list[Row]:
+    """Rows of how fast the amplitude can follow, and of the gratings which that lets through."""
+    tau, table = analysis.envelope_time_constant, analysis.fidelity
+    band = f"a bandwidth of {shown(analysis.envelope_bandwidth, HZ, 3)}"
+    rows = [("Envelope time constant", shown(tau, S, 3), band)]
+    speed = analysis.prediction.speed
+    if table is not None:
+        rows.append(_grating(analysis, int(np.argmin(np.abs(table.speeds - speed)))))
+    return [*rows, *felt_rows(analysis.felt, speed)]
+
+
+def _grating(analysis: Analysis, at: int) -> Row:
+    """The finest grating at one of the table's speeds."""
+    table = analysis.fidelity
+    assert table is not None, "nothing is rendered"
+    left = f"{si.percent(table.fundamental)} of its wave"
+    return (
+        f"Finest grating at {shown(float(table.speeds[at]), SPEED)}",
+        shown(float(table.finest_period[at]), M, 3),
+        f"{si.percent(table.kept)} of its swing, {left} kept",
+    )
+
+
+def electrical_rows(load: ElectricalLoad | None) -> list[Row]:
+    """Rows of what the free plate takes from its amplifier at the drive's frequency."""
+    if load is None:
+        said = "it takes a voltage, and an admittance solved near it"
+        return [("Current", "not known", said)]
+    real = f"{shown(load.real_power, W, 3)} of it real"
+    able = {
+        can: [check.part for check in load.amplifiers if check.suffices == can]
+        for can in (True, False)
+    }
+    each = [
+        f"{' and '.join(parts)} {'can' if can else 'cannot'}"
+        for can, parts in able.items()
+        if parts
+    ]
+    return [
+        (
+            "Current",
+            shown(load.current, A, 3),
+            "zero-to-peak, without a finger" + ("; of an assumed ceramic" if load.assumed else ""),
+        ),
+        ("Apparent power", f"{load.apparent_power:.3g} VA", real),
+        ("Amplifiers that can", f"{len(able[True])} of {len(load.amplifiers)}", "; ".join(each)),
+    ]
+
+
+def sound_rows_at_ear(ears: EarExposure | None) -> list[Row]:
+    """The level at an ear, beside the guidance."""
+    if ears is None:
+        said = "no face was solved here; squeezefilm plate solves plates, discs and stators"
+        return [("Sound", "not known", said)]
+    levels = " and ".join(f"{ear_limit.guidance.level_dB:.0f} dB" for ear_limit in ears.limits)
+    limit = f"guidance {levels}" if levels else "no guidance"
+    range_of = f"{ears.low_dB:.0f} to {ears.high_dB:.0f} dB, loudest direction; {limit}"
+    return [(f"Sound at {ears.distance:g} m", f"{ears.level_dB:.0f} dB", range_of)]
+
+
+def more_rows(analysis: Analysis) -> list[Row]:
+    """Rows of what the key numbers are made of and what follows from them: for an appendix."""
+    p = analysis.prediction
+    floats = _reached(analysis.own_curve.zero_friction_amplitude)
+    rows = [
+        ("Quality factor", f"{p.mode.quality_factor:.4g}", ""),
+        ("Half wavelength", shown(p.mode.half_wavelength, M), ""),
+        ("Squeeze number", f"{p.squeeze_number:.4g}", ""),
+        ("Mean pressure", f"{p.mean_pressure:.4f}", "over ambient, contact and period"),
+        reduction_row(p),
+        ("Amplitude for no friction", floats, "the finger floats"),
+    ]
+    if analysis.fidelity is not None:
+        rows += [_grating(analysis, at) for at in range(len(analysis.fidelity.speeds))]
+    rows += heat_rows(p.heat)[2:] if p.voltage else []
+    return with_measured(rows, analysis.measured, p.voltage)
+
+
+def unsaid_warnings(analysis: Analysis) -> list[str]:
+    """The warnings that the verdict does not already say word for word."""
+    said = {finding.text for finding in analysis.verdict}
+    return [text for text in analysis.prediction.warnings if text not in said]
+
 
 NUMBERS = ("Quantity", "Value", "Remark")
 _INFLUENCES = ("Drawn", "From", "Share of the variance", "Whose")

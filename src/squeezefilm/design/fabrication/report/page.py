@@ -30,12 +30,6 @@ from squeezefilm.core.kit.page_style import (
 from squeezefilm.core.kit.sheet import pdf, sheet_figure, views_figure
 from squeezefilm.core.results import stamp
 from squeezefilm.design.analysis.report.point_rows import display_values, electronics_rows
-from squeezefilm.design.fabrication.facets import (
-    CHORD_ERROR,
-    stl_bytes,
-    triangles_of,
-    volume_error,
-)
 from squeezefilm.design.fabrication.report.rectangular_sheet import rectangular_sheet
 from squeezefilm.design.fabrication.report.round_sheet import round_sheet
 from squeezefilm.design.fabrication.report.rows import (
@@ -50,7 +44,13 @@ from squeezefilm.design.fabrication.report.rows import (
     plan_csv,
     step_rows,
 )
-from squeezefilm.design.fabrication.step_file import step_text
+from squeezefilm.design.fabrication.step_file import (
+    CHORD_ERROR,
+    step_text,
+    stl_bytes,
+    triangles_of,
+    volume_error,
+)
 from squeezefilm.design.fabrication.test_plan import TestStep
 from squeezefilm.design.fabrication.wiring import ANTIPHASE, wiring_said
 from squeezefilm.measure.calibration.blind import sealed

@@ -9,7 +9,7 @@ import numpy as np
 from tests.unit.made_results import WARM
 
 from squeezefilm.design.analysis.other_models import MeasuredBeside
-from squeezefilm.design.analysis.report.rows import (
+from squeezefilm.design.analysis.report.folds import (
     electrical_rows,
     more_rows,
     rival_rows,
