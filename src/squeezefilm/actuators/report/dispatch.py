@@ -10,7 +10,6 @@ from squeezefilm.actuators.analysis import motor, skin_stretch
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.motor.description import MotorDescription
 from squeezefilm.actuators.report.motor import show_motor, write_motor
-from squeezefilm.actuators.report.page import ActuatorAnalysis
 from squeezefilm.actuators.report.skin_stretch import show_skin_stretch, write_skin_stretch
 from squeezefilm.core import quantities as si
 from squeezefilm.core.progress import SayProgress
@@ -19,7 +18,7 @@ from squeezefilm.core.progress import SayProgress
 class AnalyzedActuator(NamedTuple):
     """An actuator's analysis, what prints it and what writes its page."""
 
-    analysis: ActuatorAnalysis
+    analysis: motor.MotorAnalysis | skin_stretch.SkinStretchAnalysis
     show: Callable[[Any], None]
     write: Callable[[Any, Path], Path]
 

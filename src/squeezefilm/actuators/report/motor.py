@@ -10,16 +10,14 @@ import numpy as np
 
 from squeezefilm.actuators.analysis.motor import MotorAnalysis
 from squeezefilm.actuators.report.page import (
-    assumed_words,
-    drawn_words,
     how_sure,
+    show_actuator,
     with_interval,
     write_page,
 )
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, Row, V, W, shown
-from squeezefilm.core.kit.terminal import bullets, show_rows
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -101,11 +99,7 @@ def motor_rows(found: MotorAnalysis) -> list[Row]:
 
 def show_motor(found: MotorAnalysis) -> None:
     """Print a motor: key numbers, warnings, and what is assumed."""
-    described = found.described
-    title = f"{described.title} [{described.name}]"
-    console = show_rows(title, motor_rows(found), found.warnings, fixed=(0, 1))
-    bullets(console, [("interval", drawn_words(found.drawn), "")])
-    bullets(console, [("assumed", assumed_words(described.provenance), "yellow")])
+    show_actuator(found, motor_rows(found))
 
 
 def write_motor(found: MotorAnalysis, folder: Path) -> Path:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING
 
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers
 from squeezefilm.core import quantities as si
@@ -22,49 +22,39 @@ from squeezefilm.core.kit.page_style import (
     stamped,
     text_table,
 )
+from squeezefilm.core.kit.terminal import bullets as terminal_bullets
+from squeezefilm.core.kit.terminal import show_rows
 from squeezefilm.core.results import stamp
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-
-class Described(Protocol):
-    """An actuator as its file describes it."""
-
-    name: str
-    title: str
-
-    @property
-    def provenance(self) -> Mapping[str, Provenance]:
-        """Sources of the values, by their paths."""
-
-
-class ActuatorAnalysis(Protocol):
-    """Fields of every analysis of an actuator."""
-
-    @property
-    def described(self) -> Any:
-        """The actuator, `Described`."""
-
-    @property
-    def warnings(self) -> tuple[str, ...]:
-        """In sentences."""
-
-    def summary(self) -> dict[str, Any]:
-        """The numbers, with units in the keys."""
+    from squeezefilm.actuators.analysis.motor import MotorAnalysis
+    from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis
 
 
 def assumed_words(provenance: Mapping[str, Provenance]) -> str:
     """A sentence with the number of an actuator's values that are assumed."""
-    assumed = sum(one.evidence == "assumed" for one in provenance.values())
+    assumed = sum(source.evidence == "assumed" for source in provenance.values())
     return (
         f"{assumed} of {len(provenance)} values with a source are assumed, and the numbers hang on "
         "them; the page's last tables (--out DIR) list them and say what they do."
     )
 
 
+def show_actuator(
+    analysis: MotorAnalysis | SkinStretchAnalysis, key_numbers: Sequence[Row]
+) -> None:
+    """Print an actuator: key numbers, warnings, and what is assumed."""
+    described = analysis.described
+    title = f"{described.title} [{described.name}]"
+    console = show_rows(title, key_numbers, analysis.warnings, fixed=(0, 1))
+    terminal_bullets(console, [("interval", drawn_words(analysis.drawn), "")])
+    terminal_bullets(console, [("assumed", assumed_words(described.provenance), "yellow")])
+
+
 def write_page(
-    found: ActuatorAnalysis,
+    analysis: MotorAnalysis | SkinStretchAnalysis,
     folder: Path,
     *,
     key_numbers: Sequence[Row],
@@ -78,15 +68,15 @@ def write_page(
     `more` are sections of HTML after the figures. Raises `InputError` where the folder cannot be
     written to.
     """
-    folder, described = require_folder(folder), found.described
-    summary = found.summary()
+    folder, described = require_folder(folder), analysis.described
+    summary = analysis.summary()
     stamped_with = stamp(summary)
     files: dict[str, str | bytes] = {
         f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
     }
     files |= pictures or {}
     files["result.json"] = json_text(summary | {"stamp": stamped_with})
-    warned = [*found.warnings, assumed_words(described.provenance)]
+    warned = [*analysis.warnings, assumed_words(described.provenance)]
     head = ("quantity", "value", "remark")
     body = section("Warnings", bullets(warned))
     body += section("Key numbers", text_table("Amplitudes zero to peak", head, key_numbers))
@@ -102,9 +92,9 @@ def _sources(provenance: Mapping[str, Provenance]) -> str:
     """Sources of values, those of the same place side by side: seven ceramics alike take as
     many rows as one."""
     rows: dict[tuple[str, str, str], list[str]] = {}
-    for path, one in provenance.items():
+    for path, origin in provenance.items():
         numbered = re.sub(r"\.\d+\.", ".*.", path)
-        rows.setdefault((numbered, one.evidence, one.source), []).append(path)
+        rows.setdefault((numbered, origin.evidence, origin.source), []).append(path)
     table = [
         (paths[0] if len(paths) == 1 else f"{name} ({len(paths)} alike)", evidence, source)
         for (name, evidence, source), paths in rows.items()
@@ -113,51 +103,51 @@ def _sources(provenance: Mapping[str, Provenance]) -> str:
     return section("Where the values come from", text_table("As the file says", head, table))
 
 
-def with_interval(found: DrawnAnswers, value: float, name: str, unit: si.Unit) -> str:
+def with_interval(sampled: DrawnAnswers, value: float, name: str, unit: si.Unit) -> str:
     """A value (in its unit) and what lies between 5 and 95 % of the draws of the answer `name`."""
-    interval = found.intervals.get(name)
+    interval = sampled.intervals.get(name)
     said = shown(value, unit, 3)
     if interval is None:
         return said
     return f"{said} ({shown(interval[0], unit, 2)} to {shown(interval[2], unit, 2)})"
 
 
-def drawn_words(found: DrawnAnswers) -> str:
+def drawn_words(sampled: DrawnAnswers) -> str:
     """Sentences that say what the intervals are."""
-    given = sum(value.origin == "given" for value in found.drawn)
-    guessed = len(found.drawn) - given
-    many = "all" if guessed == len(found.drawn) else f"{guessed} of them"
+    given = sum(value.origin == "given" for value in sampled.drawn)
+    guessed = len(sampled.drawn) - given
+    many = "all" if guessed == len(sampled.drawn) else f"{guessed} of them"
     ranges = "from ranges of the file"
     if guessed:
         ranges = f"{many} from ranges that are themselves assumed"
     said = (
-        f"In brackets, 5 to 95 % of {found.count} draws (seed {found.seed}) of {len(found.drawn)} "
-        f"uncertain values together, {ranges}."
+        f"In brackets, 5 to 95 % of {sampled.count} draws (seed {sampled.seed}) of "
+        f"{len(sampled.drawn)} uncertain values together, {ranges}."
     )
-    if found.refused:
+    if sampled.refused:
         said += (
-            f" In {found.refused} of the draws the actuator does not work (most often: "
-            f"{found.reason}); they are left out."
+            f" In {sampled.refused} of the draws the actuator does not work (most often: "
+            f"{sampled.reason}); they are left out."
         )
-    if not found.intervals:
+    if not sampled.intervals:
         said += " Fewer than half work, and no interval is given."
     return said
 
 
-def how_sure(found: DrawnAnswers, answers: Mapping[str, str]) -> str:
+def how_sure(sampled: DrawnAnswers, answers: Mapping[str, str]) -> str:
     """Section of a page: what was drawn, from where and why, and how much of the spread of each of
     the `answers` (in words, by name) follows it."""
-    known = {name: words for name, words in answers.items() if name in found.shares}
+    known = {name: words for name, words in answers.items() if name in sampled.shares}
     rows = [
         (
             value.path.split(".", 1)[-1].replace("_", " "),
             " to ".join(value.spread),
-            *(si.percent(found.shares[name][k]) for name in known),
+            *(si.percent(sampled.shares[name][k]) for name in known),
             value.source if value.origin == "given" else f"assumed: {value.source}",
         )
-        for k, value in enumerate(found.drawn)
+        for k, value in enumerate(sampled.drawn)
     ]
     head = ("value", "range", *(f"of the {words}" for words in known.values()), "why")
     table = text_table("Drawn evenly, and the share of each spread that follows it", head, rows)
-    said = f"{drawn_words(found)} What has the largest share is worth measuring first."
+    said = f"{drawn_words(sampled)} What has the largest share is worth measuring first."
     return section("How sure that is", f"<p>{as_html(said)}</p>{table}")

@@ -11,9 +11,8 @@ import numpy as np
 
 from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis
 from squeezefilm.actuators.report.page import (
-    assumed_words,
-    drawn_words,
     how_sure,
+    show_actuator,
     with_interval,
     write_page,
 )
@@ -26,7 +25,6 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, M, N, Row, V, W, shown
 from squeezefilm.core.kit.page_style import section
-from squeezefilm.core.kit.terminal import bullets, show_rows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -107,11 +105,7 @@ def skin_stretch_rows(found: SkinStretchAnalysis) -> list[Row]:
 
 def show_skin_stretch(found: SkinStretchAnalysis) -> None:
     """Print an array: key numbers, warnings, and what is assumed."""
-    described = found.described
-    title = f"{described.title} [{described.name}]"
-    console = show_rows(title, skin_stretch_rows(found), found.warnings, fixed=(0, 1))
-    bullets(console, [("interval", drawn_words(found.drawn), "")])
-    bullets(console, [("assumed", assumed_words(described.provenance), "yellow")])
+    show_actuator(found, skin_stretch_rows(found))
 
 
 def write_skin_stretch(found: SkinStretchAnalysis, folder: Path) -> Path:
