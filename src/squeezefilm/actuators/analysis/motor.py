@@ -121,16 +121,16 @@ class MotorAnalysis(Result):
     @property
     def input_power(self) -> si.Watt:
         """Input of the drive at `best` (W): output, losses of plate, contacts and guide."""
-        one = self.best
-        guide = (one.thrust - one.force) * one.speed
-        return one.output + one.plate_loss + one.contact_loss + one.friction_loss + guide
+        best = self.best
+        guide = (best.thrust - best.force) * best.speed
+        return best.output + best.plate_loss + best.contact_loss + best.friction_loss + guide
 
     @property
     def best_of_map(self) -> tuple[si.Dimensionless, si.Newton, si.Metre]:
         """The largest efficiency over preload and amplitude, and where (N, m)."""
         at = np.unravel_index(np.nanargmax(self.map.efficiency), self.map.efficiency.shape)
-        found = self.map.efficiency[at], self.map.preload[at[0]], self.map.amplitude[at[1]]
-        return float(found[0]), float(found[1]), float(found[2])
+        values = self.map.efficiency[at], self.map.preload[at[0]], self.map.amplitude[at[1]]
+        return float(values[0]), float(values[1]), float(values[2])
 
     @property
     def thrust_apart(self) -> si.Dimensionless:
@@ -169,8 +169,12 @@ class MotorAnalysis(Result):
             "energy_residual": self.motion.energy_residual,
             "highest_voltage_V": self.motor.highest_voltage,
             "speed_force_curve": [
-                {"speed_m_per_s": one.speed, "force_N": one.force, "efficiency": one.efficiency}
-                for one in self.curve
+                {
+                    "speed_m_per_s": point.speed,
+                    "force_N": point.force,
+                    "efficiency": point.efficiency,
+                }
+                for point in self.curve
             ],
             "drawn": to_json(self.drawn),
             "over_frequency": [
@@ -182,8 +186,8 @@ class MotorAnalysis(Result):
                 for point in self.tuned
             ],
             "over_place_of_the_feet": [
-                {"shift_m": shift, "force_N": None if one is None else one.force}
-                for shift, one in zip(self.shifts.tolist(), self.shifted, strict=True)
+                {"shift_m": shift, "force_N": None if shifted is None else shifted.force}
+                for shift, shifted in zip(self.shifts.tolist(), self.shifted, strict=True)
             ],
             "velocity_in_the_plane_m_per_s": None
             if self.plane is None
@@ -235,7 +239,7 @@ def analyze_motor(
         described,
         described.provenance,
         _USUAL,
-        lambda one: _drawn(described, motor, one, volts),
+        lambda drawn: _drawn(described, motor, drawn, volts),
         progress=lambda done, of: None if done % 16 else tell(f"{done} of {of} draws"),
     )
     analysis = MotorAnalysis(
@@ -260,14 +264,14 @@ def analyze_motor(
 
 def _tuned(motor: AssembledMotor, voltage: si.Volt) -> tuple[AveragedMotor, ...]:
     """Motors about the resonance, as far as the drive moves the plate under the slider."""
-    found = []
+    motors = []
     for share in np.linspace(1 - _DETUNED, 1 + _DETUNED, _POINTS).tolist():
         working = Working(voltage=voltage, frequency=share * motor.resonance_frequency)
         try:
-            found.append(averaged(motor, working))
+            motors.append(averaged(motor, working))
         except UnreachableError:
             continue
-    return tuple(found)
+    return tuple(motors)
 
 
 def _shifted(
@@ -340,19 +344,20 @@ def _answered(motor: AssembledMotor, voltage: si.Volt) -> Mapping[str, float]:
     }
 
 
-def _warnings(found: MotorAnalysis, why_no_force: str) -> list[str]:
+def _warnings(analysis: MotorAnalysis, why_no_force: str) -> list[str]:
     said = []
-    if abs(found.thrust_apart) > _APART:
+    if abs(analysis.thrust_apart) > _APART:
         said.append(
-            f"At its best load the mean over a period gives {found.best.thrust:.3g} N and the "
-            f"motion in time {found.motion.thrust:.3g} N: the slider jumps for several periods, "
+            f"At its best load the mean over a period gives {analysis.best.thrust:.3g} N and the "
+            f"motion in time {analysis.motion.thrust:.3g} N: the slider jumps for several periods, "
             "which the mean does not know. Press it harder, or take the numbers in time."
         )
-    if found.voltage > 0.8 * found.motor.highest_voltage:
+    share = analysis.voltage / analysis.motor.highest_voltage
+    if share > 0.8:
         said.append(
-            f"The voltage is {100 * found.voltage / found.motor.highest_voltage:.0f} % of that at "
-            "which the ceramic begins to lose its poling."
+            f"The voltage is {100 * share:.0f} % of that at which the ceramic begins to lose its "
+            "poling."
         )
-    if found.no_load_speed < 0:
+    if analysis.no_load_speed < 0:
         said.append("It moves against the direction that its cradle names: its feet push back.")
     return [*said, *([why_no_force] if why_no_force else [])]

@@ -208,7 +208,7 @@ def analyze_skin_stretch(
         described,
         described.provenance,
         _USUAL,
-        lambda one: _answers(one, volts),
+        lambda drawn: _answers(drawn, volts),
         progress=lambda done, of: None if done % 16 else tell(f"{done} of {of} draws"),
     )
     warnings = tuple(_warnings(array, together, wave, seating, least))

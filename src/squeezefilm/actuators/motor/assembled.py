@@ -176,7 +176,7 @@ class AssembledMotor:
         if voltage is not None:
             amplitude = force / np.hypot(mass * (own**2 - omega**2), mass * own * omega * loss)
         bend, cube, rise = self.motor.free_plate.terms(float(np.max(np.abs(amplitude), initial=0)))
-        one = np.ones(mass.size)
+        ones = np.ones(mass.size)
         return Stator(
             mass,
             mass * own**2,
@@ -185,9 +185,9 @@ class AssembledMotor:
             omega,
             np.zeros(mass.size),
             amplitude,
-            bend * one,
-            cube * one,
-            rise * one,
+            bend * ones,
+            cube * ones,
+            rise * ones,
             is_held,
         )
 
@@ -225,7 +225,7 @@ def assembled(
     contact = motor.contact
     springs = np.array([contact.stiffnesses(foot.inclination) for foot in motor.feet])
     count = np.ones(x.size)
-    k_nn, k_nt, k_tt = (np.ascontiguousarray(one) for one in springs.T)
+    k_nn, k_nt, k_tt = (np.ascontiguousarray(spring) for spring in springs.T)
     feet = Feet(
         across,
         along,

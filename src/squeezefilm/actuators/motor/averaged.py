@@ -179,7 +179,7 @@ def _in_balance(
     """The stator with mode `j` at the amplitude at which its drive is in balance with the feet (or
     without them), the other mode being held."""
     M, K, C, w = (
-        float(one[j]) for one in (stator.mass, stator.stiffness, stator.damping, stator.omega)
+        float(values[j]) for values in (stator.mass, stator.stiffness, stator.damping, stator.omega)
     )
     force, way = abs(float(stator.force[j])), float(np.sign(stator.force[j]))
 

@@ -64,12 +64,12 @@ def motor_map(
     """
     si.require("preloads", preloads, si.Unit("N"), axes=1)
     si.require("amplitudes", amplitudes, si.Unit("m"), axes=1)
-    found = np.full((4, preloads.size, amplitudes.size), np.nan)
+    answers = np.full((4, preloads.size, amplitudes.size), np.nan)
     for i, preload in enumerate(preloads.tolist()):
         for j, amplitude in enumerate(amplitudes.tolist()):
             working = Working(amplitude=amplitude, preload=preload)
             rest = averaged(motor, working)
-            found[3, i, j] = rest.contact_share
+            answers[3, i, j] = rest.contact_share
             try:
                 require_moving(motor, rest)
                 top = no_load_speed(motor, working)
@@ -77,10 +77,10 @@ def motor_map(
                 top = None
             if top is not None:
                 loaded = [averaged(motor, working, speed=top * part) for part in _SPEEDS.tolist()]
-                found[:3, i, j] = rest.force, top, max(one.efficiency for one in loaded)
+                answers[:3, i, j] = rest.force, top, max(point.efficiency for point in loaded)
             if progress is not None:
-                progress(i * amplitudes.size + j + 1, found[0].size)
-    return MotorMap(preloads, amplitudes, *found)
+                progress(i * amplitudes.size + j + 1, answers[0].size)
+    return MotorMap(preloads, amplitudes, *answers)
 
 
 @si.checked_numbers

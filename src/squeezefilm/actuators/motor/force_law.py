@@ -58,7 +58,7 @@ class ForceLaw:
                 "amplitudes, at least two",
                 quantity="thrust",
             )
-        rising = (np.all(np.diff(one) > 0) for one in (self.speed, self.amplitude))
+        rising = (np.all(np.diff(axis) > 0) for axis in (self.speed, self.amplitude))
         if not all(rising) or np.any(np.diff(self.thrust, axis=1) <= 0):
             raise InputError(
                 "speed and amplitude must rise, and thrust with the amplitude, so that the table "
@@ -254,8 +254,8 @@ def track_force(
     guide = slider.guide * np.sign(speed)
     for n, asked in enumerate(wanted.tolist()):
         amplitude = float(np.hypot(march.state[0], march.state[J] / stator.omega[0]))
-        state, found = force_step(law, state, asked, force, amplitude, speed)
-        command = found.voltage
+        state, ordered = force_step(law, state, asked, force, amplitude, speed)
+        command = ordered.voltage
         driven = stator._replace(force=per_volt * command)
         begun = float(march.state[totals + kernel.THRUST])
         parts = (driven, motor.feet, slider, march)

@@ -316,7 +316,7 @@ def march_steps(
     for step in range(steps):
         t = start + step * h
         end = start + (step + 1) * h
-        found = 0
+        events = 0
         while t < end:
             left = end - t
             rates(t, march.state, stator, feet, slider, march, march.room[7])
@@ -339,8 +339,8 @@ def march_steps(
                 break
             _change(which, stator, feet, slider, march)
             t += gone
-            found += 1
-            if found > MOST_EVENTS:
+            events += 1
+            if events > MOST_EVENTS:
                 return step
         if track.shape[0] > step:
             track[step, 0] = end

@@ -66,12 +66,12 @@ def spring_at(stator: Stator, j: int, q: float) -> float:
 @compiled()
 def mode_energy(stator: Stator, q: si.Array, speed: si.Array) -> float:
     """Kinetic and elastic energy (J) of all modes at deflections (m) and speeds (m/s)."""
-    found = 0.0
+    energy = 0.0
     for j in range(q.size):
         size = abs(q[j])
         bent = 0.5 + stator.bend[j] * size / 3.0 + stator.cube[j] * size * size / 4.0
-        found += 0.5 * stator.mass[j] * speed[j] ** 2 + stator.stiffness[j] * size * size * bent
-    return found
+        energy += 0.5 * stator.mass[j] * speed[j] ** 2 + stator.stiffness[j] * size * size * bent
+    return energy
 
 
 @compiled()

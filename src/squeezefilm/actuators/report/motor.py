@@ -31,16 +31,16 @@ if TYPE_CHECKING:
 _ANSWERS = {"stall_force_N": "stall force", "no_load_speed_m_per_s": "speed without a load"}
 
 
-def motor_rows(found: MotorAnalysis) -> list[Row]:
+def motor_rows(analysis: MotorAnalysis) -> list[Row]:
     """The key numbers: quantity, value, remark."""
-    motor, best = found.motor, found.best
+    motor, best = analysis.motor, analysis.best
     mode, described = motor.modes[0].working, motor.motor
-    kept = found.rest.amplitude / found.free_amplitude
-    efficiency, preload, amplitude = found.best_of_map
-    sure = functools.partial(with_interval, found.drawn)
+    kept = analysis.rest.amplitude / analysis.free_amplitude
+    efficiency, preload, amplitude = analysis.best_of_map
+    sure = functools.partial(with_interval, analysis.drawn)
     plane = []
-    if found.plane is not None:
-        along, sideways = found.plane.final_velocity.tolist()
+    if analysis.plane is not None:
+        along, sideways = analysis.plane.final_velocity.tolist()
         plane = [
             (
                 "Free in the plane",
@@ -51,16 +51,16 @@ def motor_rows(found: MotorAnalysis) -> list[Row]:
     return [
         (
             "Stall force",
-            sure(found.stall_force, "stall_force_N", N),
+            sure(analysis.stall_force, "stall_force_N", N),
             "the load that just stops the slider",
         ),
-        ("Speed without a load", sure(found.no_load_speed, "no_load_speed_m_per_s", SPEED), ""),
+        ("Speed without a load", sure(analysis.no_load_speed, "no_load_speed_m_per_s", SPEED), ""),
         *plane,
         (
             "Best efficiency",
             f"{100 * best.efficiency:.2g} %",
             f"at {shown(best.speed, SPEED, 3)} against {shown(best.force, N, 3)}: "
-            f"{shown(best.output, W, 3)} out of {shown(found.input_power, W, 3)}, of which "
+            f"{shown(best.output, W, 3)} out of {shown(analysis.input_power, W, 3)}, of which "
             f"{shown(best.plate_loss, W, 3)} are lost in the plate",
         ),
         (
@@ -70,7 +70,7 @@ def motor_rows(found: MotorAnalysis) -> list[Row]:
         ),
         (
             "The same in time",
-            shown(found.motion.thrust, N, 3),
+            shown(analysis.motion.thrust, N, 3),
             f"of thrust, where the mean over a period gives {shown(best.thrust, N, 3)}",
         ),
         (
@@ -80,66 +80,68 @@ def motor_rows(found: MotorAnalysis) -> list[Row]:
         ),
         (
             "Amplitude",
-            shown(found.rest.amplitude, M, 3),
+            shown(analysis.rest.amplitude, M, 3),
             f"zero to peak, under the slider: {100 * kept:.0f} % of that without it",
         ),
         (
             "Feet in contact",
-            f"{100 * found.rest.contact_share:.0f} %",
+            f"{100 * analysis.rest.contact_share:.0f} %",
             "of each period, at rest",
         ),
         (
             "Drive",
-            shown(found.voltage, V, 3),
+            shown(analysis.voltage, V, 3),
             f"at {shown(mode.resonance_frequency, HZ, 5)}, Q {mode.quality_factor:.3g}; the "
             f"ceramic bears {shown(motor.highest_voltage, V, 3)}",
         ),
     ]
 
 
-def show_motor(found: MotorAnalysis) -> None:
+def show_motor(analysis: MotorAnalysis) -> None:
     """Print a motor: key numbers, warnings, and what is assumed."""
-    show_actuator(found, motor_rows(found))
+    show_actuator(analysis, motor_rows(analysis))
 
 
-def write_motor(found: MotorAnalysis, folder: Path) -> Path:
+def write_motor(analysis: MotorAnalysis, folder: Path) -> Path:
     """Write result.json, the figures and report.html into `folder`; the path of the page. Raises
     `InputError` where the folder cannot be written to."""
     return write_page(
-        found,
+        analysis,
         folder,
-        key_numbers=motor_rows(found),
-        figures=_figures(found),
-        more=how_sure(found.drawn, _ANSWERS),
+        key_numbers=motor_rows(analysis),
+        figures=_figures(analysis),
+        more=how_sure(analysis.drawn, _ANSWERS),
     )
 
 
-def _figures(found: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
-    feet = found.motor.feet
+def _figures(analysis: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
+    feet = analysis.motor.feet
     figures = {
         "speed-force": (
             "Speed against force",
-            speed_force_figure((found.curve, found.resolved)),
+            speed_force_figure((analysis.curve, analysis.resolved)),
         ),
         "map": (
             "Preload and amplitude",
-            map_figure((found.map, found.motor.motor.cradle.preload, found.rest.amplitude)),
+            map_figure(
+                (analysis.map, analysis.motor.motor.cradle.preload, analysis.rest.amplitude)
+            ),
         ),
         "frequency-and-place": (
             "Frequency, and the place of the feet",
-            tuning_figure(found),
+            tuning_figure(analysis),
         ),
         "foot": (
             "The way of a foot",
-            foot_figure((found.motion, feet.across[0], feet.along[0])),
+            foot_figure((analysis.motion, feet.across[0], feet.along[0])),
         ),
     }
-    if found.plane is not None:
-        figures["plane"] = ("Free in the plane", plane_figure(found.plane))
-    if found.tracked is not None:
+    if analysis.plane is not None:
+        figures["plane"] = ("Free in the plane", plane_figure(analysis.plane))
+    if analysis.tracked is not None:
         figures["force-step"] = (
             "A force that is commanded",
-            force_step_figure(found.tracked),
+            force_step_figure(analysis.tracked),
         )
     return figures
 
@@ -155,11 +157,11 @@ def speed_force_figure(known: tuple[tuple[AveragedMotor, ...], si.FloatArray]) -
         4.0,
     )
     left, right = figure.subplots(1, 2)
-    force = [one.force for one in curve]
-    left.plot(force, [1e3 * one.speed for one in curve], color=style.BLUE)
+    force = [point.force for point in curve]
+    left.plot(force, [1e3 * point.speed for point in curve], color=style.BLUE)
     left.plot(resolved[:, 1], 1e3 * resolved[:, 0], "x", color=style.ORANGE, ms=8)
     left.set(xlabel="force on the load (N)", ylabel="speed (mm/s)")
-    right.plot(force, [100 * one.efficiency for one in curve], color=style.BLUE)
+    right.plot(force, [100 * point.efficiency for point in curve], color=style.BLUE)
     right.set(xlabel="force on the load (N)", ylabel="efficiency (%)")
     return figure
 
@@ -190,16 +192,16 @@ def force_step_figure(tracked: TrackedForce) -> Figure:
 def map_figure(known: tuple[MotorMap, si.Newton, si.Metre]) -> Figure:
     """Stall force, no-load speed and efficiency over preload and amplitude, white where it stalls;
     a mark at the preload (N) and amplitude (m) that the motor has."""
-    found, preload, amplitude = known
+    grid, preload, amplitude = known
     figure = style.new_figure(
         "Preload and amplitude",
         "averaged model; white: the feet never leave, the motor stalls; mark: the motor as it is",
         3.6,
     )
-    x, y = 1e6 * found.amplitude, found.preload
+    x, y = 1e6 * grid.amplitude, grid.preload
     for axes, values, label in zip(
         figure.subplots(1, 3, sharey=True),
-        (found.stall_force, 1e3 * found.no_load_speed, 100 * found.efficiency),
+        (grid.stall_force, 1e3 * grid.no_load_speed, 100 * grid.efficiency),
         ("stall force (N)", "no-load speed (mm/s)", "best efficiency (%)"),
         strict=True,
     ):
@@ -237,35 +239,35 @@ def foot_figure(motion: tuple[MotorMotion, si.FloatArray, si.FloatArray]) -> Fig
 
 
 @style.drawn
-def plane_figure(found: PlaneMotion) -> Figure:
+def plane_figure(motion: PlaneMotion) -> Figure:
     """The way and the velocity of a slider that is free in the plane, from rest on."""
-    along, sideways = found.final_velocity.tolist()
+    along, sideways = motion.final_velocity.tolist()
     figure = style.new_figure(
         f"Free in the plane it ends at {1e3 * along:.3g} mm/s along and {1e3 * sideways:.3g} mm/s "
         "sideways",
-        found.model,
+        motion.model,
         4.0,
     )
     left, right = figure.subplots(1, 2)
-    path = 1e6 * found.path
+    path = 1e6 * motion.path
     left.plot(path[:, 0], path[:, 1], color=style.BLUE, lw=1)
     left.plot(*path[-1], "o", color=style.ORANGE)
     left.set(xlabel="along (µm)", ylabel="sideways (µm)")
-    time = 1e3 * found.time[-1] * np.arange(1, len(found.period_velocity) + 1)
-    time = time / len(found.period_velocity)
+    time = 1e3 * motion.time[-1] * np.arange(1, len(motion.period_velocity) + 1)
+    time = time / len(motion.period_velocity)
     for k, (name, colour) in enumerate((("along", style.BLUE), ("sideways", style.ORANGE))):
-        right.plot(time, 1e3 * found.period_velocity[:, k], color=colour, lw=1, label=name)
+        right.plot(time, 1e3 * motion.period_velocity[:, k], color=colour, lw=1, label=name)
     right.set(xlabel="time (ms)", ylabel="velocity (mm/s)")
     style.legend_below(right, columns=2)
     return figure
 
 
 @style.drawn
-def tuning_figure(found: MotorAnalysis) -> Figure:
+def tuning_figure(analysis: MotorAnalysis) -> Figure:
     """The force at rest over the frequency of the drive (with the resonance without a slider), and
     over the shift of all feet along the wave."""
-    motors, resonance = found.tuned, found.motor.resonance_frequency
-    shifts, shifted = found.shifts, found.shifted
+    motors, resonance = analysis.tuned, analysis.motor.resonance_frequency
+    shifts, shifted = analysis.shifts, analysis.shifted
     figure = style.new_figure(
         "The force at rest by the frequency of the drive, and by the place of the feet",
         "averaged; left at the voltage, right at the amplitude that the motor has; gaps: nodes",
@@ -277,7 +279,7 @@ def tuning_figure(found: MotorAnalysis) -> Figure:
     left.axvline(1e-3 * resonance, color=style.ORANGE, lw=1, label="resonance without a slider")
     left.set(xlabel="frequency (kHz)", ylabel="force at rest (N)")
     style.legend_below(left)
-    forces = [np.nan if one is None else one.force for one in shifted]
+    forces = [np.nan if motor is None else motor.force for motor in shifted]
     right.plot(1e3 * shifts, forces, color=style.BLUE)
     right.axvline(0.0, color=style.ORANGE, lw=1, label="where they stand")
     right.set(xlabel="shift of the feet along the wave (mm)", ylabel="force at rest (N)")

@@ -40,30 +40,30 @@ _ANSWERS = {
 _MOVING = "wave.png"
 
 
-def skin_stretch_rows(found: SkinStretchAnalysis) -> list[Row]:
+def skin_stretch_rows(analysis: SkinStretchAnalysis) -> list[Row]:
     """The key numbers: quantity, value, remark."""
-    array, tip, budget = found.array, found.tip, found.array.budget
-    heat, driven = found.power
-    sure = functools.partial(with_interval, found.drawn)
+    array, tip, budget = analysis.array, analysis.tip, analysis.array.budget
+    heat, driven = analysis.power
+    sure = functools.partial(with_interval, analysis.drawn)
     count = array.cradle.count
-    ways = " or ".join(way.replace("_", " ") for way in found.lines)
-    seated = "never all" if found.least_force is None else shown(found.least_force, N, 3)
+    ways = " or ".join(way.replace("_", " ") for way in analysis.lines)
+    seated = "never all" if analysis.least_force is None else shown(analysis.least_force, N, 3)
     return [
         (
             "Free deflection",
-            sure(found.free_deflection, "free_deflection_m", M),
-            f"at {shown(found.voltage, V, 3)}; the paper says {shown(PUBLISHED_FREE, M, 3)}",
+            sure(analysis.free_deflection, "free_deflection_m", M),
+            f"at {shown(analysis.voltage, V, 3)}; the paper says {shown(PUBLISHED_FREE, M, 3)}",
         ),
         (
             "Blocked force",
-            sure(found.blocked_force, "blocked_force_N", N),
+            sure(analysis.blocked_force, "blocked_force_N", N),
             f"the paper says {shown(PUBLISHED_BLOCKED, N, 3)}",
         ),
         (
             "Against the skin",
             sure(tip.deflection, "deflection_on_skin_m", M),
             f"and {sure(tip.force, 'force_on_skin_N', N)}; the skin's "
-            f"{found.skin.stiffness / 1e3:.3g} N/mm are assumed, as the paper's "
+            f"{analysis.skin.stiffness / 1e3:.3g} N/mm are assumed, as the paper's "
             f"{shown(PUBLISHED_LOADED, M, 3)} imply",
         ),
         (
@@ -79,14 +79,14 @@ def skin_stretch_rows(found: SkinStretchAnalysis) -> list[Row]:
         ),
         (
             "Contactors",
-            f"{found.seating.touching} of {count} touch",
+            f"{analysis.seating.touching} of {count} touch",
             f"under {shown(array.normal_force, N, 3)}; all from {seated} on",
         ),
         (
             "Slip",
-            f"{found.together.slipping} of {count}",
-            f"where all pull alike; {found.wave.pull.slipping} in a wave of "
-            f"{shown(found.wave.period, M, 3)}",
+            f"{analysis.together.slipping} of {count}",
+            f"where all pull alike; {analysis.wave.pull.slipping} in a wave of "
+            f"{shown(analysis.wave.period, M, 3)}",
         ),
         (
             "Actuators alone",
@@ -99,16 +99,20 @@ def skin_stretch_rows(found: SkinStretchAnalysis) -> list[Row]:
             shown(driven, W, 3),
             f"that drivers burn at full swing; {shown(heat, W, 2)} heats the ceramics",
         ),
-        ("Wires", " or ".join(map(str, found.lines.values())), f"{ways}; a count, not a circuit"),
+        (
+            "Wires",
+            " or ".join(map(str, analysis.lines.values())),
+            f"{ways}; a count, not a circuit",
+        ),
     ]
 
 
-def show_skin_stretch(found: SkinStretchAnalysis) -> None:
+def show_skin_stretch(analysis: SkinStretchAnalysis) -> None:
     """Print an array: key numbers, warnings, and what is assumed."""
-    show_actuator(found, skin_stretch_rows(found))
+    show_actuator(analysis, skin_stretch_rows(analysis))
 
 
-def write_skin_stretch(found: SkinStretchAnalysis, folder: Path) -> Path:
+def write_skin_stretch(analysis: SkinStretchAnalysis, folder: Path) -> Path:
     """Write result.json, the figures, the moving texture and report.html into `folder`; the path of
     the page. Raises `InputError` where the folder cannot be written to."""
     moving = section(
@@ -116,17 +120,17 @@ def write_skin_stretch(found: SkinStretchAnalysis, folder: Path) -> Path:
         f'<figure><img src="{_MOVING}" alt="The skin while a texture moves past"></figure>',
     )
     return write_page(
-        found,
+        analysis,
         folder,
-        key_numbers=skin_stretch_rows(found),
+        key_numbers=skin_stretch_rows(analysis),
         figures={
-            "actuator": ("One actuator", actuator_figure(found)),
-            "load-line": ("One actuator against the skin", load_line_figure(found)),
-            "strain": ("The skin under the array", strain_figure(found)),
-            "crosstalk": ("Crosstalk and seat", crosstalk_figure(found)),
+            "actuator": ("One actuator", actuator_figure(analysis)),
+            "load-line": ("One actuator against the skin", load_line_figure(analysis)),
+            "strain": ("The skin under the array", strain_figure(analysis)),
+            "crosstalk": ("Crosstalk and seat", crosstalk_figure(analysis)),
         },
-        more=moving + how_sure(found.drawn, _ANSWERS),
-        pictures={_MOVING: wave_animation(found)},
+        more=moving + how_sure(analysis.drawn, _ANSWERS),
+        pictures={_MOVING: wave_animation(analysis)},
     )
 
 
@@ -135,25 +139,27 @@ _DRAWN_TIMES = 10
 
 
 @style.drawn
-def load_line_figure(found: SkinStretchAnalysis) -> Figure:
+def load_line_figure(analysis: SkinStretchAnalysis) -> Figure:
     """An actuator's load line and the skin's, and where they meet; and its answer to a sine."""
     um, mn = 1e6, 1e3
-    tip = found.tip
+    tip = analysis.tip
     figure = style.new_figure(
         f"{um * tip.deflection:.3g} µm and {mn * tip.force:.3g} mN against the skin",
         "actuator as a solid, linear skin under one contactor alone; right: one mode",
         4.0,
     )
     left, right = figure.subplots(1, 2)
-    free = um * found.free_deflection
-    left.plot([0, free], [mn * found.blocked_force, 0], color=style.BLUE, label="actuator")
-    reach = min(free, um * found.blocked_force / found.skin.stiffness)
-    left.plot([0, reach], [0, reach * mn / um * found.skin.stiffness], color="black", label="skin")
-    _intervals(left, found, free)
+    free = um * analysis.free_deflection
+    left.plot([0, free], [mn * analysis.blocked_force, 0], color=style.BLUE, label="actuator")
+    reach = min(free, um * analysis.blocked_force / analysis.skin.stiffness)
+    left.plot(
+        [0, reach], [0, reach * mn / um * analysis.skin.stiffness], color="black", label="skin"
+    )
+    _intervals(left, analysis, free)
     left.plot(um * tip.deflection, mn * tip.force, "o", color=style.ORANGE)
     left.set(xlabel="deflection (µm)", ylabel="force (mN)", xlim=(0, None), ylim=(0, None))
     style.legend_below(left, columns=3)
-    right.plot(found.frequencies, um * np.abs(found.motion), color=style.BLUE)
+    right.plot(analysis.frequencies, um * np.abs(analysis.motion), color=style.BLUE)
     right.axvline(tip.bandwidth, color=style.ORANGE, lw=1, label="within 3 dB up to here")
     right.set(xlabel="frequency (Hz)", ylabel="deflection on the skin (µm)", xscale="log")
     style.plain_log(right.xaxis)
@@ -161,46 +167,48 @@ def load_line_figure(found: SkinStretchAnalysis) -> Figure:
     return figure
 
 
-def _intervals(axes: Axes, found: SkinStretchAnalysis, free: float) -> None:
+def _intervals(axes: Axes, analysis: SkinStretchAnalysis, free: float) -> None:
     """Between which lines the skin lies in 5 to 95 % of the draws, and how far deflection and force
     do."""
-    drawn = found.drawn.intervals
+    drawn = analysis.drawn.intervals
     if not drawn:
         return
     um, mn = 1e6, 1e3
-    low, _, high = (mn / um * one for one in drawn["skin_stiffness_N_per_m"])
+    low, _, high = (mn / um * stiffness for stiffness in drawn["skin_stiffness_N_per_m"])
     skins = ([0, free], [0, free * low], [0, free * high])
     axes.fill_between(*skins, color="black", alpha=0.12, lw=0, label="skin, 5 to 95 %")
-    x, y = um * found.tip.deflection, mn * found.tip.force
+    x, y = um * analysis.tip.deflection, mn * analysis.tip.force
     (left, _, right), (below, _, above) = drawn["deflection_on_skin_m"], drawn["force_on_skin_N"]
     across = [[max(0, y - mn * below)], [max(0, mn * above - y)]]
     along = [[max(0, x - um * left)], [max(0, um * right - x)]]
     axes.errorbar(x, y, across, along, color=style.ORANGE, capsize=3)
-    axes.set_ylim(0, 1.05 * mn * found.blocked_force)
+    axes.set_ylim(0, 1.05 * mn * analysis.blocked_force)
 
 
 @style.drawn
-def actuator_figure(found: SkinStretchAnalysis) -> Figure:
+def actuator_figure(analysis: SkinStretchAnalysis) -> Figure:
     """One actuator's cross-section, and its line of deflection: free, on the skin, and blocked."""
-    one, tip, um, mm = found.array.actuator, found.tip, 1e6, 1e3
+    actuator, tip, um, mm = analysis.array.actuator, analysis.tip, 1e6, 1e3
     figure = style.new_figure(
-        f"An actuator {mm * one.length:.3g} mm long, {mm * one.width:.3g} mm wide and "
-        f"{mm * one.thickness:.3g} mm thick",
+        f"An actuator {mm * actuator.length:.3g} mm long, {mm * actuator.width:.3g} mm wide and "
+        f"{mm * actuator.thickness:.3g} mm thick",
         "right: a slender beam clamped at 0, drawn through the tip's deflection",
         3.6,
     )
     left, right = figure.subplots(1, 2)
     layers = [
-        ("ceramic", one.ceramic_thickness, style.BLUE),
-        ("shim", one.shim_thickness, "0.55"),
-        ("ceramic", one.ceramic_thickness, style.BLUE),
+        ("ceramic", actuator.ceramic_thickness, style.BLUE),
+        ("shim", actuator.shim_thickness, "0.55"),
+        ("ceramic", actuator.ceramic_thickness, style.BLUE),
     ]
     bottom = -mm * sum(thickness for _, thickness, _ in layers) / 2
     for number, (name, thickness, colour) in enumerate(layers):
         label = name if number < 2 else None
-        left.bar(0, mm * thickness, mm * one.width, bottom, color=colour, alpha=0.55, label=label)
+        left.bar(
+            0, mm * thickness, mm * actuator.width, bottom, color=colour, alpha=0.55, label=label
+        )
         bottom += mm * thickness
-    half = mm * one.width / 2
+    half = mm * actuator.width / 2
     left.set(
         xlabel="across (mm)", ylabel="height (mm)", aspect="equal", xlim=(-1.15 * half, 1.15 * half)
     )
@@ -208,19 +216,21 @@ def actuator_figure(found: SkinStretchAnalysis) -> Figure:
     style.legend_below(left, columns=2)
     share = np.linspace(0, 1, 200)
     bent, pushed = share**2, 1.5 * share**2 - 0.5 * share**3
-    free = um * found.free_deflection
+    free = um * analysis.free_deflection
     back = {"free": 0.0, "on the skin": free - um * tip.deflection, "blocked": free}
     for (name, less), colour in zip(back.items(), (style.BLUE, style.ORANGE, "black"), strict=True):
-        right.plot(mm * one.length * share, free * bent - less * pushed, color=colour, label=name)
-    right.set(xlabel="from the clamp (mm)", ylabel=f"deflection at {found.voltage:.3g} V (µm)")
+        right.plot(
+            mm * actuator.length * share, free * bent - less * pushed, color=colour, label=name
+        )
+    right.set(xlabel="from the clamp (mm)", ylabel=f"deflection at {analysis.voltage:.3g} V (µm)")
     style.legend_below(right, columns=3)
     return figure
 
 
 @style.drawn
-def strain_figure(found: SkinStretchAnalysis) -> Figure:
+def strain_figure(analysis: SkinStretchAnalysis) -> Figure:
     """The strain along the finger at the wave's first instant, and what the contactors do."""
-    wave = found.wave
+    wave = analysis.wave
     figure = style.new_figure(
         f"A wave of {1e3 * wave.period:.3g} mm strains the skin by up to "
         f"{100 * np.max(np.abs(wave.strain)):.2g} %",
@@ -229,21 +239,21 @@ def strain_figure(found: SkinStretchAnalysis) -> Figure:
     )
     left, right = figure.subplots(1, 2)
     _strain_map(figure, left, wave, 0)
-    _contactors(right, found, 0)
+    _contactors(right, analysis, 0)
     style.legend_below(right, columns=2)
     return figure
 
 
-def _contactors(axes: Axes, found: SkinStretchAnalysis, frame: int) -> None:
+def _contactors(axes: Axes, analysis: SkinStretchAnalysis, frame: int) -> None:
     """Places of each contactor's skin, drawn larger, and which slip."""
-    slips = found.wave.slips[frame]
-    x, y = (1e3 * place for place in found.array.cradle.places)
-    moved = _DRAWN_TIMES * 1e3 * found.wave.displacements[frame]
+    slips = analysis.wave.slips[frame]
+    x, y = (1e3 * place for place in analysis.array.cradle.places)
+    moved = _DRAWN_TIMES * 1e3 * analysis.wave.displacements[frame]
     true_length: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1}
     axes.quiver(x, y, moved, np.zeros(moved.size), color=style.BLUE, width=0.006, **true_length)
     axes.plot(x[~slips], y[~slips], "o", ms=3, color="black", label="sticks")
     axes.plot(x[slips], y[slips], "o", ms=3, mfc="white", color=style.ORANGE, label="slips")
-    side = found.array.cradle.pitch_along * 1e3
+    side = analysis.array.cradle.pitch_along * 1e3
     axes.set(xlabel="along the finger (mm)", ylabel="across (mm)", aspect="equal")
     axes.set_xlim(x.min() - side, x.max() + side)
     axes.set_title(f"the skin's way under contactors, {_DRAWN_TIMES} times", fontsize="medium")
@@ -259,9 +269,9 @@ def _strain_map(figure: Figure, axes: Axes, wave: ShownWave, frame: int) -> None
 
 
 @style.drawn
-def crosstalk_figure(found: SkinStretchAnalysis) -> Figure:
+def crosstalk_figure(analysis: SkinStretchAnalysis) -> Figure:
     """Displacement of the skin with distance from the contactor that moves a neighbour most."""
-    array = found.array
+    array = analysis.array
     x, y = array.cradle.places
     shares = 100 * array.crosstalk_shares
     pulls = int(np.argmax(shares.max(axis=0)))
@@ -280,7 +290,7 @@ def crosstalk_figure(found: SkinStretchAnalysis) -> Figure:
     )
     left.set(xlabel="distance (mm)", ylabel="of its own displacement (%)", ylim=(0, None))
     style.legend_below(left, columns=2)
-    forces = 1e3 * found.seating.forces
+    forces = 1e3 * analysis.seating.forces
     drawn = right.scatter(1e3 * x, 1e3 * y, c=forces, s=60, cmap="viridis")
     figure.colorbar(drawn, ax=right, shrink=0.8)
     right.set(xlabel="along the finger (mm)", ylabel="across (mm)", aspect="equal")
@@ -288,11 +298,11 @@ def crosstalk_figure(found: SkinStretchAnalysis) -> Figure:
     return figure
 
 
-def wave_animation(found: SkinStretchAnalysis) -> bytes:
+def wave_animation(analysis: SkinStretchAnalysis) -> bytes:
     """The strain and the contactors while the texture moves past, slowed, as an animated PNG."""
     from PIL import Image
 
-    wave, frames = found.wave, []
+    wave, frames = analysis.wave, []
     for number in range(wave.times.size):
         with style.rc():
             figure = style.new_figure(
@@ -302,7 +312,7 @@ def wave_animation(found: SkinStretchAnalysis) -> bytes:
             )
             left, right = figure.subplots(1, 2)
             _strain_map(figure, left, wave, number)
-            _contactors(right, found, number)
+            _contactors(right, analysis, number)
             style.legend_below(right, columns=2)
         frames.append(Image.open(io.BytesIO(style.png(figure, 80))).convert("RGB"))
     stream = io.BytesIO()

@@ -187,15 +187,15 @@ class SkinStretchArray:
             )
         worst = float(voltages.flat[int(np.argmax(np.abs(voltages)))])
         self.actuator.require_voltage(worst)
-        slid, found = np.zeros(self.cradle.count), []
+        slid, pulls = np.zeros(self.cradle.count), []
         for row in voltages:
             wanted = self.bender.deflection_per_volt * row
             forces = held_forces(self._compliance, wanted - slid, self._held)
             left = wanted - slid - self._compliance @ forces
             # What sticks has nothing left but rounding.
             slid = slid + np.where(np.abs(forces) >= (1 - 1e-9) * self._held, left, 0.0)
-            found.append(Pull(row, forces, self.influence @ forces, self._held, slid))
-        return tuple(found)
+            pulls.append(Pull(row, forces, self.influence @ forces, self._held, slid))
+        return tuple(pulls)
 
     @functools.cached_property
     def _held(self) -> si.FloatArray:

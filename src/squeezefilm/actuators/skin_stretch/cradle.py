@@ -76,7 +76,7 @@ class FingerCradle:
                 self.radius_across,
             ),
         ):
-            shown = [si.format_quantity(one, _M) for one in (pitch, side, span)]
+            shown = [si.format_quantity(length, _M) for length in (pitch, side, span)]
             if side > pitch:
                 raise GeometryError(
                     f"contactors of {shown[1]} overlap at a pitch of {shown[0]} ({name}); make "
@@ -225,7 +225,7 @@ def radii_that_touch_all(
     def over(curvature: float) -> float:
         return force_for_all(replace(cradle, radius_across=1 / curvature), finger, tissue) - force
 
-    needed = np.array([over(one) for one in curvatures])
+    needed = np.array([over(curvature) for curvature in curvatures])
     good = np.flatnonzero(needed <= 0)
     if good.size == 0:
         best = 1 / curvatures[int(np.argmin(needed))]

@@ -62,12 +62,12 @@ def _corners(
 ) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     """∬ 1/r, ∬ x²/r³ and ∬ xy/r³ over a rectangle about the origin, seen from x, y."""
     inverse, along, mixed = (np.zeros(np.broadcast(x, y).shape) for _ in range(3))
-    for one, sign_x in ((x + length / 2, 1.0), (x - length / 2, -1.0)):
-        for other, sign_y in ((y + width / 2, 1.0), (y - width / 2, -1.0)):
-            r = np.hypot(one, other)
-            first = other * _log(one, other, r)
+    for from_x, sign_x in ((x + length / 2, 1.0), (x - length / 2, -1.0)):
+        for from_y, sign_y in ((y + width / 2, 1.0), (y - width / 2, -1.0)):
+            r = np.hypot(from_x, from_y)
+            first = from_y * _log(from_x, from_y, r)
             sign = sign_x * sign_y
-            inverse += sign * (one * _log(other, one, r) + first)
+            inverse += sign * (from_x * _log(from_y, from_x, r) + first)
             along += sign * first
             mixed -= sign * r
     return inverse, along, mixed
@@ -180,7 +180,7 @@ def _over_patch(
     total: list[si.FloatArray] = []
     for a, wa in zip(points * length / 2, weights, strict=True):
         for b, wb in zip(points * width / 2, weights, strict=True):
-            some = [wa * wb * length * width / 4 * one for one in kernel(x - a, y - b)]
+            some = [wa * wb * length * width / 4 * value for value in kernel(x - a, y - b)]
             total = [t + s for t, s in zip(total, some, strict=True)] if total else some
     return total
 

@@ -129,7 +129,9 @@ def influence_matrix(
     """
     x, y = _rows(x, y)
     # Contactors at the same distance from each other answer alike: only distances are computed.
-    apart = np.stack([np.abs(np.subtract.outer(one, one)).ravel() for one in (x, y)], axis=1)
+    apart = np.stack(
+        [np.abs(np.subtract.outer(places, places)).ravel() for places in (x, y)], axis=1
+    )
     unique, place = np.unique(np.round(apart, 12), axis=0, return_inverse=True)
     function = tissue.sinking if normal else tissue.shifts
     means = _mean_under(function, unique[:, 0], unique[:, 1], size)
@@ -149,11 +151,13 @@ def strain_matrices(
     40 000, or places that are no rows of one length.
     """
     px, py = _rows(x, y)
-    margins = [(np.ptp(one) + 2 * side) / cell for one, side in ((px, size[0]), (py, size[1]))]
+    margins = [
+        (np.ptp(places) + 2 * side) / cell for places, side in ((px, size[0]), (py, size[1]))
+    ]
     si.require("number of cells", float(np.prod(np.ceil(margins))), at_most=40_000)
     edges = [
-        (np.arange(int(np.ceil(n)) + 1) - np.ceil(n) / 2) * cell + (one.min() + one.max()) / 2
-        for n, one in zip(margins, (px, py), strict=True)
+        (np.arange(int(np.ceil(n)) + 1) - np.ceil(n) / 2) * cell + (places.min() + places.max()) / 2
+        for n, places in zip(margins, (px, py), strict=True)
     ]
     at_x, at_y = np.meshgrid(*edges, indexing="ij")
     u, v = (
