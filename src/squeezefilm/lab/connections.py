@@ -222,7 +222,7 @@ class Playing:
     def message(self) -> Message:
         """Message that a page gets."""
         now = [
-            {"key": key, "text": one.text, "plays": one.plays} for key, one in self._held.items()
+            {"key": key, "text": held.text, "plays": held.plays} for key, held in self._held.items()
         ]
         return {"type": "playing", "now": now}
 

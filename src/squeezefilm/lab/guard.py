@@ -170,11 +170,13 @@ class Guard:
         return None
 
     def _session(self, headers: Headers) -> Session | None:
-        found = self.keys.session(cookie_parser(headers.get("cookie", "")).get(self.places.cookie))
-        if found is not None and self.places.participants_only and found.role != "participant":
+        session = self.keys.session(
+            cookie_parser(headers.get("cookie", "")).get(self.places.cookie)
+        )
+        if session is not None and self.places.participants_only and session.role != "participant":
             self.refusals["role"] += 1
             return None
-        return found
+        return session
 
     def _entering(self, scope: Scope, headers: Headers) -> Response | None:
         if scope["type"] != "http" or scope["path"] != "/" or scope["method"] != "GET":

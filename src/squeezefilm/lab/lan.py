@@ -191,18 +191,18 @@ def _fingerprint_of(file: Path, address: str, until: datetime.datetime) -> str |
         return None
     try:
         content = read_regular(file, OWN_BYTES, "a certificate")
-        found = x509.load_pem_x509_certificate(content)
-        names = found.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
+        certificate = x509.load_pem_x509_certificate(content)
+        names = certificate.extensions.get_extension_for_class(x509.SubjectAlternativeName).value
         # That key and certificate belong together is checked by loading them as TLS does.
         ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER).load_cert_chain(file)
     except (ValueError, OSError, x509.ExtensionNotFound):
         return None
     fits = ipaddress.ip_address(address) in names.get_values_for_type(x509.IPAddress)
-    if not fits or found.not_valid_after_utc < until:
+    if not fits or certificate.not_valid_after_utc < until:
         return None
     from cryptography.hazmat.primitives.serialization import Encoding
 
-    return _spaced(found.public_bytes(Encoding.DER))
+    return _spaced(certificate.public_bytes(Encoding.DER))
 
 
 def _spaced(certificate_bytes: bytes) -> str:

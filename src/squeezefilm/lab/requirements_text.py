@@ -70,7 +70,7 @@ def asked_of(text: str, folder: Path) -> dict[str, Any]:
             }
             for criterion in map(criterion_of, asked.objectives)
         ],
-        "limits": [one.limit_said(bound) for one, bound in bounded(asked.limits)],
+        "limits": [criterion.limit_said(bound) for criterion, bound in bounded(asked.limits)],
         "shapes": [
             {"name": space.shape, "chosen": [free.name.replace("_", " ") for free in space.free]}
             for space in asked.spaces

@@ -35,14 +35,16 @@ _ALL_WORDS = 40
 """Reasons that are told of one kind; the first are those of most designs."""
 
 
-def plate(requirements: Requirements, one: Evaluated, made: Made | None = None) -> dict[str, Any]:
+def plate(
+    requirements: Requirements, evaluated: Evaluated, made: Made | None = None
+) -> dict[str, Any]:
     """A plate: name, shape and objectives (SI), what was chosen and what it does in words."""
-    design, space = one.design, requirements.spaces[one.design.shape]
+    design, space = evaluated.design, requirements.spaces[evaluated.design.shape]
     chosen = []
     for variable in space:
         words = setting_words(variable, design, requirements)
         chosen.append([variable.name.replace("_", " "), words])
-    objectives = one.objectives(requirements.objectives)
+    objectives = evaluated.objectives(requirements.objectives)
     return {
         "name": design.address,
         "shape": space.shape,
@@ -51,11 +53,11 @@ def plate(requirements: Requirements, one: Evaluated, made: Made | None = None) 
             criterion_of(name).shown(value)
             for name, value in zip(requirements.objectives, objectives, strict=True)
         ],
-        "numbers": numbers(one),
+        "numbers": numbers(evaluated),
         "chosen": chosen,
         "design": {"shape": design.shape, "values": design.settings},
         "yield": None if made is None else made.kept,
-        "warnings": list(one.warnings),
+        "warnings": list(evaluated.warnings),
     }
 
 
@@ -98,28 +100,28 @@ def reference(requirements: Requirements, candidate: Evaluated | None) -> dict[s
     }
 
 
-def result(found: DesignSearch) -> dict[str, Any]:
+def result(search: DesignSearch) -> dict[str, Any]:
     """Message of what a search found, or of what it had when it was stopped: the front, the plate
     that it would build, what each limit costs, the empty corners, what it rests on."""
-    asked, chosen = found.requirements, found.chosen
+    asked, chosen = search.requirements, search.chosen
     return {
-        "screened": len(found.screened),
-        "solved": found.plates_solved,
-        "front": [plate(asked, member.evaluated, member.made) for member in found.front],
-        "reference": reference(asked, found.reference),
+        "screened": len(search.screened),
+        "solved": search.plates_solved,
+        "front": [plate(asked, member.evaluated, member.made) for member in search.front],
+        "reference": reference(asked, search.reference),
         "chosen": None if chosen is None else chosen.name,
-        "beats": [member.name for member in found.beats_reference],
-        "plates_better": found.plates_better,
+        "beats": [member.name for member in search.beats_reference],
+        "plates_better": search.plates_better,
         "limits": [
-            limit_in_words(limit, len(found.screened)) for limit in found.limits if limit.broken
+            limit_in_words(limit, len(search.screened)) for limit in search.limits if limit.broken
         ],
-        "corners": [corner_in_words(corner) for corner in found.corners[:_ALL_WORDS]],
-        "hypervolume": found.hypervolume,
-        "ranks": {criterion_of(key).said: value for key, value in found.ranks.items()},
+        "corners": [corner_in_words(corner) for corner in search.corners[:_ALL_WORDS]],
+        "hypervolume": search.hypervolume,
+        "ranks": {criterion_of(key).said: value for key, value in search.ranks.items()},
         "assumed": list(asked.assumed),
-        "computed": found.computed,
-        "kept": found.kept,
-        "stopped": found.stopped,
+        "computed": search.computed,
+        "kept": search.kept,
+        "stopped": search.stopped,
     }
 
 
@@ -244,10 +246,10 @@ def _found(
         with stop.held():
             tell({"type": "search found", "left": left, **glimpse(requirements, seen)})
 
-    found, stopped = search_until_stopped(
+    search, stopped = search_until_stopped(
         SearchRequest(requirements, out=out, progress=say, watch=watch, **how)
     )
-    return {"failed": False, "message": _ending(stopped), "result": result(found)}
+    return {"failed": False, "message": _ending(stopped), "result": result(search)}
 
 
 def _ending(stopped: str) -> str:

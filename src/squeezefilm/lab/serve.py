@@ -67,17 +67,17 @@ def _serve(
     listener: socket.socket,
     opened: contextlib.ExitStack,
 ) -> None:
-    found = int(listener.getsockname()[1])
-    hosts = frozenset({f"127.0.0.1:{found}", f"localhost:{found}"})
-    keys = Keys(folder / f".lab-{found}.keys")
-    lab = Lab(folder, keys, Places(hosts, cookie=f"squeezefilm-{found}"))
+    bound = int(listener.getsockname()[1])
+    hosts = frozenset({f"127.0.0.1:{bound}", f"localhost:{bound}"})
+    keys = Keys(folder / f".lab-{bound}.keys")
+    lab = Lab(folder, keys, Places(hosts, cookie=f"squeezefilm-{bound}"))
     DesignArea(lab)
     SearchArea(lab)
     FeelArea(lab)
     StudyArea(lab)
     DeviceArea(lab)
-    link = f"http://127.0.0.1:{found}/?token={keys.new_link()}"
-    secret = folder / f".lab-{found}.pem"
+    link = f"http://127.0.0.1:{bound}/?token={keys.new_link()}"
+    secret = folder / f".lab-{bound}.pem"
     most = room_for(1 if lan is None else 2)
     servers = [(server_of(lab, door=partial(Door, most=most)), listener)]
     if lan is not None:
@@ -90,8 +90,8 @@ def _serve(
     try:
         with _ended_by_signals(servers[0][0]):
             say(f"squeezefilm lab: {link}")
-            if found != port:
-                say(f"port {port} was taken; this one is {found}")
+            if bound != port:
+                say(f"port {port} was taken; this one is {bound}")
             say(f"the link works once; files are saved in {folder.resolve()}; stop with Ctrl-C")
             if lab.lan is not None:
                 say(f"tablets, participants only: {lab.lan.link}")
@@ -118,15 +118,15 @@ def _ended_by_signals(server: UnheardServer) -> Iterator[None]:
     try:
         yield
     finally:
-        for one, handler in before:
-            signal.signal(one, handler)
+        for number, handler in before:
+            signal.signal(number, handler)
 
 
 async def _run(servers: list[tuple[UnheardServer, socket.socket]]) -> None:
     """Run the first server until it is told to exit, and the others as long."""
     (first, listener), *others = servers
-    beside = [asyncio.create_task(one.serve(sockets=[at])) for one, at in others]
+    beside = [asyncio.create_task(server.serve(sockets=[at])) for server, at in others]
     await first.serve(sockets=[listener])
-    for one, _ in others:
-        one.should_exit = True
+    for server, _ in others:
+        server.should_exit = True
     await asyncio.gather(*beside)

@@ -205,7 +205,7 @@ class Busy:
         )
         alarm = loop.call_later(self._longest, self._end, job, late)
         try:
-            worked, found = await loop.run_in_executor(None, process.ask, work, arguments, told)
+            worked, answer = await loop.run_in_executor(None, process.ask, work, arguments, told)
         except EOFError as error:
             self._process = None if self._process is process else self._process
             raise job.ended_because or SqueezefilmError(
@@ -214,8 +214,8 @@ class Busy:
         finally:
             alarm.cancel()
         if not worked:
-            raise found
-        result: T = found
+            raise answer
+        result: T = answer
         return result
 
     def _end(self, job: _Job, why: Exception) -> None:

@@ -157,7 +157,7 @@ def _watched(
     heard = talk.listen_for(duration, KEEP_ALIVE)
     talk.ask(m.Report(0))
     talk.ask(m.Stop())
-    came = [one.message for one in heard if isinstance(one.message, m.Reading)]
+    came = [told.message for told in heard if isinstance(told.message, m.Reading)]
     if not any(reading.touching for reading in came):
         return None
     stamps = np.array([reading.time for reading in came], dtype=np.int64)

@@ -69,14 +69,14 @@ def _middle_pass(way: PlayedWay) -> si.FloatArray:
 
 def _turns(way: PlayedWay) -> si.FloatArray:
     """Places where the finger turns: the ends of a lazy follower's moves of more than 1 mm."""
-    found, extreme, at, rising = [], float(way.x[0]), 0, True
+    turns, extreme, at, rising = [], float(way.x[0]), 0, True
     for k, x in enumerate(way.x.tolist()):
         if (x >= extreme) if rising else (x <= extreme):
             extreme, at = x, k
         elif abs(x - extreme) > 1e-3:
-            found.append(at)
+            turns.append(at)
             extreme, at, rising = x, k, not rising
-    return np.array(found, dtype=np.int64)
+    return np.array(turns, dtype=np.int64)
 
 
 @style.drawn
@@ -130,25 +130,25 @@ def lateness(session: PlayedSession) -> Figure:
     said = session.last("loop").get("lateness")
     if not said or not said["made"]:
         return style.message_figure("The loop could not say how late it was", "It made no tick.")
-    found = Lateness.from_json(said)
-    due = found.made + found.lost
-    lost = f"{100 * found.lost / max(due, 1):.2g} % of {due} ticks were lost"
-    if not found.lost:
+    ticks = Lateness.from_json(said)
+    due = ticks.made + ticks.lost
+    lost = f"{100 * ticks.lost / max(due, 1):.2g} % of {due} ticks were lost"
+    if not ticks.lost:
         lost = f"None of {due} ticks was lost"
     figure = style.new_figure(
-        f"{lost}; half are made within {shown(found.p50, S, 2)}, 99.9 % within "
-        f"{shown(found.p99_9, S, 2)}",
-        f"loop at {shown(found.rate, HZ, 3)}; a tick is lost when the next is due before it began",
+        f"{lost}; half are made within {shown(ticks.p50, S, 2)}, 99.9 % within "
+        f"{shown(ticks.p99_9, S, 2)}",
+        f"loop at {shown(ticks.rate, HZ, 3)}; a tick is lost when the next is due before it began",
         3.8,
     )
     left, right = figure.subplots(1, 2)
     # The first class, whatever is below 100 ns, is drawn as wide as the next.
     ends = 1e6 * class_ends()[:-1]
     edges = np.concatenate([[ends[0] ** 2 / ends[1]], ends])
-    left.stairs(found.counts[:-1], edges, fill=True, color=style.BLUE)
-    used = np.flatnonzero(found.counts[:-1])
-    left.set_xlim(edges[max(int(used[0]) - 2, 0)], max(2e6 / found.rate, 1.5 * edges[used[-1] + 1]))
-    left.axvline(1e6 / found.rate, **style.REFERENCE, label="a period")
+    left.stairs(ticks.counts[:-1], edges, fill=True, color=style.BLUE)
+    used = np.flatnonzero(ticks.counts[:-1])
+    left.set_xlim(edges[max(int(used[0]) - 2, 0)], max(2e6 / ticks.rate, 1.5 * edges[used[-1] + 1]))
+    left.axvline(1e6 / ticks.rate, **style.REFERENCE, label="a period")
     left.set(xscale="log", yscale="log", xlabel="lateness (µs)", ylabel="ticks")
     left.set_ylim(0.7, None)
     style.plain_log(left.xaxis, left.yaxis)

@@ -118,13 +118,15 @@ class DesignArea:
                 self._lab.pages[page].say(as_text(line))
 
         if asked.quality == "band":
-            found = await slow.do("band", design.banded, point, asked.of, gives_way=True, told=told)
-            return {"type": "band", **found}
+            answer = await slow.do(
+                "band", design.banded, point, asked.of, gives_way=True, told=told
+            )
+            return {"type": "band", **answer}
         worker, hears = (quick, None) if asked.quality == "screening" else (slow, told)
-        found = await worker.do(
+        answer = await worker.do(
             asked.quality, design.designed, point, asked.quality, gives_way=True, told=hears
         )
-        return {"type": "design", **found}
+        return {"type": "design", **answer}
 
     async def _cancel(self, _: Request) -> Answer:
         self._lab.workers.cancel(PAGE.get(None))

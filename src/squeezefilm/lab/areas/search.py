@@ -66,7 +66,7 @@ class _Search:
     began: si.Second = field(default_factory=time.monotonic)
     took: si.Second | None = None
     says: str = "starting"
-    found: dict[str, Any] = field(default_factory=dict)
+    known: dict[str, Any] = field(default_factory=dict)
     stopping: bool = False
     end: dict[str, Any] | None = None
 
@@ -79,7 +79,7 @@ class _Search:
             "says": self.says,
             "stopping": self.stopping,
             "end": self.end,
-            **self.found,
+            **self.known,
         }
 
 
@@ -159,13 +159,13 @@ class SearchArea:
                 self._tell_pages()
         return {"type": "stopping"}
 
-    def _end(self, one: _Search) -> None:
-        if one is self._search and one.end is None:
+    def _end(self, search: _Search) -> None:
+        if search is self._search and search.end is None:
             self.process.kill()
 
     async def _open(self, asked: OpenFound) -> Answer:
         running = self._search
-        front = [] if running is None else running.found.get("front", [])
+        front = [] if running is None else running.known.get("front", [])
         design = next((plate["design"] for plate in front if plate["name"] == asked.name), None)
         if running is None or design is None:
             raise InputError(f"no plate {asked.name} is on the front; search again")
@@ -178,19 +178,19 @@ class SearchArea:
 
     def _told(self, message: dict[str, Any]) -> None:
         """The process said something."""
-        one, kind = self._search, message.pop("type")
-        if one is None:
+        search, kind = self._search, message.pop("type")
+        if search is None:
             return
         if kind == "search says":
-            one.says, one.found["left"] = message["text"], ""
+            search.says, search.known["left"] = message["text"], ""
             self._lab.tell({"type": kind, **message})
             return
         if kind == SearchProcess.ended:
-            one.took = time.monotonic() - one.began
-            one.found |= message.pop("result", {})
-            one.end, one.says = message, message["message"]
+            search.took = time.monotonic() - search.began
+            search.known |= message.pop("result", {})
+            search.end, search.says = message, message["message"]
         else:
-            one.found |= message
+            search.known |= message
         self._tell_pages()
 
     def _message(self) -> Answer:

@@ -197,7 +197,7 @@ class StudyArea:
 
     def _left(self, page: WebSocket) -> None:
         # Nobody is there to feel it, or to stop it.
-        for sitting in [sitting for sitting, one in self._pages.items() if one is page]:
+        for sitting in [sitting for sitting, holder in self._pages.items() if holder is page]:
             del self._pages[sitting]
             self._devices.halt(sitting)
 
@@ -229,8 +229,8 @@ class StudyArea:
 
     async def _ultrasound(self, asked: OfParticipant) -> Answer:
         display = await self.thread.do(Studies.display_of, asked.study, asked.participant)
-        found = await self._exposed(display)
-        return {"type": "exposure", "display": display, "statement": found.statement}
+        exposure = await self._exposed(display)
+        return {"type": "exposure", "display": display, "statement": exposure.statement}
 
     async def _prepare(self, asked: PrepareSitting) -> Answer:
         display = await self.thread.do(Studies.display_of, asked.study, asked.participant)

@@ -154,15 +154,15 @@ def edited(text: str, path: str, value: str) -> str:
         name = str(document["name"])
         if path != "name" and tomlkit.dumps(document) != text and name in presets.display_names():
             document["name"] = name + EDITED
-        found = tomlkit.dumps(document)
+        written_text = tomlkit.dumps(document)
     except InputError:
         raise
     except (TOMLKitError, KeyError, IndexError, ValueError, TypeError) as error:
         raise InputError(
             f"'{path}' cannot be changed here ({error}); edit the TOML text"
         ) from error
-    display_of(found)
-    return found
+    display_of(written_text)
+    return written_text
 
 
 def write_value(document: Any, rows: dict[str, dict[str, Any]], path: str, written: Any) -> None:
@@ -300,9 +300,9 @@ def stretched(text: str, path: str) -> str:
         for name, value in ((axis, start), (size, end - start)):
             written = si.typed_quantity(value, _METRE, digits=9)
             write_value(document, rows, f"actuator.patches.{number}.{name}", written)
-    found = tomlkit.dumps(document)
-    display_of(found)
-    return found
+    stretched_text = tomlkit.dumps(document)
+    display_of(stretched_text)
+    return stretched_text
 
 
 def _edges(patch: object, axis: str, size: str) -> tuple[si.Metre, si.Metre]:

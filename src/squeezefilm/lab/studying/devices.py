@@ -52,7 +52,7 @@ class Measured:
     """A `StudyDevice` that was identified and verified already; it plays nothing."""
 
     who: DeviceIdentity
-    found: DeviceVerification
+    verification: DeviceVerification
 
     def identity(self) -> DeviceIdentity:
         """Identity of the device."""
@@ -60,7 +60,7 @@ class Measured:
 
     def verify_device(self) -> DeviceVerification:
         """Verification that was measured just now."""
-        return self.found
+        return self.verification
 
     def present(self, stimulus: Stimulus, seed: int) -> None:
         """Refused: this is only what was measured."""

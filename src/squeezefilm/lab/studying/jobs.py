@@ -28,18 +28,18 @@ def analysis_of(path: Path) -> dict[str, Any]:
         "displays": [
             {
                 "display": display,
-                "numbers": [list(row) for row in key_rows(one)],
-                "first": read_first(one),
-                "notes": list(one.notes),
-                "methods": one.methods,
-                **_tables(display, one),
+                "numbers": [list(row) for row in key_rows(analysis)],
+                "first": read_first(analysis),
+                "notes": list(analysis.notes),
+                "methods": analysis.methods,
+                **_tables(display, analysis),
                 "figures": [
                     {"title": title, "png": base64.b64encode(png(figure)).decode()}
-                    for key, (title, figure) in study_figures(one).items()
+                    for key, (title, figure) in study_figures(analysis).items()
                     if key != "confusion"
                 ],
             }
-            for display, one in analyses.items()
+            for display, analysis in analyses.items()
         ],
     }
 

@@ -101,7 +101,7 @@ def confusion_counts(store: StudyStore) -> list[dict[str, Any]]:
     if design.task != "match-to-sample":
         return []
     rows, columns = list(design.answers), [stimulus.name for stimulus in design.stimuli]
-    found = store.rows(
+    counted = store.rows(
         "SELECT t.display, t.stimuli, r.choice, count(*) AS n FROM response r "
         "JOIN trial t ON t.uuid = r.trial WHERE t.phase = 'main' "
         f"AND {COUNTED} GROUP BY t.display, t.stimuli, r.choice"
@@ -109,7 +109,7 @@ def confusion_counts(store: StudyStore) -> list[dict[str, Any]]:
     tables = []
     for display in design.displays:
         counts = [[0] * len(columns) for _ in rows]
-        for row in found:
+        for row in counted:
             stimulus = row["stimuli"][2:-2]
             if row["display"] == display and row["choice"] in rows and stimulus in columns:
                 counts[rows.index(row["choice"])][columns.index(stimulus)] += row["n"]

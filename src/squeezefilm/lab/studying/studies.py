@@ -222,32 +222,32 @@ class Studies:
         if sitting.session is None or sitting.ended:
             return self.where(id)
         run = self.run(sitting)
-        found = run.next_trial(shown=False)
-        if found is None:
+        following = run.next_trial(shown=False)
+        if following is None:
             return self.where(id)
-        trial = found.trial
-        virtual = isinstance(found.surfaces[0], Stimulus)
+        trial = following.trial
+        virtual = isinstance(following.surfaces[0], Stimulus)
         felt_only = trial.phase == "familiarisation"
         if sitting.device == "none":
-            self.by_hand.comes_next(id, tuple(surface.name for surface in found.surfaces))
+            self.by_hand.comes_next(id, tuple(surface.name for surface in following.surfaces))
         return {
             "study": sitting.study,
             "state": "trial",
-            "token": found.token,
+            "token": following.token,
             "phase": "practice"
             if trial.phase == "practice"
             else trial.phase.replace("catch", "main"),
             "question": self.store(sitting.study).design.spoken_question,
             "alternatives": list(trial.alternatives),
             "numeric": trial.asks and not trial.alternatives,
-            "surfaces": len(found.surfaces),
+            "surfaces": len(following.surfaces),
             "plays": sitting.device != "none" and virtual,
             "by_hand": sitting.device == "none" and virtual,
             # A real grating that lies there to be known has its name on it.
-            "named": found.surfaces[0].name if felt_only else "",
-            "pause_s": found.rest,
-            "remaining": found.remaining,
-            "interrupted": found.times_presented > 1,
+            "named": following.surfaces[0].name if felt_only else "",
+            "pause_s": following.rest,
+            "remaining": following.remaining,
+            "interrupted": following.times_presented > 1,
         }
 
     def asked_to_feel(self, id: str, token: str, place: int) -> Felt:

@@ -171,8 +171,8 @@ class _Levels(Message):
         *numbers, count = cls.LAYOUT.unpack_from(payload)
         if not 1 <= count <= MOST_LEVELS or len(payload) != size + 4 * count:
             return None
-        found = *numbers, struct.unpack_from(f"<{count}f", payload, size)
-        return cls(*found)
+        values = *numbers, struct.unpack_from(f"<{count}f", payload, size)
+        return cls(*values)
 
 
 @_message(0x07)

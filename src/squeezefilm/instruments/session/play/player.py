@@ -286,8 +286,8 @@ class Player:
     def _sensed(self, sensor: Sensor) -> list[tuple[float, ...]]:
         samples: list[tuple[float, ...]] = []
         reported = self._reported(self._last)
-        while (one := sensor.read()) is not None and len(samples) < 1000:
-            samples.append((one.time, one.x, one.y, float(one.touching), *reported))
+        while (sample := sensor.read()) is not None and len(samples) < 1000:
+            samples.append((sample.time, sample.x, sample.y, float(sample.touching), *reported))
         return samples
 
     def _changed(self, reading: Reading, stamp: si.Second) -> None:

@@ -154,7 +154,7 @@ class _Found:
 
 
 def _trace(data: bytes | mmap.mmap, tell: ShareProgress | None) -> Trace:
-    found, told = _Found(), 0
+    content, told = _Found(), 0
 
     def looked_at(place: int) -> None:
         nonlocal told
@@ -164,25 +164,25 @@ def _trace(data: bytes | mmap.mmap, tell: ShareProgress | None) -> Trace:
 
     for part in file.blocks(data, looked_at):
         if isinstance(part, file.Gap):
-            found.lost_bytes += part.end - part.start
-            found.gaps.append(part)
-        elif part.number < found.next_number:
-            found.misread += 1
+            content.lost_bytes += part.end - part.start
+            content.gaps.append(part)
+        elif part.number < content.next_number:
+            content.misread += 1
         else:
-            found.lost_blocks += part.number - found.next_number
-            found.next_number = part.number + 1
-            _take(found, part, data)
-    metadata = found.metadata or {}
-    columns = _columns(metadata, found)
-    kept = [table for table in found.tables if table[2] == len(columns)]
-    found.misread += len(found.tables) - len(kept)
+            content.lost_blocks += part.number - content.next_number
+            content.next_number = part.number + 1
+            _take(content, part, data)
+    metadata = content.metadata or {}
+    columns = _columns(metadata, content)
+    kept = [table for table in content.tables if table[2] == len(columns)]
+    content.misread += len(content.tables) - len(kept)
     rows = np.empty((sum(count for _, count, _ in kept), len(columns)))
     at = 0
     for start, count, width in kept:
         values = np.frombuffer(data[start : start + 8 * count * width], dtype="<f8")
         rows[at : at + count] = values.reshape(count, width)
         at += count
-    return Trace(columns, rows, tuple(found.events), metadata, _damage(found, data))
+    return Trace(columns, rows, tuple(content.events), metadata, _damage(content, data))
 
 
 def _take(content: _Found, block: file.Block, data: bytes | mmap.mmap) -> None:
