@@ -106,10 +106,10 @@ def _drawn(
     """The friction of draws at places, shape (draws, places), NaN where a draw is refused."""
     drawn = np.full((len(points), len(over)), np.nan)
     for row, outcome, draw in zip(drawn, outcomes.tolist(), mixture.draws(points), strict=True):
-        found = Outcome(*outcome)
-        if np.isfinite(found.friction):
+        pressed = Outcome(*outcome)
+        if np.isfinite(pressed.friction):
             with contextlib.suppress(SqueezefilmError):
-                row[:] = _met(mixture.law(draw), found, over)
+                row[:] = _met(mixture.law(draw), pressed, over)
     return drawn
 
 
@@ -139,9 +139,9 @@ def _met(law: FrictionLaw, outcome: Outcome, over: list[_Elsewhere | None]) -> l
     tied = outcome.friction - float(law.friction_in("own", np.array([outcome.amplitude]))[0])
     means = (
         outcome.friction - tied
-        if one is None
-        else float(law.ridge_friction(outcome.amplitude * one.swings) @ one.shares)
-        for one in over
+        if place is None
+        else float(law.ridge_friction(outcome.amplitude * place.swings) @ place.shares)
+        for place in over
     )
     return [min(max(mean + tied, 0.0), 1.0) for mean in means]
 

@@ -205,11 +205,13 @@ def wavelength_curves(prediction: Prediction) -> tuple[WavelengthCurve, ...]:
     )
     amplitude = np.linspace(0.0, 4e-6, 121)
     asymptote = p.law.by("paper2008")
-    found = []
+    curves = []
     for half, at in zip(PAPER_HALF_WAVELENGTHS, needed, strict=True):
         law = dataclasses.replace(asymptote, half_wavelength=half)
-        found.append(WavelengthCurve(half, amplitude, law.curve(amplitude), float(at), "paper2008"))
-    return tuple(found)
+        curves.append(
+            WavelengthCurve(half, amplitude, law.curve(amplitude), float(at), "paper2008")
+        )
+    return tuple(curves)
 
 
 # The cheap ones finely.

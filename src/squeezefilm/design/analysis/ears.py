@@ -169,9 +169,9 @@ def moving_surface(display: Display, prediction: Prediction) -> RadiatingSurface
             min(2 * p.mode.half_wavelength, _AIR / p.frequency),
         )
     if isinstance(actuator, DiscPlate):
-        found = ring_body(actuator).mode()
-        shape = found.surface_shape / np.max(np.abs(found.surface_shape))
-        radius = np.linspace(found.surface_radius[0], found.surface_radius[-1], 81)
-        line = np.interp(radius, found.surface_radius, shape)
-        return ring_surface(radius, 1j * omega * free * line, found.harmonic, p.frequency)
+        mode = ring_body(actuator).mode()
+        shape = mode.surface_shape / np.max(np.abs(mode.surface_shape))
+        radius = np.linspace(mode.surface_radius[0], mode.surface_radius[-1], 81)
+        line = np.interp(radius, mode.surface_radius, shape)
+        return ring_surface(radius, 1j * omega * free * line, mode.harmonic, p.frequency)
     return None

@@ -129,12 +129,12 @@ def felt_gratings(
     for speed in speeds:
         law = functools.partial(described, speed=speed)
         nominal.append(_finest(senses, tau, p.vibration_amplitude, law, Rubbed(base, pad, speed)))
-    found, why = (None, "no draws were asked for")
+    drawn, why = (None, "no draws were asked for")
     if draws and p.touch.law is not None:
-        found, why = _drawn(display, p, senses, speeds, draws)
+        drawn, why = _drawn(display, p, senses, speeds, draws)
     rows = []
     for k, speed in enumerate(speeds):
-        column = None if found is None else found[:, k]
+        column = None if drawn is None else drawn[:, k]
         low, _, high = (np.nan,) * 3 if column is None else ends(column)
         rows.append(
             FeltAt(
@@ -145,7 +145,7 @@ def felt_gratings(
                 None if column is None else float(np.mean(np.isinf(column))),
             )
         )
-    count = 0 if found is None else draws
+    count = 0 if drawn is None else draws
     return FeltGratings(
         senses.name, senses.detection_criterion, tuple(rows), p.speed, LEVEL, count, why
     )
@@ -171,11 +171,11 @@ def _drawn(
     mixture = mixture_of(display, p)
     points = sobol_points(mixture, count, seed=1)
     make = functools.partial(_felt_of_draws, mixture, points, senses, speeds)
-    found = _KEPT.found(mixture, points, (senses, speeds), make)
-    lost = float(np.mean(np.isnan(found[:, 0])))
+    periods = _KEPT.found(mixture, points, (senses, speeds), make)
+    lost = float(np.mean(np.isnan(periods[:, 0])))
     if lost > MOST_REFUSED:
         return None, f"{lost:.1%} of the draws are refused, more than {MOST_REFUSED:.0%}"
-    return found, ""
+    return periods, ""
 
 
 @as_drawn()
@@ -187,15 +187,15 @@ def _felt_of_draws(
 ) -> si.MetreArray:
     """The finest period felt (m) of each draw at each speed, shape (draws, speeds), infinite where
     none is, NaN where the draw is refused."""
-    found = np.full((len(points), len(speeds)), np.nan)
+    periods = np.full((len(points), len(speeds)), np.nan)
     for number, draw in enumerate(mixture.draws(points)):
         try:
             high = mixture.outcome(points[number], draw).amplitude
             rest = _rest_friction_factor(mixture, draw, points[number])
-            found[number] = _felt_of(mixture, draw, high, senses, speeds, rest)
+            periods[number] = _felt_of(mixture, draw, high, senses, speeds, rest)
         except SqueezefilmError:
             continue
-    return found
+    return periods
 
 
 def _rest_friction_factor(

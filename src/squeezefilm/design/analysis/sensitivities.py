@@ -233,11 +233,11 @@ class _Bench:
                 self.glued = CoarseShifts(actuator, p.mode)
                 self.model += ", with another glue by the solid on its coarse mesh"
 
-    def shift(self, one: _Changed, value: float) -> Shift:
+    def shift(self, change: _Changed, value: float) -> Shift:
         """Effect of one value in the place of the described one."""
-        path = one.parameter.path
+        path = change.parameter.path
         if path.startswith("actuator."):
-            return self._of_plate(one.make(self.display, value), path, value)
+            return self._of_plate(change.make(self.display, value), path, value)
         try:
             return Shift(value, 0.0, 0.0, self._outcome({path: value}))
         except SqueezefilmError as error:

@@ -185,16 +185,16 @@ def sealed_already(file: Path, display: Display) -> BlindPrediction | None:
     """
     if not file.exists():
         return None
-    found, own = load_prediction(file), stamp(display)
+    sealed, own = load_prediction(file), stamp(display)
     for key, what in (
         ("config_sha256", "another description"),
         ("squeezefilm_version", "another version of squeezefilm"),
     ):
-        if found.stamp.get(key) != own[key]:
+        if sealed.stamp.get(key) != own[key]:
             raise InputError(
                 f"{file} is a prediction of {what}, and is never overwritten; name another folder"
             )
-    return found
+    return sealed
 
 
 def _why_not_drawn(display: Display, prediction: Prediction) -> str:

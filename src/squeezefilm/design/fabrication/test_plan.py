@@ -123,9 +123,12 @@ def _band(known: Known) -> str:
     half = mode.resonance_frequency / (2 * mode.quality_factor)
     low, high = (mode.resonance_frequency + side * _BAND * half for side in (-1, 1))
     # As far as the resonance may lie, the band goes along.
-    for one in known.expected:
-        if one.answer in ("resonance_frequency", "parallel_resonance_frequency"):
-            low, high = min(low, one.interval[0] - 2 * half), max(high, one.interval[1] + 2 * half)
+    for predicted in known.expected:
+        if predicted.answer in ("resonance_frequency", "parallel_resonance_frequency"):
+            low, high = (
+                min(low, predicted.interval[0] - 2 * half),
+                max(high, predicted.interval[1] + 2 * half),
+            )
     points = max(_POINTS, 8 * math.ceil((high - low) / half))
     ends = " to ".join(si.format_quantity(end, _HZ, 4) for end in (low, high))
     return f"from {ends} in {points} points"
@@ -309,14 +312,16 @@ def _strokes(known: Known) -> TestStep:
             "zero-to-peak" if ends is None else _OF_DRAWS,
         ),
     ]
-    for one in known.expected:
-        if one.answer == FRICTION:
-            amplitude = one.conditions["vibration_amplitude"]
+    for predicted in known.expected:
+        if predicted.answer == FRICTION:
+            amplitude = predicted.conditions["vibration_amplitude"]
             here = math.isclose(amplitude, p.vibration_amplitude, rel_tol=1e-3)
             what = f"µ′/µ at {si.format_quantity(amplitude, _M, 3)}"
             value = p.relative_friction if here else p.law.at(amplitude)
-            under = tuple(one.conditions.items())
-            checks.append(Check(what, FRICTION, "1", float(value), one.interval, one.level, under))
+            under = tuple(predicted.conditions.items())
+            checks.append(
+                Check(what, FRICTION, "1", float(value), predicted.interval, predicted.level, under)
+            )
     if not any(predicted.answer == FRICTION for predicted in known.expected):
         ends = None if unsure is None else unsure.interval
         checks.append(Check("µ′/µ", FRICTION, "1", p.relative_friction, ends, level))

@@ -62,7 +62,7 @@ def electrodes_of(actuator: Actuator, parts: Sequence[Part] | None = None) -> tu
 
 
 def _of_plate(plate: RectangularPlate) -> tuple[Electrode, ...]:
-    found, shunts = [], 0
+    electrodes, shunts = [], 0
     for number, patch in enumerate(plate.patches, 1):
         connection = IN_PHASE if patch.polarity > 0 else ANTIPHASE
         if patch.electrode == "shunted":
@@ -71,7 +71,7 @@ def _of_plate(plate: RectangularPlate) -> tuple[Electrode, ...]:
         elif patch.electrode != "driven":
             connection = {"shorted": GROUND, "open": OPEN}[patch.electrode]
         where = Rectangle(patch.x, patch.y, patch.length, patch.width)
-        found.append(
+        electrodes.append(
             Electrode(
                 f"E{number}",
                 number,
@@ -83,7 +83,7 @@ def _of_plate(plate: RectangularPlate) -> tuple[Electrode, ...]:
                 patch.shunt_resistance,
             )
         )
-    return tuple(found)
+    return tuple(electrodes)
 
 
 @dataclass(frozen=True)

@@ -141,10 +141,10 @@ def solve_film(
                 f"a gap of one's own is solved under a strip, not under a {shape}; leave the shape "
                 "out, or give an excursion ratio"
             )
-        found = solve_profile(squeeze_number, gap, **gas)
+        solved = solve_profile(squeeze_number, gap, **gas)
         # The gap is in the answer by its values; a function could not be pickled.
-        film = dataclasses.replace(found, profile=None)
-        return _answer(film, found.excursion_ratio, request, ", a gap of one's own")
+        film = dataclasses.replace(solved, profile=None)
+        return _answer(film, solved.excursion_ratio, request, ", a gap of one's own")
     if shape in _LINES:
         film = solve_uniform(squeeze_number, gap, shape=shape, **gas)
     else:

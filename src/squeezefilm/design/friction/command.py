@@ -249,8 +249,8 @@ def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
     force = np.geomspace(0.1 * p.normal_force, 4 * p.normal_force, points)
     law = dataclasses.replace(p.law, model=p.law.model if p.law.kind.shares_load else DEFAULT_MODEL)
     rows = np.empty((points, points))
-    for number, one in enumerate(force):
-        at = dataclasses.replace(law, normal_force=float(one))
+    for number, newtons in enumerate(force):
+        at = dataclasses.replace(law, normal_force=float(newtons))
         rows[number] = as_far_as_it_goes(at, amplitude)
     return FrictionMap(amplitude, force, rows, law.model)
 

@@ -128,8 +128,8 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[ModeDoubt]:
     ]
     if same and plate.working_frequency is None:
         listed = " and ".join(
-            f"{shown_frequency(one)} ({si.format_quantity(one.alone_per_volt, _PER_VOLT, 3)})"
-            for one in sorted([own, *same], key=lambda one: one.frequency)
+            f"{shown_frequency(mode)} ({si.format_quantity(mode.alone_per_volt, _PER_VOLT, 3)})"
+            for mode in sorted([own, *same], key=lambda mode: mode.frequency)
         )
         yield ModeDoubt(
             "ambiguous",

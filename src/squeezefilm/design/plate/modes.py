@@ -151,10 +151,10 @@ def _of_plate(
     band: tuple[si.Hertz, si.Hertz],
     tell: SayProgress,
 ) -> ModeList:
-    found = [mode for mode in screened_modes(plate, band) if mode.alone_per_volt > 0]
-    strongest = max((mode.alone_per_volt for mode in found), default=0.0)
-    found = [mode for mode in found if mode.alone_per_volt >= DRIVEN_SHARE * strongest]
-    listed = with_neighbours([listed_mode(mode) for mode in found])
+    driven = [mode for mode in screened_modes(plate, band) if mode.alone_per_volt > 0]
+    strongest = max((mode.alone_per_volt for mode in driven), default=0.0)
+    driven = [mode for mode in driven if mode.alone_per_volt >= DRIVEN_SHARE * strongest]
+    listed = with_neighbours([listed_mode(mode) for mode in driven])
     label = plate.working_label
     working, forbidden = label_name(label), forbidden_by(plate, label)
     own = chosen(listed, working, wanted_frequency(plate))
@@ -171,7 +171,7 @@ def _of_plate(
         suggestion=suggested(listed, own),
         model="piezoelectric_solid_3d, light mesh",
         frequency_error=SCREENING_ERROR,
-        screened=tuple(found),
+        screened=tuple(driven),
         solved=solved,
     )
 

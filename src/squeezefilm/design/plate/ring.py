@@ -182,7 +182,7 @@ def analyze_ring(
     tell(f"response at {points} frequencies")
     sweep = sweep_around(working.frequency, working.quality_factor, points | 1)
     beside = {working.harmonic - 1, working.harmonic + 1} if working.harmonic else set()
-    harmonics = sorted({working.harmonic, *beside, *(one.harmonic for one in modes)})
+    harmonics = sorted({working.harmonic, *beside, *(mode.harmonic for mode in modes)})
     response = ring_response(body, working, sweep, harmonics)
     driven = working.modal_force(body.drive) > 1e-9 * abs(working.modal_force_all_round)
     circuit = ring_circuit(body, working, response) if driven else None

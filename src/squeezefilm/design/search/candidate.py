@@ -244,7 +244,7 @@ def reference_of(requirements: Requirements) -> Evaluated:
     reason says why.
     """
     base, own = requirements.base, load_display(requirements.compare_with)
-    of_body = {at: one for at, one in own.provenance.items() if at.startswith("actuator.")}
+    of_body = {at: origin for at, origin in own.provenance.items() if at.startswith("actuator.")}
     display = replace(
         own,
         finger=base.finger,

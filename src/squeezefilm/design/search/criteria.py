@@ -140,8 +140,9 @@ class Breach:
     @property
     def sentence(self) -> str:
         """The breach for people."""
-        one = CRITERIA[self.key]
-        return f"{one.said} is {one.shown(self.value)}, {one.bound_said(self.limit)} is wanted"
+        limited = CRITERIA[self.key]
+        value, bound = limited.shown(self.value), limited.bound_said(self.limit)
+        return f"{limited.said} is {value}, {bound} is wanted"
 
 
 def bounded(limits: Limits) -> Iterator[tuple[Criterion, float]]:
@@ -158,15 +159,15 @@ def bounded(limits: Limits) -> Iterator[tuple[Criterion, float]]:
 def breaches(numbers: Mapping[str, float], limits: Limits) -> tuple[Breach, ...]:
     """The limits that a design's numbers do not keep, the worst first; of numbers that are not
     there nothing is said."""
-    found = []
-    for one, bound in bounded(limits):
-        value = one.value(numbers)
+    broken = []
+    for criterion, bound in bounded(limits):
+        value = criterion.value(numbers)
         if math.isnan(value):
             continue
-        excess = excess_of(one, value, bound)
+        excess = excess_of(criterion, value, bound)
         if excess > 0:
-            found.append(Breach(one.key, value, bound, excess))
-    return tuple(sorted(found, key=lambda broken: -broken.excess))
+            broken.append(Breach(criterion.key, value, bound, excess))
+    return tuple(sorted(broken, key=lambda breach: -breach.excess))
 
 
 def excess_of(criterion: Criterion, value: float, bound: float) -> float:

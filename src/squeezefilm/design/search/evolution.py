@@ -89,7 +89,10 @@ class Proposals:
         proposed = []
         for _ in range(count):
             trial = self._study.ask()
-            shares = {one.name: trial.suggest_float(one.name, 0.0, 1.0) for one in self._space.free}
+            shares = {
+                variable.name: trial.suggest_float(variable.name, 0.0, 1.0)
+                for variable in self._space.free
+            }
             proposed.append((trial, design_of(self._shape, self._space.at(shares))))
         return proposed
 
@@ -98,18 +101,18 @@ class Proposals:
         frequency is not bounded on both sides."""
         limits = self._requirements.limits
         low, high = limits.least_frequency, limits.most_frequency
-        found: list[dict[str, float]] = []
+        allowed: list[dict[str, float]] = []
         if low is None or high is None:
-            return found
+            return allowed
         draw = np.random.default_rng(self._seed)
         for _ in range(_LOOKED_AT * count):
             places = {variable.name: float(draw.random()) for variable in self._space.free}
             design = design_of(self._shape, self._space.at(places))
             if low <= rough_frequency(self._requirements, design) <= high:
-                found.append(places)
-            if len(found) == count:
+                allowed.append(places)
+            if len(allowed) == count:
                 break
-        return found
+        return allowed
 
     def tell(self, answers: Sequence[tuple[Any, Evaluated]]) -> None:
         """Take what was found of proposals."""
@@ -147,12 +150,12 @@ class Proposals:
         bounds = list(bounded(self._requirements.limits))
         if candidate.reason:
             return [10.0] * max(len(bounds), 1)
-        found = []
+        excesses = []
         for criterion, bound in bounds:
             value = candidate.numbers.get(criterion.key)
             excess = -1.0 if value is None else excess_of(criterion, value, bound)
-            found.append(float(np.clip(np.nan_to_num(excess, nan=0.0), -1.0, 10.0)))
-        return found or [0.0]
+            excesses.append(float(np.clip(np.nan_to_num(excess, nan=0.0), -1.0, 10.0)))
+        return excesses or [0.0]
 
 
 def _trial(params: dict[str, float], values: Sequence[float], excess: Sequence[float]) -> Any:

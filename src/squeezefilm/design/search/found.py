@@ -159,7 +159,9 @@ class DesignSearch(Result):
         if len(pairs) < 10:
             return {}
         names = self.requirements.objectives
-        first, second = (objectives_of(self.requirements, one) for one in zip(*pairs, strict=True))
+        first, second = (
+            objectives_of(self.requirements, designs) for designs in zip(*pairs, strict=True)
+        )
         return {
             name: float(spearmanr(first[:, k], second[:, k]).statistic)
             for k, name in enumerate(names)
@@ -168,12 +170,12 @@ class DesignSearch(Result):
     def member(self, name: str) -> FrontMember:
         """The plate of the front with a short name, or with the beginning of one. Raises
         `InputError` for a name that none has, or several."""
-        found = [each for each in self.front if each.name.startswith(name)] if name else []
-        if len(found) == 1:
-            return found[0]
+        members = [each for each in self.front if each.name.startswith(name)] if name else []
+        if len(members) == 1:
+            return members[0]
         known = ", ".join(each.name for each in self.front) or "none"
         raise InputError(
-            f"the front has {'several plates' if found else 'no plate'} '{name}'. It has: {known}"
+            f"the front has {'several plates' if members else 'no plate'} '{name}'. It has: {known}"
         )
 
     def display(self, name: str | None = None) -> Display:
@@ -269,8 +271,10 @@ def _plates(designs: Iterable[Evaluated]) -> int:
     return len(plates_of(evaluated.design for evaluated in designs))
 
 
-def _numbers(one: Evaluated) -> dict[str, Any]:
-    return {key + CRITERIA[key].unit.suffix: to_json(value) for key, value in one.numbers.items()}
+def _numbers(evaluated: Evaluated) -> dict[str, Any]:
+    return {
+        key + CRITERIA[key].unit.suffix: to_json(value) for key, value in evaluated.numbers.items()
+    }
 
 
 def _row(requirements: Requirements, member: FrontMember) -> dict[str, Any]:

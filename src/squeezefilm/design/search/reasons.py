@@ -103,7 +103,8 @@ def _corner(space: Space, where: str, inside: Sequence[Evaluated]) -> EmptyCorne
     key, count = counts.most_common(1)[0]
     # The one that comes nearest to the limit.
     nearest = min(
-        (b for one in inside for b in one.broken if b.key == key), key=lambda limit: limit.excess
+        (b for candidate in inside for b in candidate.broken if b.key == key),
+        key=lambda limit: limit.excess,
     )
     return EmptyCorner(
         space.shape, where, len(inside), key, count / len(inside), f"at best {nearest.sentence}"
@@ -176,7 +177,9 @@ def limit_in_words(reason: LimitReason, screened: int) -> str:
 def gains_in_words(reason: LimitReason) -> str:
     """The objectives that would be there without a limit."""
     gained = ((criterion_of(name), value) for name, value in reason.best_without.items())
-    return " and ".join(f"{one.said} of {one.shown(value)}" for one, value in gained)
+    return " and ".join(
+        f"{criterion.said} of {criterion.shown(value)}" for criterion, value in gained
+    )
 
 
 def corner_in_words(corner: EmptyCorner) -> str:

@@ -245,12 +245,14 @@ class SearchRun:
         near: Callable[[Space, Mapping[str, float]], Iterable[Mapping[str, float]]],
     ) -> None:
         """Screen what lies near designs, by places that their space gives."""
-        found, solved = list[Design](), self._plates_solved()
+        beside, solved = list[Design](), self._plates_solved()
         for design in designs:
             space = self.requirements.spaces[design.shape]
             places = near(space, space.places(design.settings))
-            found += [design_of(design.shape, space.at(there)) for there in places]
-        self._evaluated(pool, [one for one in found if one.plate not in solved], "screened")
+            beside += [design_of(design.shape, space.at(there)) for there in places]
+        self._evaluated(
+            pool, [design for design in beside if design.plate not in solved], "screened"
+        )
 
     def _learn(self) -> None:
         solved = list(self._seen["solved"].values())
@@ -281,8 +283,8 @@ class SearchRun:
                 fresh = list(dict.fromkeys(design for _, design in asked))
                 # Where it lies beside its screened number is asked, too.
                 self._evaluated(pool, fresh, "screened")
-                found = self._solve(pool, fresh)
-                studies[shape].tell([(trial, found[design]) for trial, design in asked])
+                solutions = self._solve(pool, fresh)
+                studies[shape].tell([(trial, solutions[design]) for trial, design in asked])
                 self._show()
             batch += 1
             if len(self._plates_solved()) == before:
@@ -339,8 +341,8 @@ class SearchRun:
                 if isinstance(answers, Lost):
                     why = answers.reason
                     answers = [
-                        Evaluated(one, level, {}, reason=why, lasting=False)
-                        for one in parts[number]
+                        Evaluated(design, level, {}, reason=why, lasting=False)
+                        for design in parts[number]
                     ]
                 self._store.add(answers)
                 evaluated.update((answer.design, answer) for answer in answers)

@@ -84,13 +84,13 @@ def _kept(requirements: Requirements, base: Display) -> Iterator[tuple[str, Prov
     first = base.surfaces.index(base.surface(requirements.touch.surface))
     order = [first, *(k for k in range(len(base.surfaces)) if k != first)]
     places = {str(old): str(new) for new, old in enumerate(order)}
-    for path, one in base.provenance.items():
+    for path, origin in base.provenance.items():
         head, *rest = path.split(".")
         if head in ("actuator", "measured", "joint", "calibration", "active_area"):
             continue
         if head == "surfaces":
             rest[0] = places[rest[0]]
-        yield ".".join([head, *rest]), one
+        yield ".".join([head, *rest]), origin
 
 
 def _tolerances(
@@ -127,7 +127,7 @@ def _of_material(
     that it gives."""
     at = f"actuator.{part}."
     if name == OWN:
-        return {path: one for path, one in base.provenance.items() if path.startswith(at)}
+        return {path: origin for path, origin in base.provenance.items() if path.startswith(at)}
     split = split_provenance(presets.materials.table(name, kind))
     sources = {}
     for path, source in split.sources.items():

@@ -139,8 +139,10 @@ class Space:
     def at(self, shares: Mapping[str, float]) -> dict[str, Setting]:
         """The values at shares (0 to 1) by name; what is fixed needs none."""
         chosen: dict[str, Setting] = {}
-        for one in self:
-            chosen[one.name] = one.at(0.0 if one.is_fixed else shares[one.name], chosen)
+        for variable in self:
+            chosen[variable.name] = variable.at(
+                0.0 if variable.is_fixed else shares[variable.name], chosen
+            )
         return chosen
 
     def places(self, values: Values) -> dict[str, float]:
@@ -164,11 +166,14 @@ class Space:
     def beside(self, places: Mapping[str, float]) -> Iterator[dict[str, float]]:
         """Places that differ in one number, by a few of its grains either way: the next that can be
         built and set."""
-        for one in self.free:
-            if isinstance(one, Number):
+        for variable in self.free:
+            if isinstance(variable, Number):
                 for grains in _GRAINS_BESIDE:
-                    step = grains * one.grain / (one.high - one.low)
-                    yield {**places, one.name: float(np.clip(places[one.name] + step, 0.0, 1.0))}
+                    step = grains * variable.grain / (variable.high - variable.low)
+                    yield {
+                        **places,
+                        variable.name: float(np.clip(places[variable.name] + step, 0.0, 1.0)),
+                    }
 
     def shares(self, values: Values) -> list[float]:
         """Positions of values, each from 0 to 1, of what is free: features of a design."""

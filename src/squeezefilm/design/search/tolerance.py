@@ -93,10 +93,10 @@ def _effects(
             ends.append(_scaled(_numbers(requirements, solved.design, row), nominal, solved))
         if all(ends):
             told = ("resonance_frequency", *requirements.objectives)
-            keys = {one: criterion_of(one).key for one in told}
+            keys = {goal: criterion_of(goal).key for goal in told}
             effects[name] = {
-                one: (ends[1][key] - ends[0][key]) / 2
-                for one, key in keys.items()
+                goal: (ends[1][key] - ends[0][key]) / 2
+                for goal, key in keys.items()
                 if key in ends[0]
             }
     return effects
@@ -106,12 +106,12 @@ def _scaled(
     numbers: Mapping[str, float], nominal: Mapping[str, float], solved: Evaluated
 ) -> dict[str, float]:
     """Screened numbers of a plate as made, in proportion to the solved plate as drawn."""
-    found = {}
+    made = {}
     for key, value in numbers.items():
         here, there = nominal.get(key), solved.numbers.get(key)
         in_proportion = here and there is not None and np.isfinite([here, there]).all()
-        found[key] = value * there / here if here and there is not None and in_proportion else value
-    return found
+        made[key] = value * there / here if here and there is not None and in_proportion else value
+    return made
 
 
 def _numbers(

@@ -137,9 +137,11 @@ def _expected(
     known = plates_of(seen["solved"])
     for shape, correction in enumerate(corrections):
         here = [
-            one
-            for one in seen["screened"].values()
-            if one.design.shape == shape and not one.reason and one.design.plate not in known
+            candidate
+            for candidate in seen["screened"].values()
+            if candidate.design.shape == shape
+            and not candidate.reason
+            and candidate.design.plate not in known
         ]
         numbers: list[Mapping[str, float]] = [candidate.numbers for candidate in here]
         doubt, of_frequency = _DOUBT, _OF_FREQUENCY
@@ -148,10 +150,10 @@ def _expected(
             # Else what lies just beyond a limit, and moves more for it, is solved again and again.
             errors = [correction.errors[key] for key in _FREQUENCIES if key in correction.errors]
             of_frequency = min([_OF_FREQUENCY, *(_DEVIATIONS * error for error in errors)])
-        for one, expected in zip(here, numbers, strict=True):
+        for candidate, expected in zip(here, numbers, strict=True):
             broken = breaches(expected, requirements.limits)
             if all(b.excess <= (of_frequency if b.key in _FREQUENCIES else doubt) for b in broken):
-                yield replace(one, numbers=expected)
+                yield replace(candidate, numbers=expected)
 
 
 def _error(requirements: Requirements, corrections: Sequence[Correction | None]) -> float:

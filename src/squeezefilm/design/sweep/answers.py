@@ -76,17 +76,17 @@ _SUFFIX = re.compile(
 def catalogue() -> Mapping[str, tuple[str, ...]]:
     """The keys that each verb answers; ``*`` stands for a number from 0 on in a list."""
     text = resources.files("squeezefilm.design.sweep").joinpath("answers.toml").read_text("utf-8")
-    found: dict[str, tuple[str, ...]] = {}
+    known: dict[str, tuple[str, ...]] = {}
     for verb, lines in tomllib.loads(text).items():
         keys: list[str] = []
         for line in lines:
             group, alike, other = line.partition(": ")
-            theirs = found[other] if alike else (line,)
+            theirs = known[other] if alike else (line,)
             keys += [
                 key for key in theirs if not alike or f"{key}.".startswith(group and f"{group}.")
             ]
-        found[verb] = tuple(keys)
-    return found
+        known[verb] = tuple(keys)
+    return known
 
 
 def numbers_of(summary: Any, path: str = "") -> Iterator[tuple[str, float]]:
@@ -150,7 +150,7 @@ def _asked_by(name: str) -> list[Asked]:
     head, _, rest = name.partition(".")
     if name == FOLLOWED:
         return [Asked(FOLLOWED, "frequency_Hz")]
-    verbs = [head] if head in VERBS and rest else [one for one in VERBS if one != FOLLOWED]
+    verbs = [head] if head in VERBS and rest else [verb for verb in VERBS if verb != FOLLOWED]
     wanted = rest if verbs == [head] else name
     for verb in verbs:
         keys = catalogue()[verb]
@@ -159,8 +159,8 @@ def _asked_by(name: str) -> list[Asked]:
         if len(plain) > 1:
             raise InputError(f"ask {name} may be {' or '.join(plain)}; say which", quantity="ask")
         group = [key for key in keys if without_units(key).startswith(f"{without_units(wanted)}.")]
-        if found := plain or [key for key in group if "*" not in key]:
-            return [Asked(verb, key) for key in found]
+        if meant := plain or [key for key in group if "*" not in key]:
+            return [Asked(verb, key) for key in meant]
         if group:
             raise InputError(
                 f"ask {name} is a list of {verb}; say which of it, like "
@@ -172,17 +172,17 @@ def _asked_by(name: str) -> list[Asked]:
 
 def _spelled_out(wanted: str, keys: Sequence[str]) -> list[str]:
     """The keys that a name without units stands for, the numbers of lists as they are in it."""
-    found = []
+    meant = []
     for key in keys:
         if _pattern(without_units(key)).fullmatch(wanted):
             numbers = iter(re.findall(r"(?<=\.)\d{1,4}(?=\.|$)", wanted))
-            found.append(re.sub(r"\*", lambda _, rest=numbers: next(rest), key))  # type: ignore[misc]
-    return found
+            meant.append(re.sub(r"\*", lambda _, rest=numbers: next(rest), key))  # type: ignore[misc]
+    return meant
 
 
 def _unknown(name: str, verbs: Sequence[str], wanted: str) -> InputError:
     plain = {verb: [without_units(known_key) for known_key in catalogue()[verb]] for verb in verbs}
-    every = [one for verb in verbs for one in plain[verb]]
+    every = [key for verb in verbs for key in plain[verb]]
     inside = [known_key for known_key in every if wanted.lower() in known_key.lower()]
     near = f" Did you mean {', '.join(dict.fromkeys(inside[:5]))}?" if inside else ""
     told: dict[str, str] = {}

@@ -91,7 +91,8 @@ def axis_of(name: str, values: Any, display: Display) -> Axis:
         if spaced is not None and unit is not None:
             logarithmic = spaced["log"] is not None
             steps: list[Value] = [
-                one if option is None else option.number(one) for one in _spaced(name, spaced, unit)
+                number if option is None else option.number(number)
+                for number in _spaced(name, spaced, unit)
             ]
         else:
             if ".." in values and unit is not None:

@@ -224,7 +224,7 @@ def _sums(
 ) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     """Shares of the fit's variance: of each value alone, with others, of pairs alone."""
     powers = coefficients**2
-    used = [tuple(k for k, one in enumerate(term) if one) for term in terms]
+    used = [tuple(k for k, power in enumerate(term) if power) for term in terms]
     variance = sum(p for p, u in zip(powers, used, strict=True) if u) or 1.0
     first = [sum(p for p, u in zip(powers, used, strict=True) if u == (k,)) for k in range(count)]
     total = [sum(p for p, u in zip(powers, used, strict=True) if k in u) for k in range(count)]
@@ -232,4 +232,4 @@ def _sums(
         sum(p for p, u in zip(powers, used, strict=True) if u == pair)
         for pair in itertools.combinations(range(count), 2)
     ]
-    return tuple(np.array(one, float) / variance for one in (first, total, pairs))  # type: ignore[return-value]
+    return tuple(np.array(shares, float) / variance for shares in (first, total, pairs))  # type: ignore[return-value]

@@ -123,7 +123,7 @@ def _axis(ranges: Sequence[_Range], count: int, seed: int) -> Axis:
     shares = qmc.Sobol(len(ranges), scramble=True, rng=seed).random_base2(
         math.ceil(math.log2(max(count, 2)))
     )[:count]
-    columns = [one.values(shares[:, k]) for k, one in enumerate(ranges)]
+    columns = [axis.values(shares[:, k]) for k, axis in enumerate(ranges)]
     return Axis(
         tuple(axis.name for axis in ranges),
         tuple(axis.unit for axis in ranges),

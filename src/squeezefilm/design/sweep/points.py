@@ -86,8 +86,8 @@ def answered(
     """
     plates = {number: point.display.actuator for number, point in enumerate(points)}
     tasks = {number: (point,) for number, point in enumerate(points)}
-    for number, found in pool.answers(answer, tasks, plates):
-        yield number, _lost(found) if isinstance(found, Lost) else found
+    for number, outcome in pool.answers(answer, tasks, plates):
+        yield number, _lost(outcome) if isinstance(outcome, Lost) else outcome
 
 
 def _lost(lost: Lost) -> Answer:

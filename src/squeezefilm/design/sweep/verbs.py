@@ -74,8 +74,8 @@ def _yes_or_no(word: str) -> bool:
 
 
 OPTIONS: dict[str, Option] = {
-    one.name: one
-    for one in (
+    option.name: option
+    for option in (
         Option("voltage", si.Unit("V"), {"at_least": 0}),
         Option("frequency", si.Unit("Hz"), {"above": 0}),
         Option("vibration_amplitude", si.Unit("m"), {"at_least": 0}),

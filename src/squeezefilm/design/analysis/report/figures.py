@@ -304,7 +304,7 @@ FIGURES: tuple[FigureOf, ...] = (
 
 def drawing(analysis: Analysis, key: str) -> str:
     """A figure as an SVG element, with its message for those who cannot see it."""
-    item = next(one for one in FIGURES if one.key == key)
+    item = next(figure for figure in FIGURES if figure.key == key)
     with style.rc():
         figure = item.draw(analysis)
         message = " ".join(figure.get_suptitle().split())

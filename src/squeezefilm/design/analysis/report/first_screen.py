@@ -121,13 +121,13 @@ def _doubts(analysis: Analysis) -> list[tuple[str, str]]:
     """Doubts about the numbers, the worst first: in short, and the finding's own text."""
     far = [
         (
-            f"{one.quantity}: computed {si.percent(abs(one.difference))} "
-            f"{'above' if one.difference > 0 else 'below'} the measured "
-            f"{shown(one.measured, si.Unit(one.unit), 3)}.",
+            f"{beside.quantity}: computed {si.percent(abs(beside.difference))} "
+            f"{'above' if beside.difference > 0 else 'below'} the measured "
+            f"{shown(beside.measured, si.Unit(beside.unit), 3)}.",
             "",
         )
-        for one in analysis.measured
-        if abs(one.difference) > _OFF
+        for beside in analysis.measured
+        if abs(beside.difference) > _OFF
     ]
     findings = [
         (finding.short or first_statement(finding.text), finding.text)

@@ -67,8 +67,8 @@ def electronics_rows(load: ElectricalLoad | None) -> list[Row]:
     each = f"{load.channels} ceramics in parallel, {{}} each on average"
     rows = [("Electrical load", "assumed in part", load.assumed)] if load.assumed else []
     if load.capacitance is not None and load.capacitance_per_channel is not None:
-        one = shown(load.capacitance_per_channel, FARAD, 3)
-        together = each.format(one) if load.channels > 1 else "beside the mode"
+        own = shown(load.capacitance_per_channel, FARAD, 3)
+        together = each.format(own) if load.channels > 1 else "beside the mode"
         rows.append(("Electrode capacitance", shown(load.capacitance, FARAD, 3), together))
     split = f"; {each.format(shown(load.current_per_channel, A, 3))}" if load.channels > 1 else ""
     rows += [

@@ -320,8 +320,8 @@ def _common(made: Fabrication) -> Iterable[str]:
 def _tolerances(made: Fabrication) -> str:
     given = [
         path
-        for path, one in made.display.provenance.items()
-        if one.distribution is not None and path.startswith("actuator.")
+        for path, origin in made.display.provenance.items()
+        if origin.distribution is not None and path.startswith("actuator.")
     ]
     if not given:
         return (

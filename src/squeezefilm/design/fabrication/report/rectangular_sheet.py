@@ -168,8 +168,11 @@ def _dimensions(sheet: Sheet, made: Fabrication, plate: RectangularPlate, sign: 
         key = f"{path}.width"
         sheet.upright(low_y, high_y, 0.0, -8.0, value_of=key, suffix=tolerance(key))
     patches = list(enumerate(plate.patches))
-    x = {one.x: (one.x, one.x, f"actuator.patches.{n}.x") for n, one in reversed(patches)}
-    y = {one.y: (one.y, sign * one.y, f"actuator.patches.{n}.y") for n, one in reversed(patches)}
+    x = {patch.x: (patch.x, patch.x, f"actuator.patches.{n}.x") for n, patch in reversed(patches)}
+    y = {
+        patch.y: (patch.y, sign * patch.y, f"actuator.patches.{n}.y")
+        for n, patch in reversed(patches)
+    }
     whole = sheet.ordinates(x.values(), low, -7.5)
     if len(y) > 1 or 0.0 not in y:
         whole &= sheet.ordinates(y.values(), plate.length, 8.5, upright=True)

@@ -112,7 +112,7 @@ def _plan(sheet: Sheet, made: Fabrication, body: Sector) -> None:
         sheet.interrupted(Arc("NODAL_LINES", 0.0, 0.0, radius))
     for angle in made.nodal.angles:
         ends_ = body.inner_radius, body.outer_radius + 3.0 * sheet.unit
-        sheet.interrupted(Polyline("NODAL_LINES", tuple(_polar(one, angle) for one in ends_)))
+        sheet.interrupted(Polyline("NODAL_LINES", tuple(_polar(radius, angle) for radius in ends_)))
     if body.inner_radius == 0:
         r = body.outer_radius + 4.0 * sheet.unit
         sheet.add(Polyline("CENTRE_LINES", ((0.0, -r), (0.0, r))))

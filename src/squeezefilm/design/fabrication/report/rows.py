@@ -92,15 +92,15 @@ def bill_rows(bill: Sequence[BillRow]) -> list[tuple[str, ...]]:
     rows = [
         (
             f"{number}",
-            one.what,
-            f"{one.count}",
-            one.material,
-            one.size,
-            one.made,
-            said(one.mass, "kg"),
-            one.remark,
+            row.what,
+            f"{row.count}",
+            row.material,
+            row.size,
+            row.made,
+            said(row.mass, "kg"),
+            row.remark,
         )
-        for number, one in enumerate(bill, 1)
+        for number, row in enumerate(bill, 1)
     ]
     total = sum(row.mass or 0.0 for row in bill if row.in_mass)
     return [*rows, ("", "Sum", "", "", "", "", said(total, "kg"), "of what the display is made of")]
@@ -111,16 +111,16 @@ def bill_csv(bill: Sequence[BillRow]) -> str:
     rows = [
         (
             number,
-            one.what,
-            one.count,
-            one.material,
-            one.size,
-            one.made,
-            one.mass,
-            "yes" if one.in_mass else "no",
-            one.remark,
+            row.what,
+            row.count,
+            row.material,
+            row.size,
+            row.made,
+            row.mass,
+            "yes" if row.in_mass else "no",
+            row.remark,
         )
-        for number, one in enumerate(bill, 1)
+        for number, row in enumerate(bill, 1)
     ]
     return csv_text(_BILL, rows)
 

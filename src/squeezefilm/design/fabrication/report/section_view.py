@@ -87,10 +87,10 @@ def section_view(
     face; `keys` are those of the description by what they are of (0: the substrate, n: ceramic n,
     −n: its glue). Notes of tolerances that have no room beside their numbers."""
     cut = best_cut(parts)
-    met = [(part, found) for part in parts if (found := spans(part, cut))]
-    high, low = max(one.top for one, _ in met), min(one.bottom for one, _ in met)
+    met = [(part, widths) for part in parts if (widths := spans(part, cut))]
+    high, low = max(part.top for part, _ in met), min(part.bottom for part, _ in met)
     stretch = stretch_for(high - low, sheet.scale)
-    ends = [end for _, found in met for span in found for end in span]
+    ends = [end for _, widths in met for span in widths for end in span]
     _, y_top = sheet.at(0.0, top)
     centre, _ = sheet.at(middle, 0.0)
     shift = centre - (min(ends) + max(ends)) / 2
@@ -101,30 +101,30 @@ def section_view(
     def height(z: float) -> float:
         return y_top + stretch * (z - high)
 
-    for one, found in met:
-        other = one.kind == "ceramic" and one.number in turned
-        layer = "CERAMICS_B" if other else _LAYERS[one.kind]
-        for start, end in found:
-            thick = stretch * one.thickness
-            sheet.add(rectangle(layer, start + shift, height(one.bottom), end - start, thick))
+    for part, widths in met:
+        other = part.kind == "ceramic" and part.number in turned
+        layer = "CERAMICS_B" if other else _LAYERS[part.kind]
+        for start, end in widths:
+            thick = stretch * part.thickness
+            sheet.add(rectangle(layer, start + shift, height(part.bottom), end - start, thick))
     base, said = met[0][0], []
     right = max(ends) + shift
-    for one in (base, *_stacks(met)):
-        number = {"ceramic": one.number, "glue": -one.number}.get(one.kind, 0)
-        key = keys.get(number, "") if one is base or number else ""
-        said.append((one, key, tolerance_said(made.display, key) if key else ""))
+    for part in (base, *_stacks(met)):
+        number = {"ceramic": part.number, "glue": -part.number}.get(part.kind, 0)
+        key = keys.get(number, "") if part is base or number else ""
+        said.append((part, key, tolerance_said(made.display, key) if key else ""))
     room = VIEWS[2] + 4.0 - (right / sheet.unit + sheet.origin[0])
     fits = max(end for *_, end in _columns(said)) <= room
-    for one, key, tolerance, away, _ in _columns(said if fits else [(*s[:2], "") for s in said]):
-        where = max(end for span in spans(one, cut) for end in span) + shift
+    for part, key, tolerance, away, _ in _columns(said if fits else [(*s[:2], "") for s in said]):
+        where = max(end for span in spans(part, cut) for end in span) + shift
         sheet.upright(
-            height(one.bottom),
-            height(one.top),
+            height(part.bottom),
+            height(part.top),
             where,
             away + (right - where) / sheet.unit,
             stretch=stretch,
             value_of=key,
-            suffix=f"{_what(one)}{tolerance}",
+            suffix=f"{_what(part)}{tolerance}",
             beside=True,
         )
     bottom = top - 1e3 * (high - low) * sheet.scale * stretch
@@ -133,8 +133,8 @@ def section_view(
     sheet.write(f"{label}{larger}", middle, bottom - 6.0, SMALL, "middle")
     sheet.lowest = bottom - 12.0
     stated = [
-        f"{one.kind} {millimetres(one.thickness)}{tolerance}"
-        for one, _, tolerance in said
+        f"{part.kind} {millimetres(part.thickness)}{tolerance}"
+        for part, _, tolerance in said
         if tolerance
     ]
     return () if fits or not stated else (f"Thicknesses: {'; '.join(stated)}.",)
@@ -152,16 +152,16 @@ def _columns(said: Sequence[_Said]) -> list[tuple[Part, str, str, float, float]]
     those above the substrate have their own columns over those below it."""
     columns: list[tuple[Part, str, str, float, float]] = []
     first, away, was_above = 7.0, 7.0, False
-    for number, (one, key, tolerance) in enumerate(said):
-        above = number > 0 and one.kind != "substrate" and one.bottom > 0
+    for number, (part, key, tolerance) in enumerate(said):
+        above = number > 0 and part.kind != "substrate" and part.bottom > 0
         if above and not was_above:
             away = first
         was_above = above
-        letters = len(f"{millimetres(one.thickness)}{_what(one)}{tolerance}")
+        letters = len(f"{millimetres(part.thickness)}{_what(part)}{tolerance}")
         end = away + (letters * LETTER + 0.6) * NUMBER
-        columns.append((one, key, tolerance, away, end))
+        columns.append((part, key, tolerance, away, end))
         away = end + 3.0 * NUMBER
-        if one.kind == "substrate":
+        if part.kind == "substrate":
             first = away
     return columns
 
@@ -169,16 +169,16 @@ def _columns(said: Sequence[_Said]) -> list[tuple[Part, str, str, float, float]]
 def _stacks(met: Sequence[tuple[Part, list[tuple[float, float]]]]) -> list[Part]:
     """A tooth where there are any; of each face the rightmost ceramic that was met, and its glue,
     which is last: its number stands beside its short arrows, where no other line runs."""
-    parts = [one for one, _ in met if one.kind == "substrate"][1:2]
+    parts = [part for part, _ in met if part.kind == "substrate"][1:2]
     for upper in (False, True):
         ceramics = [
-            (max(span), one)
-            for one, ends in met
-            if one.kind == "ceramic" and (one.bottom > 0) == upper
+            (max(span), part)
+            for part, ends in met
+            if part.kind == "ceramic" and (part.bottom > 0) == upper
             for span in ends
         ]
         if ceramics:
             last = max(ceramics, key=lambda pair: pair[0])[1]
-            glue = [one for one, _ in met if one.kind == "glue" and one.number == last.number]
+            glue = [part for part, _ in met if part.kind == "glue" and part.number == last.number]
             parts += [last, *glue]
     return parts

@@ -245,11 +245,11 @@ class Sheet:
         key), at the ends of leaders from an `edge` (m). Those that stand too near to the one before
         are left out; whether none was."""
         size, last, whole = NUMBER * self.unit, None, True
-        for one, drawn, key in sorted(places, key=lambda place: place[0]):
-            if last is not None and one - last < 1.5 * size:
+        for coordinate, drawn, key in sorted(places, key=lambda place: place[0]):
+            if last is not None and coordinate - last < 1.5 * size:
                 whole = False
                 continue
-            last = one
+            last = coordinate
             end = edge + away * self.unit
             x, y = (edge, drawn) if upright else (drawn, edge)
             self.add(Ordinate(x, y, 0.0, 0.0, end, size, upright, key))

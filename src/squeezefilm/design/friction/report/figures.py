@@ -55,23 +55,27 @@ def models(result: FrictionAnalysis) -> Figure:
 
 
 @style.drawn
-def predictions(found: Sequence[Prediction]) -> Figure:
+def predictions(every: Sequence[Prediction]) -> Figure:
     """Predicted friction against amplitude: each law, and on it the working points."""
-    first = found[0]
+    first = every[0]
     said = f"µ′/µ = {first.relative_friction:.2f} at {shown(first.vibration_amplitude, M, 3)}"
-    if len(found) > 1:
-        frictions = [one.relative_friction for one in found]
-        said = f"{len(found)} predictions: µ′/µ from {min(frictions):.2f} to {max(frictions):.2f}"
-    figure = style.new_figure(said, ", ".join(dict.fromkeys(one.model for one in found)), 4.4)
+    if len(every) > 1:
+        frictions = [prediction.relative_friction for prediction in every]
+        said = f"{len(every)} predictions: µ′/µ from {min(frictions):.2f} to {max(frictions):.2f}"
+    figure = style.new_figure(
+        said, ", ".join(dict.fromkeys(prediction.model for prediction in every)), 4.4
+    )
     axes = figure.subplots()
     reach: dict[FrictionLaw, float] = {}
-    for one in found:
-        reach[one.law] = max(reach.get(one.law, 0.5e-6), one.vibration_amplitude)
+    for prediction in every:
+        reach[prediction.law] = max(
+            reach.get(prediction.law, 0.5e-6), prediction.vibration_amplitude
+        )
     for number, (law, highest) in enumerate(reach.items()):
         color, dashes = style.LINES[number % len(style.LINES)]
         table = law.table(highest)
         axes.plot(1e6 * table.amplitude, table.at_speed(law.speed), color=color, ls=dashes)
-    for prediction in found:
+    for prediction in every:
         style.mark(axes, 1e6 * prediction.vibration_amplitude, prediction.relative_friction, 7)
     style.friction_axes(axes)
     return figure
@@ -80,17 +84,17 @@ def predictions(found: Sequence[Prediction]) -> Figure:
 @style.drawn
 def friction_map(result: FrictionAnalysis) -> Figure:
     """µ′/µ over amplitude and force, the working point marked."""
-    found, p = result.map, result.prediction
+    grid, p = result.map, result.prediction
     figure = style.new_figure(
         f"µ′/µ is {p.relative_friction:.2f} at {shown(p.vibration_amplitude, M, 3)} and "
         f"{shown(p.normal_force, N, 3)}; over these ranges it goes from "
-        f"{np.nanmin(found.relative_friction):.2f} to {np.nanmax(found.relative_friction):.2f}",
-        found.model,
+        f"{np.nanmin(grid.relative_friction):.2f} to {np.nanmax(grid.relative_friction):.2f}",
+        grid.model,
         4.8,
     )
     axes = figure.subplots()
     levels = np.linspace(0, 1, 11)
-    surface = 1e6 * found.amplitude, found.normal_force, found.relative_friction
+    surface = 1e6 * grid.amplitude, grid.normal_force, grid.relative_friction
     filled = axes.contourf(*surface, levels=levels, cmap="cividis")
     lines = axes.contour(*surface, levels=levels[1:-1:2], colors=style.PAPER, linewidths=1.0)
     axes.clabel(lines, fmt=lambda v: f"{v:.1f}", fontsize=9)
@@ -138,7 +142,7 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
     known = [i.parameter.knowledge == "measurable" for i in ranked]
     for of_group, color, name in (
         (known, style.BLUE, "could be measured"),
-        ([not one for one in known], style.ORANGE, "nobody knows"),
+        ([not measurable for measurable in known], style.ORANGE, "nobody knows"),
     ):
         here = np.flatnonzero(of_group)
         look = {**style.BARS, "color": color}
@@ -160,21 +164,21 @@ def uncertainty(result: FrictionAnalysis) -> Figure:
 @style.drawn
 def ripple(result: FrictionAnalysis) -> Figure:
     """The friction as the pad moves along the standing wave, at constant amplitude."""
-    found = result.ripple
-    assert found is not None, "nothing vibrates"
-    half, model = found.half_wavelength, result.prediction.model
+    wave = result.ripple
+    assert wave is not None, "nothing vibrates"
+    half, model = wave.half_wavelength, result.prediction.model
     lifted = MODEL_KINDS[model].friction == "lift"
-    x = np.concatenate([found.position, found.position + half, [2 * half]])
-    y = np.concatenate([found.relative_friction] * 2 + [found.relative_friction[:1]])
+    x = np.concatenate([wave.position, wave.position + half, [2 * half]])
+    y = np.concatenate([wave.relative_friction] * 2 + [wave.relative_friction[:1]])
     figure = style.new_figure(
-        f"The wave itself is felt: {100 * found.ripple:.2g} % of ripple every "
-        f"{shown(half, M, 3)} under a contact of {shown(found.contact_length, M, 3)}",
+        f"The wave itself is felt: {100 * wave.ripple:.2g} % of ripple every "
+        f"{shown(half, M, 3)} under a contact of {shown(wave.contact_length, M, 3)}",
         f"{model if lifted else 'partial-levitation'}, ridge by ridge",
         4.0,
     )
     axes = figure.subplots()
     axes.plot(1e3 * x, y, color=style.BLUE, label="relative friction of the whole pad")
-    axes.axhline(found.mean, **style.REFERENCE, label=f"mean {found.mean:.2f}")
+    axes.axhline(wave.mean, **style.REFERENCE, label=f"mean {wave.mean:.2f}")
     for node in (0.5 * half, 1.5 * half):
         name = "nodal lines" if node < half else None
         axes.axvline(1e3 * node, color=style.INK, lw=0.9, ls=(0, (1, 2)), label=name)
@@ -187,7 +191,9 @@ def ripple(result: FrictionAnalysis) -> Figure:
 FIGURES = (
     FigureOf("models", "Friction by every model", models),
     FigureOf("map", "Friction over amplitude and force", friction_map),
-    FigureOf("uncertainty", "How sure it is", uncertainty, has=lambda one: one.uncertainty),
+    FigureOf(
+        "uncertainty", "How sure it is", uncertainty, has=lambda friction: friction.uncertainty
+    ),
     FigureOf("ripple", "The standing wave", ripple, has=lambda friction: friction.ripple),
 )
 
@@ -195,11 +201,11 @@ FIGURES = (
 def write_friction(result: FrictionAnalysis, folder: Path) -> Path:
     """Write friction.json, and the figures as PNG, into `folder`; the folder."""
     summary = result.summary()
-    found = result.map
+    grid = result.map
     summary["map"] = {
-        "vibration_amplitude_m": found.amplitude,
-        "normal_force_N": found.normal_force,
-        "relative_friction": found.relative_friction,
+        "vibration_amplitude_m": grid.amplitude,
+        "normal_force_N": grid.normal_force,
+        "relative_friction": grid.relative_friction,
     }
     pictures = picture_files(drawn_figures(FIGURES, result, "friction-"))
     write_folder(folder, {"friction.json": json_text(summary), **pictures})

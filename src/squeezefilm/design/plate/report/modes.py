@@ -238,8 +238,8 @@ def shapes(result: ModeList) -> Figure:
 
 
 FIGURES = (
-    FigureOf("spectrum", "Driven modes", spectrum, has=lambda one: one.modes),
-    FigureOf("shapes", "Shapes", shapes, has=lambda one: one.screened),
+    FigureOf("spectrum", "Driven modes", spectrum, has=lambda listed: listed.modes),
+    FigureOf("shapes", "Shapes", shapes, has=lambda listed: listed.screened),
 )
 
 

@@ -136,7 +136,7 @@ def _front_axes(
     if search.front and len(names) == 2:
         axes.plot(*at(search.objectives), color=style.BLUE, lw=1.2, zorder=3)
     for number, (member, x, y) in enumerate(
-        zip(search.front, *(one.tolist() for one in at(search.objectives)), strict=True)
+        zip(search.front, *(values.tolist() for values in at(search.objectives)), strict=True)
     ):
         mark = axes.scatter([x], [y], s=62, color=style.BLUE, edgecolor=style.PAPER, zorder=4)
         mark.set_urls([f"{ROW}{member.name}"])
@@ -224,21 +224,21 @@ def settings(search: DesignSearch) -> Figure:
     return figure
 
 
-def _settings_axes(axes: Axes, found: DesignSearch, variable: Variable) -> None:
-    requirements = found.requirements
+def _settings_axes(axes: Axes, search: DesignSearch, variable: Variable) -> None:
+    requirements = search.requirements
     goal = criterion_of(requirements.objectives[0])
-    factor, _ = scaled(found.objectives[:, 0], goal.unit)
+    factor, _ = scaled(search.objectives[:, 0], goal.unit)
     members = [
         (factor * float(x), member)
-        for x, member in zip(found.objectives[:, 0], found.front, strict=True)
+        for x, member in zip(search.objectives[:, 0], search.front, strict=True)
         if variable.name in member.evaluated.design.settings
     ]
     if isinstance(variable, Choice):
         names = {
-            str(one.evaluated.design.settings[variable.name]): setting_words(
-                variable, one.evaluated.design, requirements
+            str(member.evaluated.design.settings[variable.name]): setting_words(
+                variable, member.evaluated.design, requirements
             )
-            for _, one in members
+            for _, member in members
         }
         rows = list(names)
         y = [rows.index(str(o.evaluated.design.settings[variable.name])) for _, o in members]
@@ -252,9 +252,9 @@ def _settings_axes(axes: Axes, found: DesignSearch, variable: Variable) -> None:
         axes.set_ylim(_ends(scale * values, logarithmic=False))
         if variable.name.startswith("nodal_"):
             axes.locator_params(axis="y", integer=True)
-    chosen = found.chosen
-    for number, (value, (x, one)) in enumerate(zip(y, members, strict=True)):
-        shape = one.evaluated.design.shape
+    chosen = search.chosen
+    for number, (value, (x, member)) in enumerate(zip(y, members, strict=True)):
+        shape = member.evaluated.design.shape
         look: dict[str, Any] = {
             "color": style.BLUE,
             "marker": _SHAPES[shape % 4],
@@ -262,7 +262,7 @@ def _settings_axes(axes: Axes, found: DesignSearch, variable: Variable) -> None:
             "mec": style.PAPER,
         }
         axes.plot([x], [value], ls="", **look, zorder=3 + number / 100)
-        if one is chosen:
+        if member is chosen:
             axes.plot([x], [value], **_RING, zorder=5)
     axes.set_title(labelled(variable.name.replace("_", " "), symbol))
 

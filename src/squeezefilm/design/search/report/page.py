@@ -241,7 +241,7 @@ def _chosen_sections(search: DesignSearch, fabrication: str) -> Iterator[str]:
 def _criteria_rows(search: DesignSearch, member: FrontMember) -> Iterator[tuple[str, ...]]:
     """Every criterion of a plate that is known or was asked for: value, limit, margin, interval of
     those made."""
-    bounds = {one.key: bound for one, bound in bounded(search.requirements.limits)}
+    bounds = {criterion.key: bound for criterion, bound in bounded(search.requirements.limits)}
     left = margins(search.requirements, member.evaluated)
     made = {} if member.made is None else member.made.intervals
     for key, criterion in CRITERIA.items():

@@ -104,7 +104,7 @@ def asked_sentences(requirements: Requirements) -> list[str]:
     if drive.least_voltage not in (None, drive.voltage):
         volts = f"{shown(float(drive.least_voltage or 0), si.Unit('V'))} to {volts}"
     goals = " and ".join(criterion_of(objective).said for objective in requirements.objectives)
-    bounds = [one.limit_said(bound) for one, bound in bounded(requirements.limits)]
+    bounds = [criterion.limit_said(bound) for criterion, bound in bounded(requirements.limits)]
     if requirements.limits.least_yield is not None:
         bounds.append(f"yield at least {si.percent(requirements.limits.least_yield)}")
     shapes = ", ".join(space.shape for space in requirements.spaces)
@@ -143,7 +143,10 @@ def empty_front_sentences(search: DesignSearch) -> list[str]:
     if search.front:
         return []
     said = []
-    bounds = {one.key: one.limit_said(bound) for one, bound in bounded(search.requirements.limits)}
+    bounds = {
+        criterion.key: criterion.limit_said(bound)
+        for criterion, bound in bounded(search.requirements.limits)
+    }
     if (conflict := conflict_of(search.screened)) is not None:
         first, second, miss = conflict
         said.append(
@@ -242,9 +245,9 @@ def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]
     failed = f"; {made.failed} could not be computed" if made.failed else ""
     alone = requirements.limits.unasked_of_made
     unasked = " and ".join(
-        one.said
-        for one, _ in bounded(requirements.limits)
-        if one.limit in alone or one.key == "surest_friction"
+        criterion.said
+        for criterion, _ in bounded(requirements.limits)
+        if criterion.limit in alone or criterion.key == "surest_friction"
     )
     return [
         f"Of {made.draws} plates made with the tolerances {si.percent(made.kept)} keep all limits"

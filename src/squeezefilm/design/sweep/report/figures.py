@@ -212,27 +212,27 @@ def means(value: Varied, values: si.FloatArray) -> tuple[si.FloatArray, si.Float
 
 
 @style.drawn
-def effects_figure(found: Sweep) -> Figure:
+def effects_figure(sweep: Sweep) -> Figure:
     """Each answer over each varied value: every point, and the mean over all others."""
-    columns, varied = drawn_columns(found), varied_values(found)[:MOST_VARIED]
+    columns, varied = drawn_columns(sweep), varied_values(sweep)[:MOST_VARIED]
     if not columns or not varied:
         return style.message_figure("Main effects", "No answer varies.")
     figure = style.new_figure(
         "Main effects: what each value does, the others taken as they come",
-        f"points of the sweep; lines: their mean. Display {style.plain(found.title)}",
+        f"points of the sweep; lines: their mean. Display {style.plain(sweep.title)}",
         1.0 + 2.1 * len(columns),
     )
     grid = figure.subplots(len(columns), len(varied), squeeze=False, sharey="row", sharex="col")
     for row, column in zip(grid, columns, strict=True):
         scale, unit = scaled(column.values, column.unit)
-        for axes, one in zip(row, varied, strict=True):
-            _effect(axes, one, scale * column.values)
+        for axes, value in zip(row, varied, strict=True):
+            _effect(axes, value, scale * column.values)
         row[0].set_ylabel(_short(labelled(name_of(column), unit)))
-    for axes, one in zip(grid[-1], varied, strict=True):
-        symbol = "" if one.words else scaled(one.values, one.unit)[1]
-        axes.set_xlabel(_short(labelled(varied_name(one), symbol)))
-        if one.words:
-            axes.set_xticks(range(len(one.words)), [style.plain(w, 12) for w in one.words])
+    for axes, value in zip(grid[-1], varied, strict=True):
+        symbol = "" if value.words else scaled(value.values, value.unit)[1]
+        axes.set_xlabel(_short(labelled(varied_name(value), symbol)))
+        if value.words:
+            axes.set_xticks(range(len(value.words)), [style.plain(w, 12) for w in value.words])
     return figure
 
 
@@ -301,9 +301,9 @@ def _shares(drawn: tuple[tuple[Effects, ...], tuple[Varied, ...]]) -> Figure:
 def tradeoffs_figure(drawn: tuple[Sweep, tuple[tuple[str, int], ...]]) -> Figure:
     """Each two answers against each other; of those of which less (1) or more (-1) is better, by
     name, the points that no other beats are marked."""
-    found, wanted = drawn
+    sweep, wanted = drawn
     better = dict(wanted)
-    columns = [c for c in found.columns if c.name in better] or drawn_columns(found)
+    columns = [c for c in sweep.columns if c.name in better] or drawn_columns(sweep)
     pairs = list(itertools.combinations(columns, 2))[:MOST_PAIRS]
     if not pairs:
         return style.message_figure("Trade-offs", "There are no two answers that vary.")

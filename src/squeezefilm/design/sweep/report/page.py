@@ -169,15 +169,17 @@ def _best(sweep: Sweep, better: tuple[tuple[str, int], ...]) -> str:
     }
     head = [
         "Row",
-        *(labelled(varied_name(one), symbol) for one, (_, symbol) in settings.values()),
+        *(labelled(varied_name(value), symbol) for value, (_, symbol) in settings.values()),
         *(labelled(name_of(c), symbol) for c, (_, symbol) in zip(columns, scales, strict=True)),
     ]
     lines = [
         [
             str(row + 1),
             *(
-                one.words[int(one.values[row])] if one.words else f"{factor * one.values[row]:.4g}"
-                for one, (factor, _) in settings.values()
+                value.words[int(value.values[row])]
+                if value.words
+                else f"{factor * value.values[row]:.4g}"
+                for value, (factor, _) in settings.values()
             ),
             *(f"{f * c.values[row]:.4g}" for c, (f, _) in zip(columns, scales, strict=True)),
         ]
