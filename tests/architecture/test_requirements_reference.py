@@ -17,9 +17,9 @@ from squeezefilm.physics.plate.layout import GlueLayer
 DOCS = Path(__file__).parents[2] / "docs"
 TEXT = (DOCS / "reference" / "requirements.md").read_text(encoding="utf-8")
 OWNERS = (
-    wanted.Requirements, wanted.Workspace, wanted.Touch, wanted.Source, wanted.Limits,
+    wanted.Requirements, wanted.Workspace, wanted.AskedTouch, wanted.Source, wanted.Limits,
     wanted.Tolerances, shapes.Strips, shapes.EdgeStrips, shapes.Disc, shapes.Ring, shapes.Gasket,
-    stock.Sheet, stock.CeramicStock, GlueLayer,
+    stock.StockSheet, stock.CeramicStock, GlueLayer,
 )  # fmt: skip
 
 

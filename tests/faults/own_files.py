@@ -15,12 +15,12 @@ from tests.unit.study.scripted import gratings, run_through
 from squeezefilm.core import presets
 from squeezefilm.core.formats.traces import Table, csv_text, table_from_csv
 from squeezefilm.core.kept.store import CACHE_VARIABLE
-from squeezefilm.core.kept.store import Kept as KeptResults
+from squeezefilm.core.kept.store import KeptAnswers as KeptResults
 from squeezefilm.design.search.evolution import Proposals
 from squeezefilm.design.search.store import FILE as DESIGNS
 from squeezefilm.design.search.store import DesignStore
 from squeezefilm.design.sweep.points import FILE as ANSWERS
-from squeezefilm.design.sweep.points import Answer, Kept, Point
+from squeezefilm.design.sweep.points import Answer, KeptAnswers, Point
 from squeezefilm.design.sweep.report.terminal import compared_rows
 from squeezefilm.instruments.session.record.trace import export_trace
 from squeezefilm.instruments.session.record.trace_writer import TraceWriter
@@ -54,7 +54,7 @@ class OwnFile:
 
 
 def _answers(folder: Path) -> None:
-    kept = Kept(folder)
+    kept = KeptAnswers(folder)
     number = len(kept)
     point = Point(load_display("biet2008-stator"), {"voltage": 20.0}, "predict")
     for place in range(number, number + 3):

@@ -14,8 +14,8 @@ from tests.verification.second_order import carried
 
 from squeezefilm.instruments.twin.envelope_step import (
     Electrical,
+    EnvelopeLimits,
     Fingers,
-    Limits,
     Resonance,
     envelope_step,
     voltage_given,
@@ -25,8 +25,8 @@ from squeezefilm.instruments.twin.plant import Plant
 from squeezefilm.instruments.twin.plant_kernel import COLUMNS
 from squeezefilm.instruments.twin.settings import (
     FRICTION_LAG,
-    Amplifier,
     PlateDrift,
+    TwinAmplifier,
     TwinSettings,
 )
 from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
@@ -157,7 +157,7 @@ def test_the_resonance_drifts_as_told_and_takes_the_amplitude_with_it() -> None:
 def test_what_the_plate_takes_is_what_its_loss_takes_and_warms_it() -> None:
     drift = PlateDrift(temperature_coefficient=-1e-9, ambient_swing=0.0, thermal_resistance=12.0,
                        thermal_time=2.0)  # fmt: skip
-    amplifier = Amplifier(loss_tangent=0.0)
+    amplifier = TwinAmplifier(loss_tangent=0.0)
     plant = Plant(point(), replace(CALM, drift=drift, amplifier=amplifier))
     plant.advance(4_000_000, VOLTS, carrier())
     mode = point().mode
@@ -172,18 +172,20 @@ def test_what_the_plate_takes_is_what_its_loss_takes_and_warms_it() -> None:
 
 
 def test_the_amplifier_keeps_to_its_current_and_slew_rate() -> None:
-    amplifier = Amplifier(highest_current=0.02)
+    amplifier = TwinAmplifier(highest_current=0.02)
     plant = Plant(point(), replace(CALM, amplifier=amplifier))
     plant.advance(200_000, 20_000_000, carrier())
     assert column(plant, "current_A")[-100:] == pytest.approx(0.02, rel=1e-6)
     assert plant.voltage < 20
     assert plant.counts.at_current > 3000
-    slow = Amplifier(slew_rate=1e6)
+    slow = TwinAmplifier(slew_rate=1e6)
     plant = Plant(point(), replace(CALM, amplifier=slow))
     plant.advance(20_000, 20_000_000, carrier())
     assert plant.voltage == pytest.approx(1e6 / (2 * math.pi * carrier() * 1e-3))
     assert plant.counts.at_slew == 400
-    given, limit = voltage_given(9.0, 0j, 1e5, Electrical(1e-8, 0.0, 0.0), Limits(5.0, 1.0, 1e9))
+    given, limit = voltage_given(
+        9.0, 0j, 1e5, Electrical(1e-8, 0.0, 0.0), EnvelopeLimits(5.0, 1.0, 1e9)
+    )
     assert (given, limit) == (5.0, 1)
 
 

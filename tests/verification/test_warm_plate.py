@@ -7,7 +7,7 @@ from functools import lru_cache
 import pytest
 
 from squeezefilm.instruments.twin.plant import Plant
-from squeezefilm.instruments.twin.settings import Amplifier, PlateDrift, TwinSettings
+from squeezefilm.instruments.twin.settings import PlateDrift, TwinAmplifier, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.heat.thermal import Thermal
@@ -16,7 +16,7 @@ from squeezefilm.physics.plate.heat.warming import Warming, warming_of_mode
 # A plate that is warm within seconds: what it settles to does not depend on its heat capacity.
 QUICK = 1.0
 CALM = TwinSettings(
-    drift=PlateDrift(ambient_swing=0.0), amplifier=Amplifier(loss_tangent=0.0), truth_period=0.1
+    drift=PlateDrift(ambient_swing=0.0), amplifier=TwinAmplifier(loss_tangent=0.0), truth_period=0.1
 )
 
 

@@ -182,13 +182,13 @@ class OpenPage:
 
 
 @dataclass(frozen=True, slots=True)
-class _Held:
+class _Stoppable:
     text: str
     plays: bool
     stop: Callable[[], None]
 
 
-class Playing:
+class NowPlaying:
     """Things that play or may play, each by a key, with how it is stopped.
 
     `tell` sends a message to the experimenters' pages; they are told of every change. Its methods
@@ -197,7 +197,7 @@ class Playing:
 
     def __init__(self, tell: Callable[[Message], None]) -> None:
         self._tell = tell
-        self._held: dict[str, _Held] = {}
+        self._held: dict[str, _Stoppable] = {}
 
     def note(self, key: str, text: str, stop: Callable[[], None], *, plays: bool) -> None:
         """`text` names what plays, or where `plays` is false may begin to at any moment.
@@ -205,7 +205,7 @@ class Playing:
         `stop` silences it and returns at once.
         """
         before = self._held.get(key)
-        self._held[key] = _Held(text, plays, stop)
+        self._held[key] = _Stoppable(text, plays, stop)
         if before is None or before.plays is not plays:
             self._changed()
 

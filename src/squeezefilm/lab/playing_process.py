@@ -39,7 +39,7 @@ class DeviceSession(ToldProcess):
     patience = 5.0
 
 
-class _Watched:
+class _PageMessages:
     """Messages for a page about a session while it plays."""
 
     def __init__(self, tell: Tell) -> None:
@@ -80,7 +80,7 @@ def play(connection: Connection, display: str, texture: str, out: str, **how: An
     from squeezefilm.physics.texture_files.texture_file import load_texture
 
     tell = telling(connection)
-    page = _Watched(tell)
+    page = _PageMessages(tell)
     stopped = _STOPPED_BEFORE
 
     def progress(text: str) -> None:
@@ -123,7 +123,7 @@ def check(connection: Connection, drive: str, display: str) -> None:
 
     tell = telling(connection)
     with _ends(tell, lambda: "the check was stopped"):
-        result = check_drive(drive, display, progress=_Watched(tell).progress)
+        result = check_drive(drive, display, progress=_PageMessages(tell).progress)
         outcome = {"passed": result.passed, "results": to_json(result.results)}
         tell({"type": "device checked", **outcome})
         tell({"type": "device ended", "failed": False, "message": "checked"})

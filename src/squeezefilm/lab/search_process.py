@@ -144,7 +144,7 @@ class SearchProcess(ToldProcess):
     patience = 1.0
 
 
-class Pace:
+class StagePace:
     """Estimate of how long screening or solving goes on, by how fast its stage went until now."""
 
     def __init__(self, screened: int, solved: int) -> None:
@@ -230,7 +230,7 @@ def _found(
 
     requirements = requirements_of(text, folder)
     last: tuple[str, float] | None = None
-    pace = Pace(how["screened"], how["solved"])
+    pace = StagePace(how["screened"], how["solved"])
 
     def say(words: str) -> None:
         with stop.held():

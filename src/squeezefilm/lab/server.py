@@ -20,12 +20,12 @@ from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.lab.connections import OpenPage, PageProtocol, Playing, TimedProtocol
+from squeezefilm.lab.connections import NowPlaying, OpenPage, PageProtocol, TimedProtocol
 from squeezefilm.lab.door import Connection, Door
 from squeezefilm.lab.guard import CONNECTION, Guard, Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.wire import LARGEST_FROM_PARTICIPANT, LARGEST_MESSAGE, Dispatcher, as_text
-from squeezefilm.lab.worker import PAGE, SupersededError, Workers
+from squeezefilm.lab.worker import PAGE, LabWorkers, SupersededError
 from squeezefilm.physics import render
 
 if TYPE_CHECKING:
@@ -68,15 +68,15 @@ class Lab:
     places: Places
     experimenter: Dispatcher = field(default_factory=Dispatcher)
     participant: Dispatcher = field(default_factory=lambda: Dispatcher(LARGEST_FROM_PARTICIPANT))
-    workers: Workers = field(default_factory=Workers)
+    workers: LabWorkers = field(default_factory=LabWorkers)
     pages: dict[WebSocket, OpenPage] = field(default_factory=dict)
     closing: list[Callable[[], None]] = field(default_factory=list)
     left: list[Callable[[WebSocket], None]] = field(default_factory=list)
     lan: LanPlace | None = None
-    playing: Playing = field(init=False)
+    playing: NowPlaying = field(init=False)
 
     def __post_init__(self) -> None:
-        self.playing = Playing(self.tell)
+        self.playing = NowPlaying(self.tell)
 
     def tell(self, message: dict[str, Any], *, participants: bool = False) -> None:
         """Send a message that nobody asked for to every open page of a kind; waits for none."""

@@ -233,7 +233,7 @@ class Busy:
             self._process = None
 
 
-class Workers:
+class LabWorkers:
     """Two lines of work: one for what a drag asks for, one for what takes seconds."""
 
     def __init__(self) -> None:

@@ -14,7 +14,7 @@ from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import stamp, to_json
-from squeezefilm.design.analysis.paper_procedure import Design
+from squeezefilm.design.analysis.paper_procedure import PaperDesign
 from squeezefilm.design.analysis.published_claims import (
     VERDICT_OF_GROUNDS,
     Claim,
@@ -49,7 +49,7 @@ class Reproduction:
 
     results: tuple[ClaimResult, ...]
     errata: tuple[Erratum, ...]
-    design: Design
+    design: PaperDesign
     prototype: Any = None
 
     @property

@@ -43,7 +43,7 @@ _Plate = TypeVar("_Plate", RectangularPlate, DiscPlate)
 
 
 @dataclass(frozen=True)
-class WorkingPoint:
+class PlatePoint:
     """Working mode of a plate: its frequency with its estimated error,
     the largest amplitude per volt on the upper face at resonance (None where nothing drives it),
     quality factor, and the frequency with the drive's terminals open."""
@@ -83,7 +83,7 @@ def _amplitude(
 
 def working_point(
     plate: RectangularPlate, label: Label | None = None, *, amplitude: bool = True
-) -> WorkingPoint:
+) -> PlatePoint:
     """A plate's working mode (or the one with this label) as explanations are compared by it.
 
     Raises what `solve_modes` raises. The amplitude is left out where no electrode is driven or
@@ -94,7 +94,7 @@ def working_point(
     index = modes.index(wanted)
     frequency, quality = float(modes.frequencies[index]), float(modes.quality_factors[index])
     driven = amplitude and bool(np.any(drive_signs(plate)))
-    return WorkingPoint(
+    return PlatePoint(
         wanted,
         frequency,
         float(modes.errors[index]),
@@ -139,7 +139,7 @@ def paper_plate() -> RectangularPlate:
 
 
 @functools.cache
-def paper_points() -> tuple[WorkingPoint, WorkingPoint]:
+def paper_points() -> tuple[PlatePoint, PlatePoint]:
     """Mode (8,0) of the paper's plate with d31 and with the printed e31."""
     plate = paper_plate()
     return working_point(plate), working_point(with_other_data_set(plate))
@@ -197,8 +197,8 @@ class Separation:
 class PrototypeStudy:
     """The solved plate beside the paper's numbers, and the explanations."""
 
-    from_d31: WorkingPoint
-    printed_e31: WorkingPoint
+    from_d31: PlatePoint
+    printed_e31: PlatePoint
     explanations: tuple[Explanation, ...]
     separations: tuple[Separation, ...]
 

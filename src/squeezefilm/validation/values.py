@@ -13,7 +13,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.design.analysis.paper_procedure import (
     PAPER_HALF_WAVELENGTHS,
-    Design,
+    PaperDesign,
     design_plate,
     friction_criterion,
     timoshenko_half_wavelength,
@@ -38,7 +38,7 @@ from squeezefilm.physics.plate.laminate import Laminate, Layer, laminate, plate_
 from squeezefilm.physics.plate.layout import AnnularStator
 from squeezefilm.validation.explanations import (
     MODAL_FREQUENCY,
-    WorkingPoint,
+    PlatePoint,
     paper_plate,
     paper_points,
     with_glue,
@@ -266,7 +266,7 @@ def _() -> ClaimValue:
     return ClaimValue((paper_plate().ceramic.stress_coefficient_from_d31,))
 
 
-def paper_design() -> Design:
+def paper_design() -> PaperDesign:
     """The design to which the paper's procedure (section 3.1) leads with its own laminate and
     finger."""
     gas = _stator().gas
@@ -309,7 +309,7 @@ def _() -> ClaimValue:
     )
 
 
-def _amplitude(point: WorkingPoint) -> si.Metre:
+def _amplitude(point: PlatePoint) -> si.Metre:
     """The largest amplitude on the upper face at the drive's voltage."""
     assert point.largest_per_volt is not None
     return load_display("biet2008-plate").drive.voltage * point.largest_per_volt

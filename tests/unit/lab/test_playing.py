@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from squeezefilm.lab.connections import Playing
+from squeezefilm.lab.connections import NowPlaying
 
 
 def test_pages_are_told_of_every_change_and_a_stop_stops_all() -> None:
@@ -16,7 +16,7 @@ def test_pages_are_told_of_every_change_and_a_stop_stops_all() -> None:
         told.append([(one["key"], one["plays"]) for one in message["now"]])
 
     def work() -> None:
-        playing = Playing(tell)
+        playing = NowPlaying(tell)
         playing.note("a", "a texture", lambda: stopped.append("a"), plays=False)
         playing.note("a", "a texture", lambda: stopped.append("a"), plays=False)
         playing.note("b", "a surface", lambda: playing.forget("b"), plays=True)

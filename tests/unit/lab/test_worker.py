@@ -250,7 +250,7 @@ def test_only_what_would_give_way_and_was_asked_by_the_page_is_cancelled(
 
 
 def test_both_lines_of_work_cancel_and_close(monkeypatch: pytest.MonkeyPatch) -> None:
-    lines = worker.Workers()
+    lines = worker.LabWorkers()
     did: list[Any] = []
     for name in ("quick", "slow"):
         line = getattr(lines, name)

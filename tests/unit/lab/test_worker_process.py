@@ -172,7 +172,7 @@ def test_two_lines_of_work_are_cancelled_and_closed_together(
     done: list[Any] = []
     monkeypatch.setattr(worker.Busy, "cancel", lambda self, page: done.append((self, page)))
     monkeypatch.setattr(worker.Busy, "close", lambda self: done.append((self, "closed")))
-    workers = worker.Workers()
+    workers = worker.LabWorkers()
     assert workers.quick is not workers.slow
     page: Any = object()
     workers.cancel(page)

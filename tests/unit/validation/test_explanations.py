@@ -17,7 +17,7 @@ from squeezefilm.validation.explanations import (
     MEASUREMENTS,
     NEIGHBOURS,
     Explanation,
-    WorkingPoint,
+    PlatePoint,
     paper_plate,
     paper_points,
     prototype_study,
@@ -45,7 +45,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[tuple[Any, Any, bool
         every.append((plate, label, amplitude))
         at = frequency(plate, label or (8, 0))
         driven = 80e-9 if amplitude else None
-        return WorkingPoint(label or (8, 0), at, 1.0, driven, 50.0, 1.1 * at)
+        return PlatePoint(label or (8, 0), at, 1.0, driven, 50.0, 1.1 * at)
 
     monkeypatch.setattr(prototype, "working_point", point)
     paper_points.cache_clear()
@@ -193,10 +193,10 @@ def test_an_end_of_the_range_that_meets_the_frequency_is_the_answer(
 ) -> None:
     ends = [8e3, 9e3]
 
-    def point(mass: float, label: Any = None, *, amplitude: bool = True) -> WorkingPoint:
+    def point(mass: float, label: Any = None, *, amplitude: bool = True) -> PlatePoint:
         is_there = mass == pytest.approx(ends[end], rel=1e-9)
         wanted = prototype.MEASURED_FREQUENCY * (1.0 if is_there else 1.1)
-        return WorkingPoint(label or (8, 0), wanted, 1.0, 80e-9, 50.0, wanted)
+        return PlatePoint(label or (8, 0), wanted, 1.0, 80e-9, 50.0, wanted)
 
     monkeypatch.setattr(prototype, "working_point", point)
     plate: Any = None

@@ -9,7 +9,11 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers, Usual, drawn_answers
-from squeezefilm.actuators.skin_stretch.array import Pull, SkinStretchArray, SkinStretchDescription
+from squeezefilm.actuators.skin_stretch.array import (
+    ArrayPull,
+    SkinStretchArray,
+    SkinStretchDescription,
+)
 from squeezefilm.actuators.skin_stretch.budget import (
     Lines,
     charging_power,
@@ -67,7 +71,7 @@ class ShownWave:
     strain: si.FloatArray
     displacements: si.MetreArray
     slips: np.ndarray[tuple[int, ...], np.dtype[np.bool]]
-    pull: Pull
+    pull: ArrayPull
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -95,7 +99,7 @@ class SkinStretchAnalysis(Result):
     tip: LoadedTip
     frequencies: si.HertzArray
     motion: si.ComplexArray
-    together: Pull
+    together: ArrayPull
     seating: Seating
     least_force: si.Newton | None
     radii: tuple[si.Metre, si.Metre] | None
@@ -270,7 +274,7 @@ def _answers(described: SkinStretchDescription, voltage: si.Volt) -> Mapping[str
 
 def _warnings(
     array: SkinStretchArray,
-    together: Pull,
+    together: ArrayPull,
     wave: ShownWave,
     seating: Seating,
     least: si.Newton | None,

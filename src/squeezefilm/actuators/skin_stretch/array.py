@@ -156,7 +156,7 @@ class SkinStretchArray:
         return strain_matrices(self.tissue, x, y, self.cradle.size, cell)
 
     @si.checked_numbers
-    def answer(self, voltages: Annotated[si.FloatArray, si.Unit("V")]) -> Pull:
+    def answer(self, voltages: Annotated[si.FloatArray, si.Unit("V")]) -> ArrayPull:
         """Forces and displacements of all contactors at voltages (V), one an actuator, raised
         together from none; those that friction does not hold slip.
 
@@ -172,7 +172,7 @@ class SkinStretchArray:
         return self.answers(voltages[None, :])[0]
 
     @si.checked_numbers
-    def answers(self, voltages: Annotated[si.FloatArray, si.Unit("V")]) -> tuple[Pull, ...]:
+    def answers(self, voltages: Annotated[si.FloatArray, si.Unit("V")]) -> tuple[ArrayPull, ...]:
         """`answer` to voltages (V) that follow one another, shape (instants, actuators): what has
         slid stays slid. Steps so small that a contactor slips one way in each; some milliseconds an
         instant where any slips.
@@ -194,7 +194,7 @@ class SkinStretchArray:
             left = wanted - slid - self._compliance @ forces
             # What sticks has nothing left but rounding.
             slid = slid + np.where(np.abs(forces) >= (1 - 1e-9) * self._held, left, 0.0)
-            pulls.append(Pull(row, forces, self.influence @ forces, self._held, slid))
+            pulls.append(ArrayPull(row, forces, self.influence @ forces, self._held, slid))
         return tuple(pulls)
 
     @functools.cached_property
@@ -225,7 +225,7 @@ class SkinStretchArray:
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
-class Pull:
+class ArrayPull:
     """Pull of an array at some `voltages`: `forces` on the skin, `displacements` of the skin under
     the contactors, `held`, the friction that may hold each, and how far each has `slid`."""
 

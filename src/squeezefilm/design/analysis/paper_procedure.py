@@ -40,7 +40,7 @@ _NO_ASYMPTOTE_YET = (
 
 
 @dataclass(frozen=True, eq=False)
-class Design:
+class PaperDesign:
     """Result of the procedure, with the paper's contradictions in words.
 
     `half_wavelengths` and `amplitudes` are the points of its Fig 11; an amplitude is NaN where no
@@ -94,7 +94,7 @@ def design_plate(
     ambient_pressure: si.Pascal,
     normal_force: si.Newton,
     smallest_area: si.SquareMetre = MEAN_EXPLORED_AREA,
-) -> Design:
+) -> PaperDesign:
     """The plate that the paper's procedure leads to, for one laminate and one finger.
 
     The number of ceramics is the smallest that covers `smallest_area` (m²); the mode has one
@@ -122,7 +122,7 @@ def design_plate(
     required = friction_criterion(
         gap, (mode.half_wavelength,), WANTED_FRICTION, normal_force, ambient_pressure
     )
-    return Design(
+    return PaperDesign(
         lowest_frequency=lowest,
         longest_half_wavelength_euler=euler,
         longest_half_wavelength_timoshenko=timoshenko,

@@ -79,7 +79,7 @@ class Claim:
 
 
 @dataclass(frozen=True)
-class Asked:
+class AskedDirection:
     """Published direction in one model: verdict on record, its grounds, why."""
 
     model: str
@@ -103,7 +103,7 @@ class Direction:
     printed: tuple[float, ...]
     unit: str
     relation: Relation
-    by: tuple[Asked, ...]
+    by: tuple[AskedDirection, ...]
     measured: bool = True
 
 

@@ -127,7 +127,7 @@ class DisplaySensitivities:
         }
 
 
-class _Changed(NamedTuple):
+class _ChangedValue(NamedTuple):
     """A value that is varied, and how a display with another one is made."""
 
     parameter: Parameter
@@ -166,18 +166,18 @@ def display_sensitivities(
     return DisplaySensitivities(tuple(rows), nominal, effort, bench.model)
 
 
-def _every(display: Display, mixture: Mixture) -> Iterator[_Changed]:
+def _every(display: Display, mixture: Mixture) -> Iterator[_ChangedValue]:
     """Ranges that the interval draws, and usual tolerances of the plate where there are none."""
     for drawn in mixture.inputs:
         if isinstance(drawn, Parameter):
-            yield _Changed(drawn, functools.partial(_with, path=drawn.path))
+            yield _ChangedValue(drawn, functools.partial(_with, path=drawn.path))
     if mixture.prediction.voltage is None:
         return
     # Of a calibrated plate, whose amplitude is drawn as a whole, what its own values may be.
     of_plate = uncertain_parameters(display, mixture.prediction.surface.name, driven=True)
     for parameter in of_plate:
         if parameter.path.startswith("actuator.") and parameter.path not in mixture.paths:
-            yield _Changed(parameter, functools.partial(_with, path=parameter.path))
+            yield _ChangedValue(parameter, functools.partial(_with, path=parameter.path))
     known_paths = {*mixture.paths, *(parameter.path for parameter in of_plate)}
     given = {path.replace(".0.", ".*.") for path in known_paths}
     for path, usual in _USUAL.items():
@@ -190,7 +190,7 @@ def _every(display: Display, mixture: Mixture) -> Iterator[_Changed]:
         reach = usual.either_way * (1 if usual.absolute else abs(nominal))
         spread = Uniform(nominal - reach, nominal + reach)
         known = Parameter(path, nominal, unit, spread, "assumed", usual.why)
-        yield _Changed(known, functools.partial(_with, path=path))
+        yield _ChangedValue(known, functools.partial(_with, path=path))
 
 
 def _with(display: Display, value: float, *, path: str) -> Display:
@@ -233,7 +233,7 @@ class _Bench:
                 self.glued = CoarseShifts(actuator, p.mode)
                 self.model += ", with another glue by the solid on its coarse mesh"
 
-    def shift(self, change: _Changed, value: float) -> Shift:
+    def shift(self, change: _ChangedValue, value: float) -> Shift:
         """Effect of one value in the place of the described one."""
         path = change.parameter.path
         if path.startswith("actuator."):

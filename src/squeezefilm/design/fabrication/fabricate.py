@@ -12,7 +12,7 @@ from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.design.fabrication.bill import BillRow, bill_of
-from squeezefilm.design.fabrication.test_plan import Known, TestStep, test_plan
+from squeezefilm.design.fabrication.test_plan import PlanFacts, TestStep, test_plan
 from squeezefilm.design.fabrication.wiring import (
     Electrode,
     NodalLines,
@@ -153,7 +153,7 @@ def fabricate(
     p = prediction
     load = load_of_mode(display.actuator, p.mode, p.voltage, p.frequency)
     mass = math.fsum(part.mass for part in parts)
-    known = Known(
+    known = PlanFacts(
         prediction,
         () if blind is None else blind.predictions,
         mass,

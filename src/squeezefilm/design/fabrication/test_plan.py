@@ -52,7 +52,7 @@ class TestStep:
 
 
 @dataclass(frozen=True, eq=False)
-class Known:
+class PlanFacts:
     """Inputs of the plan: everything is computed already."""
 
     prediction: Prediction
@@ -77,7 +77,7 @@ _UNITS = {
 }
 
 
-def test_plan(known: Known) -> tuple[TestStep, ...]:
+def test_plan(known: PlanFacts) -> tuple[TestStep, ...]:
     """The steps, each recording named as `squeezefilm measure calibrate` finds it in its folder."""
     steps = [
         _weighing(known),
@@ -95,7 +95,7 @@ def test_plan(known: Known) -> tuple[TestStep, ...]:
 test_plan.__test__ = False  # type: ignore[attr-defined] # pytest collects by name
 
 
-def _of(known: Known, answer: str, what: str, value: float | None, remark: str = "") -> Check:
+def _of(known: PlanFacts, answer: str, what: str, value: float | None, remark: str = "") -> Check:
     """A check of an answer, with the interval that was drawn of it."""
     matching = [predicted for predicted in known.expected if predicted.answer == answer]
     interval, level = (matching[0].interval, matching[0].level) if matching else (None, None)
@@ -104,7 +104,7 @@ def _of(known: Known, answer: str, what: str, value: float | None, remark: str =
     return Check(what, answer, _UNITS[answer], value, interval, level, (), remark)
 
 
-def _weighing(known: Known) -> TestStep:
+def _weighing(known: PlanFacts) -> TestStep:
     return TestStep(
         "Weigh it",
         "Weigh the assembly with its glue cured, before leads are soldered.",
@@ -118,7 +118,7 @@ def _volts(volts: si.Volt) -> str:
     return si.format_quantity(volts, _V, 3)
 
 
-def _band(known: Known) -> str:
+def _band(known: PlanFacts) -> str:
     mode = known.prediction.mode
     half = mode.resonance_frequency / (2 * mode.quality_factor)
     low, high = (mode.resonance_frequency + side * _BAND * half for side in (-1, 1))
@@ -134,7 +134,7 @@ def _band(known: Known) -> str:
     return f"from {ends} in {points} points"
 
 
-def _impedance(known: Known) -> TestStep:
+def _impedance(known: PlanFacts) -> TestStep:
     p, load = known.prediction, known.load
     static = None if load is None else load.capacitance
     checks = [
@@ -160,7 +160,7 @@ def _impedance(known: Known) -> TestStep:
     )
 
 
-def _response(known: Known) -> TestStep:
+def _response(known: PlanFacts) -> TestStep:
     p = known.prediction
     volts = SMALL_SIGNAL * (p.voltage or 0.0)
     at = place_words(p.mode.lobe)
@@ -178,7 +178,7 @@ def _response(known: Known) -> TestStep:
     )
 
 
-def _line(known: Known) -> TestStep:
+def _line(known: PlanFacts) -> TestStep:
     p, nodal = known.prediction, known.nodal
     half = p.mode.half_wavelength
     checks = [_of(known, "half_wavelength", "Half wavelength", half)]
@@ -206,7 +206,7 @@ def _line(known: Known) -> TestStep:
     )
 
 
-def _grid(known: Known) -> TestStep | None:
+def _grid(known: PlanFacts) -> TestStep | None:
     mode = known.prediction.mode
     if mode.solid is None:
         return None
@@ -228,7 +228,7 @@ def _grid(known: Known) -> TestStep | None:
     )
 
 
-def _decay(known: Known) -> TestStep:
+def _decay(known: PlanFacts) -> TestStep:
     p = known.prediction
     quality = _of(known, "quality_factor", "Quality factor", p.mode.quality_factor)
     ends = None
@@ -254,7 +254,7 @@ def _decay(known: Known) -> TestStep:
     )
 
 
-def _voltages(known: Known) -> TestStep | None:
+def _voltages(known: PlanFacts) -> TestStep | None:
     p, load, unsure = known.prediction, known.load, known.uncertainty
     if not p.voltage:
         return None
@@ -286,7 +286,7 @@ def _voltages(known: Known) -> TestStep | None:
     )
 
 
-def _strokes(known: Known) -> TestStep:
+def _strokes(known: PlanFacts) -> TestStep:
     p, unsure = known.prediction, known.uncertainty
     ends = None if unsure is None else unsure.amplitude_interval
     if ends is not None and ends[0] == ends[1]:

@@ -17,7 +17,7 @@ from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.design.search.shapes import AnyShape, Ring, shape_called
 from squeezefilm.design.search.space import VOLTAGE, Space, number
-from squeezefilm.design.search.stock import OWN, Body, Room
+from squeezefilm.design.search.stock import OWN, Body, PlateRoom
 from squeezefilm.measure.fits.friction.person import with_finger
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.display import Display, load_display
@@ -48,7 +48,7 @@ class Workspace:
     largest_length: Annotated[si.Metre, hard.SIDE] | None = None
     largest_width: Annotated[si.Metre, hard.SIDE] | None = None
 
-    def room(self, contact: si.Metre) -> Room:
+    def room(self, contact: si.Metre) -> PlateRoom:
         """The least and the most of a plate's sides under a contact that is so long (m), half of
         which lies beyond the workspace at either end. Raises `InputError` where most is less."""
         asked = {"length": self.length, "width": self.width}
@@ -69,12 +69,12 @@ class Workspace:
                     f"ask for less {name}",
                     quantity=f"largest_{name}",
                 )
-        return Room((least["length"], least["width"]), (most["length"], most["width"]))
+        return PlateRoom((least["length"], least["width"]), (most["length"], most["width"]))
 
 
 @si.checked_numbers
 @dataclass(frozen=True)
-class Touch:
+class AskedTouch:
     """The finger that the requirements are about: its speed (m/s), force (N; None: that of the
     display which the search starts from), and the surface's name (None: the first)."""
 
@@ -177,7 +177,7 @@ def toleranced(body: Body) -> dict[str, str]:
 
 
 # Frozen, so that all requirements may share them.
-_TOUCH, _LIMITS, _TOLERANCES = Touch(), Limits(), Tolerances()
+_TOUCH, _LIMITS, _TOLERANCES = AskedTouch(), Limits(), Tolerances()
 
 
 @si.checked_numbers
@@ -203,7 +203,7 @@ class Requirements:
     workspace: Workspace
     drive: Source
     shapes: tuple[AnyShape, ...]
-    touch: Touch = _TOUCH
+    touch: AskedTouch = _TOUCH
     limits: Limits = _LIMITS
     tolerances: Tolerances = _TOLERANCES
     objectives: tuple[Objective, ...] = ("relative_friction", "finest_period")
@@ -288,7 +288,7 @@ class Requirements:
         """The quality factor that every design is taken to have."""
         return self.own.quality_factor if self.quality_factor is None else self.quality_factor
 
-    def room_of(self, shape: AnyShape) -> Room:
+    def room_of(self, shape: AnyShape) -> PlateRoom:
         """Room that a shape must give and may take: half the finger's contact more than the
         workspace at every edge; round a ring, whose track the finger follows, the workspace."""
         contact = math.sqrt(self.base.finger.contact_area())

@@ -23,9 +23,9 @@ from squeezefilm.design.search.stock import (
     CUT,
     Body,
     CeramicStock,  # noqa: F401 - of the inherited fields, whose annotations are read here
-    Room,
+    PlateRoom,
     Shape,
-    Sheet,  # noqa: F401
+    StockSheet,  # noqa: F401
     as_drawn,
     ceramic_named,
     counts,
@@ -73,7 +73,7 @@ class Strips(Shape):
     glue: GlueLayer | None = None
     type: Literal["strips"] = "strips"
 
-    def variables(self, room: Room) -> tuple[Variable, ...]:
+    def variables(self, room: PlateRoom) -> tuple[Variable, ...]:
         """Variables. A catalogue's ceramics make the length, which is chosen otherwise."""
         (length, width), (longest, widest) = room.least, room.most
         own = self.catalogue
@@ -91,7 +91,9 @@ class Strips(Shape):
             ),
         )
 
-    def body(self, values: Mapping[str, Setting], own: Body, quality: float, room: Room) -> Body:
+    def body(
+        self, values: Mapping[str, Setting], own: Body, quality: float, room: PlateRoom
+    ) -> Body:
         """The plate of a choice. Raises `GeometryError` for ceramics that do not fit."""
         lines, width = int(values["nodal_lines"]), float(values["width"])
         count = lines - 1
@@ -189,7 +191,7 @@ class EdgeStrips(Shape):
     gasket: Gasket | None = None
     type: Literal["edge_strips"] = "edge_strips"
 
-    def variables(self, room: Room) -> tuple[Variable, ...]:
+    def variables(self, room: PlateRoom) -> tuple[Variable, ...]:
         """Variables; the strips' width from a catalogue where ceramics have lengths."""
         (length, width), (longest, widest) = room.least, room.most
         own = self.catalogue
@@ -203,7 +205,9 @@ class EdgeStrips(Shape):
             else step("strip", own, "m", "ceramic"),
         )
 
-    def body(self, values: Mapping[str, Setting], own: Body, quality: float, room: Room) -> Body:
+    def body(
+        self, values: Mapping[str, Setting], own: Body, quality: float, room: PlateRoom
+    ) -> Body:
         """The plate of a choice. Raises `GeometryError` for strips that do not fit."""
         lines, strip = int(values["nodal_lines"]), float(values["strip"])
         length, width = float(values["length"]), float(values["width"])
@@ -261,7 +265,7 @@ class Disc(Shape):
     glue: GlueLayer | None = None
     type: Literal["disc"] = "disc"
 
-    def variables(self, room: Room) -> tuple[Variable, ...]:
+    def variables(self, room: PlateRoom) -> tuple[Variable, ...]:
         """Variables; the ceramic's diameter from a catalogue where ceramics have lengths."""
         own = self.catalogue
         return (
@@ -273,7 +277,9 @@ class Disc(Shape):
             else step("ceramic_diameter", own, "m", "ceramic"),
         )
 
-    def body(self, values: Mapping[str, Setting], own: Body, quality: float, room: Room) -> Body:
+    def body(
+        self, values: Mapping[str, Setting], own: Body, quality: float, room: PlateRoom
+    ) -> Body:
         """The disc of a choice. Raises `GeometryError` for a ceramic that overhangs."""
         diameter = float(values["diameter"])
         return DiscPlate(
@@ -312,7 +318,7 @@ class Ring(Shape):
                 quantity="lengths",
             )
 
-    def variables(self, room: Room) -> tuple[Variable, ...]:
+    def variables(self, room: PlateRoom) -> tuple[Variable, ...]:
         """Variables."""
         (around, track), (longest, widest) = room.least, room.most
         return (
@@ -322,7 +328,9 @@ class Ring(Shape):
             number("radial_width", track, widest, "m"),
         )
 
-    def body(self, values: Mapping[str, Setting], own: Body, quality: float, room: Room) -> Body:
+    def body(
+        self, values: Mapping[str, Setting], own: Body, quality: float, room: PlateRoom
+    ) -> Body:
         """The ring of a choice. Raises `GeometryError` for a track that closes the hole."""
         mean, track = float(values["mean_diameter"]), float(values["radial_width"])
         if track >= mean:

@@ -23,7 +23,7 @@ OWN = "as described"
 
 @si.checked_numbers
 @dataclass(frozen=True)
-class Sheet:
+class StockSheet:
     """A substrate in the thicknesses (m) in which it is sold, with a class of cost (1 is cheap;
     the file's own judgement)."""
 
@@ -123,7 +123,7 @@ def as_drawn(length: si.Metre) -> si.Metre:
 
 
 @dataclass(frozen=True)
-class Room:
+class PlateRoom:
     """Room that a plate must give and may take, along its length and across (m)."""
 
     least: tuple[si.Metre, si.Metre]
@@ -137,7 +137,7 @@ class Shape:
     Raises `InputError` for stock that is not there, named twice, or not in the library.
     """
 
-    sheets: tuple[Sheet, ...]
+    sheets: tuple[StockSheet, ...]
     ceramics: tuple[CeramicStock, ...]
 
     def __post_init__(self) -> None:

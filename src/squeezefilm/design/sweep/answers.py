@@ -25,7 +25,7 @@ FOLLOWED = "followed"
 
 
 @dataclass(frozen=True)
-class Asked:
+class AskedNumber:
     """A number that is asked for: the verb that answers, and its key in the verb's JSON."""
 
     verb: str
@@ -124,14 +124,14 @@ def _known(verb: str, key: str) -> bool:
     return any(_pattern(pattern).fullmatch(key) for pattern in catalogue()[verb])
 
 
-def asked_for(texts: Sequence[str]) -> tuple[Asked, ...]:
+def asked_for(texts: Sequence[str]) -> tuple[AskedNumber, ...]:
     """Numbers that texts ask for, in their order, each once: names with commas between them.
 
     A name is a dotted key, with its unit or without, with the verb before it or without; the name
     of a group asks for all numbers in it. Raises `InputError` for a name that no verb knows, or
     that stands for two quantities.
     """
-    wanted: dict[Asked, None] = {}
+    wanted: dict[AskedNumber, None] = {}
     for text in texts:
         # A few names have a comma in them.
         whole = any(_spelled_out(text.strip(), keys) for keys in catalogue().values())
@@ -146,10 +146,10 @@ def asked_for(texts: Sequence[str]) -> tuple[Asked, ...]:
     return tuple(wanted)
 
 
-def _asked_by(name: str) -> list[Asked]:
+def _asked_by(name: str) -> list[AskedNumber]:
     head, _, rest = name.partition(".")
     if name == FOLLOWED:
-        return [Asked(FOLLOWED, "frequency_Hz")]
+        return [AskedNumber(FOLLOWED, "frequency_Hz")]
     verbs = [head] if head in VERBS and rest else [verb for verb in VERBS if verb != FOLLOWED]
     wanted = rest if verbs == [head] else name
     for verb in verbs:
@@ -160,7 +160,7 @@ def _asked_by(name: str) -> list[Asked]:
             raise InputError(f"ask {name} may be {' or '.join(plain)}; say which", quantity="ask")
         group = [key for key in keys if without_units(key).startswith(f"{without_units(wanted)}.")]
         if meant := plain or [key for key in group if "*" not in key]:
-            return [Asked(verb, key) for key in meant]
+            return [AskedNumber(verb, key) for key in meant]
         if group:
             raise InputError(
                 f"ask {name} is a list of {verb}; say which of it, like "

@@ -21,7 +21,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.formats.traces import text_of_file
 from squeezefilm.core.hard_limits import SWEEP_STEPS, require_within
-from squeezefilm.design.sweep.verbs import OPTIONS, Option
+from squeezefilm.design.sweep.verbs import OPTIONS, VerbOption
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.parameters import number_paths, unit_at
 
@@ -175,7 +175,7 @@ def _column(
     return Axis((name,), (unit,), tuple(steps))
 
 
-def what_is_varied(name: str, display: Display) -> tuple[Option | None, si.Unit | None, bool]:
+def what_is_varied(name: str, display: Display) -> tuple[VerbOption | None, si.Unit | None, bool]:
     """The operating option of a name, if it is one; the unit of its numbers; whether they are
     whole."""
     if name in OPTIONS:
@@ -225,7 +225,7 @@ def _spaced(name: str, asked: re.Match[str], unit: si.Unit) -> Iterator[float]:
     yield from (first, *(float(f"{value:.12g}") for value in middle[1:-1]), last)
 
 
-def _value(name: str, given: Any, option: Option | None, unit: si.Unit | None) -> Value:
+def _value(name: str, given: Any, option: VerbOption | None, unit: si.Unit | None) -> Value:
     if unit is None:
         assert option is not None
         return option.word(given)

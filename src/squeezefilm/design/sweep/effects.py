@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
-from squeezefilm.design.sweep.swept import Column, Sweep
+from squeezefilm.design.sweep.swept import Sweep, SweptColumn
 
 _DEGREES = range(1, 7)
 _REDRAWN = 100
@@ -55,7 +55,7 @@ class Effects:
     that only both together explain, with its error; `explained` is what the fit explains of points
     left out (None where nothing was fitted: the whole grid)."""
 
-    column: Column
+    column: SweptColumn
     shares: tuple[Share, ...]
     pairs: dict[tuple[int, int], tuple[si.Dimensionless, si.Dimensionless]]
     explained: si.Dimensionless | None
@@ -100,7 +100,7 @@ def effects_of(sweep: Sweep) -> tuple[Effects, ...]:
     return tuple(out)
 
 
-def _of_grid(column: Column, grid: si.FloatArray) -> Effects:
+def _of_grid(column: SweptColumn, grid: si.FloatArray) -> Effects:
     """The analysis of variance of a whole grid, one point in each cell."""
     count = grid.ndim
     variance = float(grid.var())
@@ -121,7 +121,7 @@ def _of_grid(column: Column, grid: si.FloatArray) -> Effects:
 
 
 def _of_points(
-    column: Column, varied: Sequence[Varied], there: NDArray[np.bool_]
+    column: SweptColumn, varied: Sequence[Varied], there: NDArray[np.bool_]
 ) -> Effects | None:
     """The shares of a fit by orthogonal polynomials; None where the points are too few."""
     y = column.values[there]

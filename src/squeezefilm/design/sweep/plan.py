@@ -25,7 +25,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import SWEEP_POINTS, require_within
-from squeezefilm.design.sweep.answers import FOLLOWED, Asked, asked_for
+from squeezefilm.design.sweep.answers import FOLLOWED, AskedNumber, asked_for
 from squeezefilm.design.sweep.axes import (
     DISPLAY,
     Axis,
@@ -35,7 +35,7 @@ from squeezefilm.design.sweep.axes import (
     what_is_varied,
 )
 from squeezefilm.design.sweep.points import Point
-from squeezefilm.design.sweep.verbs import OPTIONS, VERBS, Option
+from squeezefilm.design.sweep.verbs import OPTIONS, VERBS, VerbOption
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.uncertainty.parameters import value_at, with_values
 from squeezefilm.physics.uncertainty.uncertainty import SAMPLES
@@ -52,12 +52,12 @@ class SampledAxes:
 
 
 @dataclass(frozen=True)
-class _Range:
+class _DrawnRange:
     """A range: its ends (SI), whether it is drawn in its logarithm, whether in whole numbers."""
 
     name: str
     unit: si.Unit
-    option: Option | None
+    option: VerbOption | None
     first: float
     last: float
     logarithmic: bool
@@ -97,7 +97,7 @@ def axes_of_ranges(
         if isinstance(vary, Mapping)
         else [(text.partition("=")[0].strip(), text.partition("=")[2].strip()) for text in vary]
     )
-    ranges: dict[int, _Range] = {}
+    ranges: dict[int, _DrawnRange] = {}
     for number, (name, values) in enumerate(pairs):
         match = _RANGE.fullmatch(values) if isinstance(values, str) else None
         if match is not None:
@@ -116,7 +116,7 @@ def axes_of_ranges(
     return SampledAxes((_axis(list(ranges.values()), count, seed),), others)
 
 
-def _axis(ranges: Sequence[_Range], count: int, seed: int) -> Axis:
+def _axis(ranges: Sequence[_DrawnRange], count: int, seed: int) -> Axis:
     from scipy.stats import qmc
 
     # Whole powers of two, of which the first are taken: a sequence has no other beginning.
@@ -132,7 +132,7 @@ def _axis(ranges: Sequence[_Range], count: int, seed: int) -> Axis:
     )
 
 
-def _range(name: str, match: re.Match[str], display: Display) -> _Range:
+def _range(name: str, match: re.Match[str], display: Display) -> _DrawnRange:
     option, unit, whole = what_is_varied(name, display)
     if unit is None:
         raise InputError(f"{name} takes words, which have no range; name them with commas between")
@@ -143,7 +143,7 @@ def _range(name: str, match: re.Match[str], display: Display) -> _Range:
             f"{name} from {match['first'].strip()} to {match['last'].strip()} is no range to draw "
             f"in; give two ends{', above 0 for a logarithm' if match['log'] else ''}"
         )
-    return _Range(name, unit, option, low, high, match["log"] is not None, whole)
+    return _DrawnRange(name, unit, option, low, high, match["log"] is not None, whole)
 
 
 def plan_of(
@@ -190,7 +190,7 @@ def told_apart(displays: Sequence[Display]) -> list[str]:
 
 
 def _check_options(
-    axes: Sequence[Axis], asked: Sequence[Asked], displays: Sequence[Display]
+    axes: Sequence[Axis], asked: Sequence[AskedNumber], displays: Sequence[Display]
 ) -> None:
     """Refuse options that mean nothing to what is asked, before anything is computed."""
     verbs = [VERBS[name] for name in dict.fromkeys(answer.verb for answer in asked)]
@@ -225,7 +225,7 @@ class Plan:
 
     displays: tuple[Display, ...]
     axes: tuple[Axis, ...]
-    asked: tuple[Asked, ...]
+    asked: tuple[AskedNumber, ...]
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -242,7 +242,7 @@ class Plan:
     def _whole(self) -> bool:
         return any(answer.verb == "analyze" for answer in self.asked)
 
-    def verb_of(self, asked: Asked) -> str:
+    def verb_of(self, asked: AskedNumber) -> str:
         """The verb that answers it here."""
         return "analyze" if self._whole and asked.verb == "predict" else asked.verb
 

@@ -137,7 +137,7 @@ def _meant(name: str, value: Any, known: dict[Any, Any]) -> Any:
     return known[name, value]
 
 
-class Kept:
+class KeptAnswers:
     """The answers in a folder's file, by address; without a folder, in memory.
 
     Raises `InputError` where the file cannot be read or written.

@@ -17,11 +17,11 @@ from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import WorkersError
 from squeezefilm.core.progress import SayProgress, about
 from squeezefilm.core.results import config_hash, stamp
-from squeezefilm.design.sweep.answers import FOLLOWED, Asked
+from squeezefilm.design.sweep.answers import FOLLOWED, AskedNumber
 from squeezefilm.design.sweep.followed import FollowedMode, followed_modes
 from squeezefilm.design.sweep.plan import plan_of, told_apart
-from squeezefilm.design.sweep.points import Answer, Kept, Point, address, answered
-from squeezefilm.design.sweep.swept import NOT_YET, Column, Sweep, counted
+from squeezefilm.design.sweep.points import Answer, KeptAnswers, Point, address, answered
+from squeezefilm.design.sweep.swept import NOT_YET, Sweep, SweptColumn, counted
 from squeezefilm.design.sweep.workers import workers
 from squeezefilm.physics.display import Display, NamedDisplay
 
@@ -70,12 +70,12 @@ def sweep(asked: SweepRequest) -> Sweep:
     computed for a name that is not known, a value that is none, or a sweep without a point that can
     be.
     """
-    run = Run(asked)
+    run = SweepRun(asked)
     run.finish()
     return run.result()
 
 
-class Run:
+class SweepRun:
     """A sweep under way: its plan, and the answers that it has."""
 
     def __init__(self, asked: SweepRequest) -> None:
@@ -83,7 +83,7 @@ class Run:
             asked.display, asked.vary, asked.ask, asked.over, (asked.sample, asked.seed)
         )
         self._asked, self._tell = asked, asked.progress or (lambda _: None)
-        self._kept = Kept(None if asked.out is None else Path(asked.out))
+        self._kept = KeptAnswers(None if asked.out is None else Path(asked.out))
         self._found: dict[tuple[int, str], Answer] = {}
         self._before: set[str] = set()
         self._computed = 0
@@ -134,7 +134,7 @@ class Run:
         plan = self.plan
         reasons = tuple(self._reason(k) for k in range(len(plan.points)))
         follows = self._followed()
-        columns: list[Column] = []
+        columns: list[SweptColumn] = []
         for number in plan.asked:
             columns += self._columns(number, follows)
         hashed = [config_hash(display) for display in plan.displays]
@@ -166,7 +166,9 @@ class Run:
             return "; ".join(dict.fromkeys(said))
         return NOT_YET if None in answers else ""
 
-    def _columns(self, asked: Asked, follows: Sequence[FollowedMode]) -> Iterator[Column]:
+    def _columns(
+        self, asked: AskedNumber, follows: Sequence[FollowedMode]
+    ) -> Iterator[SweptColumn]:
         every = range(len(self.plan.points))
         if asked.verb == FOLLOWED:
             quantity = asked.key.rpartition(".")[2]
@@ -174,12 +176,12 @@ class Run:
                 if not mode.driven and quantity != "frequency_Hz" and quantity != "quality_factor":
                     continue  # nothing drives it anywhere: a column of nothing
                 name = f"{FOLLOWED}.{mode.label}.{quantity}"
-                yield Column(name, asked.unit, mode.values(self._modes(), quantity))
+                yield SweptColumn(name, asked.unit, mode.values(self._modes(), quantity))
             return
         verb = self.plan.verb_of(asked)
         answers = [self._found.get((number, verb)) for number in every]
         values = [math.nan if a is None else a.numbers.get(asked.key, math.nan) for a in answers]
-        yield Column(asked.column, asked.unit, np.array(values))
+        yield SweptColumn(asked.column, asked.unit, np.array(values))
 
     def _modes(self) -> list[Any]:
         """Modes that the points tell of; None where they say nothing."""
@@ -200,7 +202,7 @@ class Run:
 def sweep_until_stopped(asked: SweepRequest) -> tuple[Sweep, str]:
     """A sweep that Ctrl-C or the end of a cluster stops, with what was computed until then, and
     what stopped it (empty where nothing did). Raises as `sweep`."""
-    run = Run(asked)
+    run = SweepRun(asked)
     stopped = ""
     try:
         run.finish()

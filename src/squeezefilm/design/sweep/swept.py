@@ -34,7 +34,7 @@ def counted(texts: Iterable[str]) -> tuple[tuple[str, int], ...]:
 
 
 @dataclass(frozen=True)
-class Column:
+class SweptColumn:
     """A number over the points: its name with its unit, the unit, the values (SI; NaN for none),
     shape (points,)."""
 
@@ -61,7 +61,7 @@ class Sweep(Result):
     title: str
     verbs: tuple[str, ...]
     axes: tuple[Axis, ...]
-    columns: tuple[Column, ...]
+    columns: tuple[SweptColumn, ...]
     reasons: tuple[str, ...]
     warnings: tuple[tuple[str, int], ...]
     computed: int

@@ -28,7 +28,7 @@ from squeezefilm.physics.uncertainty.parameters import with_values
 
 
 @dataclass(frozen=True)
-class Option:
+class VerbOption:
     """An operating option: the unit of its numbers, or for words what reads one.
 
     Numbers are `bounds`, words for `si.require`; `between` separates several words in a text. A
@@ -60,12 +60,12 @@ class Option:
         return value if self.unit is not None else self.read(value)
 
 
-def _one_of(name: str, allowed: Sequence[str]) -> Option:
+def _one_of(name: str, allowed: Sequence[str]) -> VerbOption:
     def read(word: str) -> str:
         si.require_one_of(name, word, allowed)
         return word
 
-    return Option(name, read=read)
+    return VerbOption(name, read=read)
 
 
 def _yes_or_no(word: str) -> bool:
@@ -73,26 +73,26 @@ def _yes_or_no(word: str) -> bool:
     return word == "true"
 
 
-OPTIONS: dict[str, Option] = {
+OPTIONS: dict[str, VerbOption] = {
     option.name: option
     for option in (
-        Option("voltage", si.Unit("V"), {"at_least": 0}),
-        Option("frequency", si.Unit("Hz"), {"above": 0}),
-        Option("vibration_amplitude", si.Unit("m"), {"at_least": 0}),
-        Option("normal_force", si.Unit("N"), {"above": 0}),
-        Option("speed", si.Unit("m/s"), {"above": 0}),
-        Option("position", si.Unit("m")),
-        Option("ambient_pressure", si.Unit("Pa"), {"above": 0}),
-        Option("wanted_friction", si.Unit("1"), {"at_least": 0, "at_most": 1}),
-        Option("surface"),
+        VerbOption("voltage", si.Unit("V"), {"at_least": 0}),
+        VerbOption("frequency", si.Unit("Hz"), {"above": 0}),
+        VerbOption("vibration_amplitude", si.Unit("m"), {"at_least": 0}),
+        VerbOption("normal_force", si.Unit("N"), {"above": 0}),
+        VerbOption("speed", si.Unit("m/s"), {"above": 0}),
+        VerbOption("position", si.Unit("m")),
+        VerbOption("ambient_pressure", si.Unit("Pa"), {"above": 0}),
+        VerbOption("wanted_friction", si.Unit("1"), {"at_least": 0, "at_most": 1}),
+        VerbOption("surface"),
         _one_of("model", typing.get_args(FrictionModel)),
         _one_of("theory", PLATE_THEORIES),
-        Option("band", read=parse_band),
-        Option("texture", read=load_texture, of_file=True),
-        Option("motion", read=motion_from, between=";", of_file=True),
-        Option("sensor", read=sensor_named),
+        VerbOption("band", read=parse_band),
+        VerbOption("texture", read=load_texture, of_file=True),
+        VerbOption("motion", read=motion_from, between=";", of_file=True),
+        VerbOption("sensor", read=sensor_named),
         _one_of("compensation", COMPENSATIONS),
-        Option("braking", read=_yes_or_no),
+        VerbOption("braking", read=_yes_or_no),
         _one_of("wave", WAVES),
     )
 }

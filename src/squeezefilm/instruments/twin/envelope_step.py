@@ -49,7 +49,7 @@ class Electrical(NamedTuple):
     force_factor: float
 
 
-class Limits(NamedTuple):
+class EnvelopeLimits(NamedTuple):
     """The amplifier's largest voltage (V), current (A) and slew rate (V/s)."""
 
     voltage: float
@@ -129,7 +129,7 @@ def drawn_current(voltage: float, z: complex, omega: float, plate: Electrical) -
 
 @compiled()
 def voltage_given(
-    wanted: float, z: complex, omega: float, plate: Electrical, limits: Limits
+    wanted: float, z: complex, omega: float, plate: Electrical, limits: EnvelopeLimits
 ) -> Any:
     """The voltage on the plate (V) and what limits it: rail, slew rate or current."""
     capacitance, loss, force_factor = plate

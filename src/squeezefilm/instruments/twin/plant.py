@@ -127,7 +127,7 @@ def hearing(pickup: PickupModel) -> Hearing:
 
 
 @compiled()
-def heard(plant: k.State, ear: Hearing) -> complex:
+def heard(plant: k.PlantState, ear: Hearing) -> complex:
     """The complex amplitude at the pickup's input (V) against the drive, with its noise."""
     s, n, c, _ = plant
     z = complex(s[k.Z_RE], s[k.Z_IM])
@@ -171,9 +171,9 @@ class Plant:
         forces = np.ascontiguousarray(point.forces, dtype=float)
         highest = float(point.highest_amplitude)
         self._rest = (
-            k.State(self._s, self._n, self._c, k.untouched(friction)),
+            k.PlantState(self._s, self._n, self._c, k.untouched(friction)),
             Fingers(forces, point.load, highest),
-            k.Path(self._places, self._plan),
+            k.HandPath(self._places, self._plan),
             self._ring,
             self._buffer,
         )

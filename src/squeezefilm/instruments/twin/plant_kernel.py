@@ -34,9 +34,9 @@ from squeezefilm.instruments.twin.envelope_step import (
     RAIL,
     SLEW,
     Electrical,
+    EnvelopeLimits,
     Fingers,
     FrictionTables,
-    Limits,
     Resonance,
     at_speed,
     drawn_current,
@@ -127,7 +127,7 @@ def gaussian(seed: int, stream: int, number: int) -> float:
     return radius * math.cos(2.0 * math.pi * uniform(seed, 2 * stream + 1, number))
 
 
-class Path(NamedTuple):
+class HandPath(NamedTuple):
     """The hand's places and its plan, as `hand.wanted` takes them."""
 
     places: si.Array
@@ -151,7 +151,7 @@ class Contact(NamedTuple):
     track: Track
 
 
-class State(NamedTuple):
+class PlantState(NamedTuple):
     """State, counts and constants, at the places that are named above, and the skin's contact."""
 
     state: si.Array
@@ -182,7 +182,7 @@ def resonance(time: int, warmth: float, c: si.Array) -> float:
 
 @compiled()
 def _sense(
-    t0: int, h_us: int, x0: float, y0: float, plant: State, ring: si.Array, touching: bool
+    t0: int, h_us: int, x0: float, y0: float, plant: PlantState, ring: si.Array, touching: bool
 ) -> None:
     s, n, c, _ = plant
     seed = int(c[C_SEED])
@@ -244,7 +244,7 @@ def lagged(felt: float, before: float, after: float, h: float, lag: float) -> fl
 
 
 @compiled()
-def _grip(force: float, amplitude: float, plant: State, fingers: Fingers) -> None:
+def _grip(force: float, amplitude: float, plant: PlantState, fingers: Fingers) -> None:
     """The friction at the end of a step; what was there becomes that at its start."""
     _, n, c, (tables, _, _, _, limit, rows, _) = plant
     i, p, j, q, beyond = table_place(force, amplitude, fingers)
@@ -257,7 +257,7 @@ def _grip(force: float, amplitude: float, plant: State, fingers: Fingers) -> Non
 
 
 @compiled()
-def _drag(h: float, x0: float, v0: float, plant: State) -> None:
+def _drag(h: float, x0: float, v0: float, plant: PlantState) -> None:
     """The skin under a bone that went from x0 with v0, under the friction of the contact."""
     s, n, c, (tables, bone, speed_in, speed_out, limit, rows, track) = plant
     speeds = tables.speed
@@ -284,9 +284,9 @@ def advance(
     until: int,
     level: int,
     carrier: int,
-    plant: State,
+    plant: PlantState,
     fingers: Fingers,
-    path: Path,
+    path: HandPath,
     ring: si.Array,
     truth: si.Array,
 ) -> int:
@@ -300,7 +300,7 @@ def advance(
     step, row = np.int64(c[C_STEP]), np.int64(c[C_ROW])
     drifts = Drifts(0.0, c[C_QUALITY_DRIFT], c[C_CHARGE_DRIFT], c[C_SOFTENING], c[C_FIELD_DRIFT])
     cooling = Cooling(c[C_COOLING], c[C_FACE], c[C_FACE_LENGTH], c[C_EMISSIVITY], c[C_ROOM])
-    limits = Limits(c[C_RAIL], c[C_CURRENT], c[C_SLEW])
+    limits = EnvelopeLimits(c[C_RAIL], c[C_CURRENT], c[C_SLEW])
     if carrier > 0:
         n[CARRIER] = carrier
     here = wanted(n[NOW], places, plan)

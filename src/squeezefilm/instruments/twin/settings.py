@@ -67,7 +67,7 @@ class PlateDrift:
 
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
-class Amplifier:
+class TwinAmplifier:
     """Limits of an amplifier at the plate's capacitance and motional branch.
 
     Args:
@@ -95,7 +95,7 @@ class Amplifier:
 
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
-class Arm:
+class TwinArm:
     """The arm that leads the finger: mass, spring and damper between finger and wanted place.
 
     Args:
@@ -168,8 +168,8 @@ class TwinSettings:
     truth_rows: Annotated[int, si.AtLeast(1)] = 200_000
     highest_amplitude_ratio: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(100.0)] = 2.0
     drift: PlateDrift = PlateDrift()
-    amplifier: Amplifier = Amplifier()
-    arm: Arm = Arm()
+    amplifier: TwinAmplifier = TwinAmplifier()
+    arm: TwinArm = TwinArm()
     sensor: SensorModel = TOUCH_PANEL_240_HZ
     pickup: PickupModel = PickupModel()
     dry: DryFriction = _COULOMB

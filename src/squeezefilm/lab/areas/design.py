@@ -109,7 +109,7 @@ class DesignArea:
         return {"type": "field limits", "path": asked.path, "allowed": words}
 
     async def _compute(self, asked: ComputeDesign) -> Answer:
-        point = design.WorkingPoint(**asked.model_dump(exclude={"id", "type", "quality", "of"}))
+        point = design.DesignPoint(**asked.model_dump(exclude={"id", "type", "quality", "of"}))
         quick, slow, page = self._lab.workers.quick, self._lab.workers.slow, PAGE.get(None)
 
         def told(text: str, share: float) -> None:

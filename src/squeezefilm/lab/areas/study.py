@@ -12,7 +12,7 @@ from pydantic import Field
 
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.lab.keys import CODE_LIFE
-from squeezefilm.lab.studying.devices import Measured, StudyDevices, require_device
+from squeezefilm.lab.studying.devices import MeasuredDevice, StudyDevices, require_device
 from squeezefilm.lab.studying.jobs import analysis_of, rehearsed, report_of
 from squeezefilm.lab.studying.studies import Studies
 from squeezefilm.lab.wire import Answer, Handler, Request
@@ -306,7 +306,9 @@ class StudyArea:
         except (DeviceError, InputError) as error:
             lost = f"the device could not be verified: {error}"
             verification = DeviceVerification(measurable=False, remark=lost)
-            return Measured(DeviceIdentity(sitting.device.partition(":")[0]), verification), lost
+            return MeasuredDevice(
+                DeviceIdentity(sitting.device.partition(":")[0]), verification
+            ), lost
 
     async def _release_ended(self) -> None:
         for held in self._devices.holders():

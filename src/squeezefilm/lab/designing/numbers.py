@@ -62,7 +62,7 @@ def changed(text: str, path: str, value: str) -> dict[str, Any]:
 
 
 @dataclass(frozen=True, slots=True)
-class WorkingPoint:
+class DesignPoint:
     """Request about a display's text; `path` and `value` are an edit made on the way.
 
     `voltage` and `force` are quantity texts, None for the display's own.
@@ -82,7 +82,7 @@ class WorkingPoint:
         return edited(self.text, self.path, self.value)
 
 
-def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
+def designed(point: DesignPoint, quality: str) -> dict[str, Any]:
     """The text, the numbers, curves and shape of a display at a working point. Keys carry units.
 
     Raises:
@@ -132,7 +132,7 @@ def designed(point: WorkingPoint, quality: str) -> dict[str, Any]:
     }
 
 
-def _since_screening(display: Display, p: Prediction, point: WorkingPoint) -> str:
+def _since_screening(display: Display, p: Prediction, point: DesignPoint) -> str:
     """Reason why a solved plate is another than it was screened; "" where it differs by no more
     than a beam's frequency does on 95 random plates (`_BEAM`)."""
     if not isinstance(display.actuator, RectangularPlate):
@@ -160,7 +160,7 @@ def _since_screening(display: Display, p: Prediction, point: WorkingPoint) -> st
     )
 
 
-def banded(point: WorkingPoint, quality: str, samples: int = 64) -> dict[str, Any]:
+def banded(point: DesignPoint, quality: str, samples: int = 64) -> dict[str, Any]:
     """The friction curve's band on every third amplitude that `designed` draws it on.
 
     Raises as `designed`.
@@ -174,7 +174,7 @@ def banded(point: WorkingPoint, quality: str, samples: int = 64) -> dict[str, An
     return band
 
 
-def predicted(display: Display, quality: str, point: WorkingPoint) -> Prediction:
+def predicted(display: Display, quality: str, point: DesignPoint) -> Prediction:
     """The prediction of a display at a working point's voltage, surface and force, by the theory
     of a quality.
 

@@ -18,7 +18,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import stamp, to_json
 from squeezefilm.lab.designing.form import display_of
-from squeezefilm.lab.designing.numbers import WorkingPoint, predicted
+from squeezefilm.lab.designing.numbers import DesignPoint, predicted
 from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.played_texture import FingerMotion, lowered, require_on_display
 from squeezefilm.physics.chain.prediction import Prediction
@@ -76,7 +76,7 @@ def _ready(asked: TextureOnDisplay) -> _Ready:
     else:
         raise InputError("say which texture: a preset or a text, one of them")
     display = display_of(asked.display)
-    p = predicted(display, asked.quality, WorkingPoint(asked.display))
+    p = predicted(display, asked.quality, DesignPoint(asked.display))
     if p.vibration_amplitude <= 0.0 or p.relative_friction > 1.0 - _LEAST_REDUCTION:
         raise InputError(
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
@@ -198,7 +198,7 @@ def require_playable(
     if most is not None:
         si.require("voltage", most, si.Unit("V"), above=0.0)
     display = display_of(text)
-    p = predicted(display, "screening", WorkingPoint(text, voltage=voltage))
+    p = predicted(display, "screening", DesignPoint(text, voltage=voltage))
     if p.voltage is not None:
         display.limits(p.frequency, p.voltage, twin=drive == "twin")
     if drive == "twin":

@@ -26,7 +26,7 @@ from squeezefilm.study.conduct.study_device import (
 )
 
 if TYPE_CHECKING:
-    from squeezefilm.lab.connections import Playing
+    from squeezefilm.lab.connections import NowPlaying
 
 T = TypeVar("T")
 
@@ -48,7 +48,7 @@ Maker = Callable[[str, str, Path], LabDevice]
 
 
 @dataclass(frozen=True)
-class Measured:
+class MeasuredDevice:
     """A `StudyDevice` that was identified and verified already; it plays nothing."""
 
     who: DeviceIdentity
@@ -72,7 +72,7 @@ class Measured:
 
 
 @dataclass
-class _Held:
+class _HeldDevice:
     """A device in the hands of a sitting: what it presents, and what was felt of it so far."""
 
     sitting: str
@@ -96,9 +96,9 @@ class StudyDevices:
     """
 
     def __init__(self, make: Maker | None = None) -> None:
-        self.playing: Playing | None = None
+        self.playing: NowPlaying | None = None
         self._make = make or _session_device
-        self._held: dict[str, _Held] = {}
+        self._held: dict[str, _HeldDevice] = {}
         self._busy: dict[str, asyncio.Lock] = {}
 
     async def measure(self, sitting: str, kind: str, display: str, traces: Path) -> StudyDevice:
@@ -115,7 +115,7 @@ class StudyDevices:
             await self._silence(held)
             held.forget()
             verification = await self._on(held, held.device.verify_device)
-            return Measured(await self._on(held, held.device.identity), verification)
+            return MeasuredDevice(await self._on(held, held.device.identity), verification)
 
     async def present(
         self,
@@ -219,24 +219,24 @@ class StudyDevices:
     def _turn(self, sitting: str) -> asyncio.Lock:
         return self._busy.setdefault(sitting, asyncio.Lock())
 
-    async def _taken(self, sitting: str, kind: str, display: str, traces: Path) -> _Held:
+    async def _taken(self, sitting: str, kind: str, display: str, traces: Path) -> _HeldDevice:
         for other, held in self._held.items():
             if other != sitting and held.kind == kind:
                 raise InputError(
                     f"the device '{kind}' is in use by another sitting; end that one first"
                 )
         if sitting not in self._held:
-            self._held[sitting] = _Held(sitting, kind, self._make(display, kind, traces))
+            self._held[sitting] = _HeldDevice(sitting, kind, self._make(display, kind, traces))
             self._shown(self._held[sitting], plays=False)
         return self._held[sitting]
 
-    def _shown(self, held: _Held, *, plays: bool) -> None:
+    def _shown(self, held: _HeldDevice, *, plays: bool) -> None:
         """Let every page's stop bar know."""
         if self.playing is not None:
             what = f"a participant's surface on {held.kind}"
             self.playing.note(held.sitting, what, partial(self.halt, held.sitting), plays=plays)
 
-    async def _felt(self, held: _Held) -> None:
+    async def _felt(self, held: _HeldDevice) -> None:
         """Stop what plays and keep how it was explored; what failed ends the trial."""
         if held.playing is None:
             return
@@ -249,7 +249,7 @@ class StudyDevices:
         finally:
             self._shown(held, plays=False)
 
-    async def _silence(self, held: _Held) -> None:
+    async def _silence(self, held: _HeldDevice) -> None:
         """Stop what plays, whatever it says: the trial comes again anyway."""
         held.playing = None
         # A device that failed has let go by itself; a new presentation begins anew.
@@ -257,7 +257,7 @@ class StudyDevices:
             await self._on(held, held.device.stop)
         self._shown(held, plays=False)
 
-    async def _on(self, held: _Held, work: Callable[..., T], *arguments: Any) -> T:
+    async def _on(self, held: _HeldDevice, work: Callable[..., T], *arguments: Any) -> T:
         done = asyncio.get_running_loop().run_in_executor(held.thread, work, *arguments)
         try:
             return await asyncio.shield(done)

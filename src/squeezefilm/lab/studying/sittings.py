@@ -21,7 +21,7 @@ from squeezefilm.study.record.sittings import Sitting
 from squeezefilm.study.record.store import StudyStore
 
 
-class ByHand:
+class SurfacesByHand:
     """The surfaces of the trials that are presented by hand now, by their sittings."""
 
     def __init__(self) -> None:

@@ -16,7 +16,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import to_json
 from squeezefilm.lab.files import existing, fresh, zipped
 from squeezefilm.lab.studying.sittings import (
-    ByHand,
+    SurfacesByHand,
     conditions_of,
     confusion_counts,
     described,
@@ -59,7 +59,7 @@ class Studies:
         self.sittings = Sittings(self.folder / FILE)
         self._open: dict[str, StudyStore] = {}
         self._runs: dict[str, StudyRun] = {}
-        self.by_hand = ByHand()
+        self.by_hand = SurfacesByHand()
 
     def close(self) -> None:
         """Close every file."""

@@ -10,7 +10,7 @@ from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import checkout, json_text, markdown_table, write_folder
 from squeezefilm.core.kit.page_style import bullets, page_head
 from squeezefilm.core.results import write_whole
-from squeezefilm.design.analysis.paper_procedure import Design
+from squeezefilm.design.analysis.paper_procedure import PaperDesign
 from squeezefilm.validation.command import ClaimResult, Reproduction
 from squeezefilm.validation.explanations import PrototypeStudy
 from squeezefilm.validation.report.claim_rows import (
@@ -112,7 +112,7 @@ def _direction_lines(result: Reproduction) -> list[str]:
     return lines
 
 
-def design_sentences(design: Design) -> list[str]:
+def design_sentences(design: PaperDesign) -> list[str]:
     """The steps of the procedure of section 3.1, then its contradictions."""
     kilohertz, area = design.lowest_frequency / 1e3, design.area * 1e4
     size = f"{design.length * 1e3:.3g} × {design.width * 1e3:.3g} mm"

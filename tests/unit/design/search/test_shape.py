@@ -5,9 +5,9 @@ from tests.unit.design.search.made_up import requirements
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.search.shapes import Strips
-from squeezefilm.design.search.stock import OWN, CeramicStock, Sheet, counts
+from squeezefilm.design.search.stock import OWN, CeramicStock, StockSheet, counts
 
-SHEET, CERAMIC = Sheet(OWN, (1e-3,)), CeramicStock(OWN, (5e-4,))
+SHEET, CERAMIC = StockSheet(OWN, (1e-3,)), CeramicStock(OWN, (5e-4,))
 
 
 def test_a_shape_without_stock_is_refused() -> None:
@@ -18,7 +18,7 @@ def test_a_shape_without_stock_is_refused() -> None:
     with pytest.raises(InputError, match="names a material twice"):
         Strips((SHEET, SHEET), (CERAMIC,), 5, 9)
     with pytest.raises(InputError, match="there is no material 'unobtainium'"):
-        Strips((Sheet("unobtainium", (1e-3,)),), (CERAMIC,), 5, 9)
+        Strips((StockSheet("unobtainium", (1e-3,)),), (CERAMIC,), 5, 9)
 
 
 def test_counts_are_all_from_least_to_most() -> None:

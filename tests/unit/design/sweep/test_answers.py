@@ -7,7 +7,13 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.sweep.answers import Asked, asked_for, catalogue, numbers_of, without_units
+from squeezefilm.design.sweep.answers import (
+    AskedNumber,
+    asked_for,
+    catalogue,
+    numbers_of,
+    without_units,
+)
 from squeezefilm.design.sweep.verbs import VERBS
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
@@ -44,7 +50,7 @@ sys.path.append(str(Path(__file__).parents[4] / "tools"))
 def test_the_quickest_verb_that_knows_a_name_is_asked(
     name: str, asked: list[tuple[str, str]]
 ) -> None:
-    assert asked_for([name]) == tuple(Asked(*one) for one in asked)
+    assert asked_for([name]) == tuple(AskedNumber(*one) for one in asked)
 
 
 def test_commas_part_names_and_none_is_asked_twice() -> None:
@@ -70,7 +76,7 @@ def test_commas_part_names_and_none_is_asked_twice() -> None:
     ],
 )
 def test_the_unit_stands_in_the_key(key: str, unit: str) -> None:
-    assert Asked("predict", key).unit.symbol == unit
+    assert AskedNumber("predict", key).unit.symbol == unit
     assert unit == "1" or without_units(key) != key
 
 
@@ -127,7 +133,7 @@ def test_what_predict_says_of_a_stator_is_listed() -> None:
     said = dict(numbers_of(predict("biet2008-stator").summary()))
     for key, value in said.items():
         if value == value:
-            assert asked_for([f"predict.{key}"]) == (Asked("predict", key),)
+            assert asked_for([f"predict.{key}"]) == (AskedNumber("predict", key),)
 
 
 @pytest.mark.nightly

@@ -11,13 +11,13 @@ import pytest
 from squeezefilm.core import quantities as si
 from squeezefilm.design.sweep.axes import Axis
 from squeezefilm.design.sweep.effects import effects_of, varied_values
-from squeezefilm.design.sweep.swept import Column, Sweep
+from squeezefilm.design.sweep.swept import Sweep, SweptColumn
 
 
 def swept(axes: tuple[Axis, ...], values: Any) -> Sweep:
     """A sweep with one answer that has these values."""
     count = math.prod(len(axis) for axis in axes)
-    column = Column("y", si.Unit("1"), np.array(values, float))
+    column = SweptColumn("y", si.Unit("1"), np.array(values, float))
     return Sweep("made", ("predict",), axes, (column,), ("",) * count, (), count, 0, {})
 
 

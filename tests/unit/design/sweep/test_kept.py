@@ -9,7 +9,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.sweep import points
-from squeezefilm.design.sweep.points import FILE, Answer, Kept, Point, address
+from squeezefilm.design.sweep.points import FILE, Answer, KeptAnswers, Point, address
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.uncertainty.parameters import with_values
 
@@ -63,7 +63,7 @@ def test_a_file_that_was_edited_is_another_question(tmp_path: Path) -> None:
 
 
 def test_answers_are_there_again_and_a_line_that_was_cut_off_is_not(tmp_path: Path) -> None:
-    first = Kept(tmp_path / "new")
+    first = KeptAnswers(tmp_path / "new")
     answer = Answer({"a_m": 1 / 3, "b": math.nan}, ("careful",), "", 0.5, modes={"modes": []})
     first.add("one", POINT, answer)
     first.add("two", POINT, Answer({}, reason="no"))
@@ -72,7 +72,7 @@ def test_answers_are_there_again_and_a_line_that_was_cut_off_is_not(tmp_path: Pa
     file = tmp_path / "new" / FILE
     with file.open("a") as there:
         there.write('{"address": "four", "numb')
-    again = Kept(tmp_path / "new")
+    again = KeptAnswers(tmp_path / "new")
     assert len(again) == 2
     found = again.get("one")
     assert found is not None
@@ -83,13 +83,13 @@ def test_answers_are_there_again_and_a_line_that_was_cut_off_is_not(tmp_path: Pa
     # What follows a line that was cut off stands on its own.
     again.add("five", POINT, answer)
     assert json.loads(file.read_text().splitlines()[-1])["address"] == "five"
-    assert len(Kept(tmp_path / "new")) == 3
+    assert len(KeptAnswers(tmp_path / "new")) == 3
 
 
 def test_without_a_folder_they_are_in_memory_and_a_file_is_no_folder(tmp_path: Path) -> None:
-    here = Kept(None)
+    here = KeptAnswers(None)
     here.add("one", POINT, Answer({}))
     assert here.get("one") is not None
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="choose another folder"):
-        Kept(tmp_path / "file")
+        KeptAnswers(tmp_path / "file")

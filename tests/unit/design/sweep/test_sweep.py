@@ -13,10 +13,10 @@ import squeezefilm as sf
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import config_hash
 from squeezefilm.design.sweep import sweep as sweeps
-from squeezefilm.design.sweep.answers import FOLLOWED, Asked
+from squeezefilm.design.sweep.answers import FOLLOWED, AskedNumber
 from squeezefilm.design.sweep.followed import FollowedMode
 from squeezefilm.design.sweep.points import Answer, answered
-from squeezefilm.design.sweep.sweep import Run, SweepRequest, sweep, sweep_until_stopped
+from squeezefilm.design.sweep.sweep import SweepRequest, SweepRun, sweep, sweep_until_stopped
 from squeezefilm.design.sweep.swept import NOT_YET, counted
 from squeezefilm.physics.plate.solid import working
 from squeezefilm.physics.plate.solid.solve import solve_for_response
@@ -119,7 +119,7 @@ def test_a_sweep_that_is_stopped_keeps_what_it_has_and_goes_on(
         half, why = sweep_until_stopped(asked)
         assert why == "stopped"
         with pytest.raises(KeyboardInterrupt):
-            Run(dataclasses.replace(asked, fresh=True)).finish()
+            SweepRun(dataclasses.replace(asked, fresh=True)).finish()
     assert half.reasons == ("", "", NOT_YET)
     assert (half.missing, half.answered) == (1, 2)
     whole, why = sweep_until_stopped(asked)
@@ -260,8 +260,8 @@ def test_a_table_says_of_which_descriptions_it_is() -> None:
     """One hash of one display; a list where there are several, each with its own."""
     one, other = (dataclasses.replace(sf.load_display(STATOR), name=name) for name in "ab")
     asked: dict[str, Any] = {"vary": VOLTS, "ask": "relative_friction"}
-    alone = Run(SweepRequest(one, **asked)).result()
-    both = Run(SweepRequest([one, other], **asked)).result()
+    alone = SweepRun(SweepRequest(one, **asked)).result()
+    both = SweepRun(SweepRequest([one, other], **asked)).result()
     hashes = [config_hash(display) for display in (one, other)]
     assert alone.provenance["config_sha256"] == hashes[0]
     assert both.provenance["config_sha256"] == hashes
@@ -282,15 +282,15 @@ def test_modes_that_nothing_drives_have_two_columns(monkeypatch: pytest.MonkeyPa
         FollowedMode(label, (0, 0, 0), np.ones(3), driven)
         for label, driven in (("moved", True), ("still", False))
     ]
-    run = Run(SweepRequest(sf.load_display(STATOR), vary=VOLTS, ask="relative_friction"))
-    monkeypatch.setattr(Run, "_modes", lambda _: [{"modes": [row]} for row in rows])
+    run = SweepRun(SweepRequest(sf.load_display(STATOR), vary=VOLTS, ask="relative_friction"))
+    monkeypatch.setattr(SweepRun, "_modes", lambda _: [{"modes": [row]} for row in rows])
     for key, labels in (
         ("modes.0.modal_mass_kg", ["moved"]),
         ("modes.0.frequency_Hz", ["moved", "still"]),
         ("modes.0.quality_factor", ["moved", "still"]),
     ):
         quantity = key.rpartition(".")[2]
-        columns = list(run._columns(Asked(FOLLOWED, key), follows))
+        columns = list(run._columns(AskedNumber(FOLLOWED, key), follows))
         assert [one.name for one in columns] == [f"followed.{label}.{quantity}" for label in labels]
         for column in columns:
             assert column.values.tolist() == [row[quantity] for row in rows]

@@ -16,8 +16,8 @@ from squeezefilm.instruments.twin.envelope_step import (
     SLEW,
     WITHIN,
     Electrical,
+    EnvelopeLimits,
     Fingers,
-    Limits,
     Resonance,
     between,
     decay_rate,
@@ -135,7 +135,7 @@ def test_a_plate_that_stands_stays_and_a_driven_one_begins() -> None:
 OMEGA = 2e5
 PLATE = Electrical(20e-9, 0.03, 0.4)
 Z = 0.8e-6 + 0.5e-6j
-FREE = Limits(100.0, 10.0, 1e9)
+FREE = EnvelopeLimits(100.0, 10.0, 1e9)
 
 
 def test_the_current_is_the_capacitance_s_and_the_motional_one() -> None:
@@ -147,7 +147,7 @@ def test_each_limit_of_the_amplifier_holds() -> None:
     assert voltage_given(40.0, Z, OMEGA, PLATE, FREE) == (40.0, WITHIN)
     assert voltage_given(100.0, Z, OMEGA, PLATE, FREE) == (100.0, WITHIN)
     assert voltage_given(140.0, Z, OMEGA, PLATE, FREE) == (100.0, RAIL)
-    given, limit = voltage_given(40.0, Z, OMEGA, PLATE, Limits(100.0, 10.0, 4e6))
+    given, limit = voltage_given(40.0, Z, OMEGA, PLATE, EnvelopeLimits(100.0, 10.0, 4e6))
     assert (given, limit) == (pytest.approx(4e6 / OMEGA), SLEW)
     assert voltage_given(0.0, 0j, OMEGA, PLATE, FREE) == (0.0, WITHIN)
 
@@ -155,7 +155,7 @@ def test_each_limit_of_the_amplifier_holds() -> None:
 @pytest.mark.parametrize("z", [Z, -Z, 0j, 0.8e-6 - 0.6e-6j])
 def test_a_current_that_is_too_large_is_brought_to_the_limit(z: complex) -> None:
     highest = 0.15
-    given, limit = voltage_given(90.0, z, OMEGA, PLATE, Limits(100.0, highest, 1e9))
+    given, limit = voltage_given(90.0, z, OMEGA, PLATE, EnvelopeLimits(100.0, highest, 1e9))
     assert limit == CURRENT
     assert 0.0 < given < 90.0
     assert abs(drawn_current(given, z, OMEGA, PLATE)) == pytest.approx(highest, rel=1e-9)
@@ -163,8 +163,8 @@ def test_a_current_that_is_too_large_is_brought_to_the_limit(z: complex) -> None
 
 def test_where_the_motion_alone_draws_too_much_nothing_is_given() -> None:
     # The motional current, 0.08 A across the capacitance's, is more than all that is allowed.
-    given, limit = voltage_given(90.0, 1e-6 + 0j, OMEGA, PLATE, Limits(100.0, 0.01, 1e9))
+    given, limit = voltage_given(90.0, 1e-6 + 0j, OMEGA, PLATE, EnvelopeLimits(100.0, 0.01, 1e9))
     assert (given, limit) == (0.0, CURRENT)
     # And where it is more already along it: both roots are below zero.
-    given, limit = voltage_given(90.0, 1e-6j, OMEGA, PLATE, Limits(100.0, 0.01, 1e9))
+    given, limit = voltage_given(90.0, 1e-6j, OMEGA, PLATE, EnvelopeLimits(100.0, 0.01, 1e9))
     assert (given, limit) == (0.0, CURRENT)

@@ -83,8 +83,8 @@ def bench(
     plan = np.array([0, duration, 0, -1, press, duration, 1], dtype=np.int64)
     fingers = Fingers(np.array([0.1, 5.0]), np.zeros((2, 3), dtype=complex), 1e-5)
     ring, truth = np.zeros((waiting, 5)), np.empty((ROWS, len(k.COLUMNS)))
-    plant = k.State(state, counts, constants, k.untouched(tables))
-    arguments = (plant, fingers, k.Path(places, plan), ring, truth)
+    plant = k.PlantState(state, counts, constants, k.untouched(tables))
+    arguments = (plant, fingers, k.HandPath(places, plan), ring, truth)
     return Bench(state, counts, arguments, truth, ring)
 
 

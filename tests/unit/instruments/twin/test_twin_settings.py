@@ -11,10 +11,10 @@ from squeezefilm.instruments.twin.hand import Hand, hand_from, wanted
 from squeezefilm.instruments.twin.plant import TruthRecord
 from squeezefilm.instruments.twin.plant_kernel import COLUMNS, gaussian, uniform
 from squeezefilm.instruments.twin.settings import (
-    Amplifier,
-    Arm,
     PickupModel,
     PlateDrift,
+    TwinAmplifier,
+    TwinArm,
     TwinSettings,
     load_settings,
 )
@@ -66,8 +66,8 @@ def test_the_settings_on_the_page_are_the_defaults(tmp_path: Path) -> None:
         (lambda: TwinSettings(truth_period=150e-6), "whole number of ticks"),
         (lambda: TwinSettings(seed=-1), "seed"),
         (lambda: PlateDrift(thermal_time=0.0), "thermal_time"),
-        (lambda: Amplifier(capacitance=0.0), "capacitance"),
-        (lambda: Arm(mass=0.0), "mass"),
+        (lambda: TwinAmplifier(capacitance=0.0), "capacitance"),
+        (lambda: TwinArm(mass=0.0), "mass"),
         (lambda: PickupModel(shunt=0.0), "shunt"),
         (lambda: PickupModel(kind="ear"), "kind = 'ear' is not known"),  # type: ignore[arg-type]
         (lambda: hand_from("60 mm/s over 4 cm", normal_force=0.0), "normal_force"),

@@ -12,7 +12,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.instruments.twin import working_point as module
-from squeezefilm.instruments.twin.settings import Amplifier, TwinSettings
+from squeezefilm.instruments.twin.settings import TwinAmplifier, TwinSettings
 from squeezefilm.instruments.twin.working_point import FORCES, POINTS, WorkingPoint, working_point
 from squeezefilm.physics.chain.friction import TABLE_SPEEDS
 from squeezefilm.physics.display import Display, load_display
@@ -128,7 +128,7 @@ def test_the_force_factor_makes_the_amplitude_that_the_mode_has(laws: Laws) -> N
 
 def test_without_a_modal_mass_it_is_that_of_a_coupling_coefficient(laws: Laws) -> None:
     mode = dataclasses.replace(MODE, modal_mass=None)
-    amplifier = Amplifier(capacitance=50e-9)
+    amplifier = TwinAmplifier(capacitance=50e-9)
     found = working_point(STATOR, dataclasses.replace(SETTINGS, amplifier=amplifier), mode)
     assert found.capacitance == 50e-9
     # The motional branch at resonance: charge per volt φ a = C_m Q, and k² = C_m/(C + C_m).
@@ -145,7 +145,7 @@ def test_a_plates_capacitance_is_that_of_its_patches(
     monkeypatch.setattr(module, "patch_capacitance", lambda plate: 33e-9)
     found = working_point(PLATE, SETTINGS, MODE)
     assert (found.capacitance, found.evidence) == (33e-9, ())
-    amplifier = Amplifier(capacitance=50e-9)
+    amplifier = TwinAmplifier(capacitance=50e-9)
     told = working_point(PLATE, dataclasses.replace(SETTINGS, amplifier=amplifier), MODE)
     assert told.capacitance == 50e-9
 
@@ -183,9 +183,9 @@ def test_what_does_not_vibrate_is_no_twin(laws: Laws) -> None:
 def test_a_sweep_would_identify_the_plate_with_its_amplifier_and_pickup() -> None:
     """Twice the gain, twice the reading per volt; the mode's own frequency and Q."""
     point: Any = SimpleNamespace(mode=MODE, pickup_calibration=lambda pickup: 5e-6)
-    plain = TwinSettings(amplifier=Amplifier(gain=1.0))
+    plain = TwinSettings(amplifier=TwinAmplifier(gain=1.0))
     found = WorkingPoint.identified(point, plain)
     assert (found.frequency, found.quality_factor) == (40e3, 60.0)
     assert found.ratio == pytest.approx(2e-8 / 5e-6)
-    twice = WorkingPoint.identified(point, TwinSettings(amplifier=Amplifier(gain=2.0)))
+    twice = WorkingPoint.identified(point, TwinSettings(amplifier=TwinAmplifier(gain=2.0)))
     assert twice.ratio == pytest.approx(2 * found.ratio)

@@ -111,7 +111,7 @@ def test_a_band_is_of_the_quality_that_is_asked_for(
 ) -> None:
     asked: list[tuple[Any, ...]] = []
 
-    def banded(point: numbers.WorkingPoint, quality: str) -> dict[str, Any]:
+    def banded(point: numbers.DesignPoint, quality: str) -> dict[str, Any]:
         asked.append((point.edited(), quality))
         return {"low": [0.5]}
 

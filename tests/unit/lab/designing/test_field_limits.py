@@ -8,7 +8,7 @@ from squeezefilm.core import presets
 from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.lab.designing.field_limits import allowed
 from squeezefilm.lab.designing.form import edited, form, preset_text
-from squeezefilm.lab.designing.numbers import WorkingPoint, designed
+from squeezefilm.lab.designing.numbers import DesignPoint, designed
 
 PLATE = preset_text("biet2008-plate")
 
@@ -96,4 +96,4 @@ def test_a_word_in_a_number_s_field_is_refused_in_a_sentence(path: str, says: st
 def test_the_mode_of_a_plate_says_along_which_axis_it_lies() -> None:
     across = edited(PLATE, "actuator.lines_across", "width")
     for text, axis in ((PLATE, "x"), (across, "y")):
-        assert designed(WorkingPoint(text), "screening")["line"]["along"] == axis
+        assert designed(DesignPoint(text), "screening")["line"]["along"] == axis

@@ -19,7 +19,7 @@ from squeezefilm.design.search.run import SearchRequest
 from squeezefilm.lab import search_process as process
 from squeezefilm.lab import search_process as shown
 from squeezefilm.lab import told_process
-from squeezefilm.lab.search_process import Pace, SearchProcess, search
+from squeezefilm.lab.search_process import SearchProcess, StagePace, search
 
 from .small import TEXT
 
@@ -130,7 +130,7 @@ def test_a_long_front_is_told_less_often(
 
 
 def test_what_is_left_of_a_stage_follows_from_how_fast_it_went(clock: SimpleNamespace) -> None:
-    pace = Pace(200, 16)
+    pace = StagePace(200, 16)
     found = []
     for after, seen in (
         (0, glimpse("screening strips", 50)), (10, glimpse("screening strips", 100)),

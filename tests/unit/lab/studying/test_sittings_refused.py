@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.lab.studying.devices import Measured
+from squeezefilm.lab.studying.devices import MeasuredDevice
 from squeezefilm.lab.studying.studies import Studies
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.conduct.study_device import (
@@ -131,7 +131,7 @@ def test_an_answer_needs_the_device_that_played_what_it_is_of() -> None:
 def test_a_measurement_says_what_was_found_and_plays_nothing() -> None:
     who = DeviceIdentity("bench")
     found: DeviceVerification = object()  # type: ignore[assignment]
-    device = Measured(who, found)
+    device = MeasuredDevice(who, found)
     assert (device.identity(), device.verify_device()) == (who, found)
     assert device.stop() == TrialMotion()
     with pytest.raises(InputError, match="presents nothing"):

@@ -14,7 +14,7 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit.folder import checkout
 from squeezefilm.core.kit.page_style import bullets
-from squeezefilm.design.analysis.paper_procedure import Design
+from squeezefilm.design.analysis.paper_procedure import PaperDesign
 from squeezefilm.design.analysis.published_claims import Claim, Erratum
 from squeezefilm.validation.command import ClaimResult, Reproduction
 from squeezefilm.validation.report import figures, page
@@ -25,7 +25,7 @@ from squeezefilm.validation.report.page import (
     write_validation_docs,
 )
 
-DESIGN = Design(
+DESIGN = PaperDesign(
     lowest_frequency=20.56e3, longest_half_wavelength_euler=16e-3,
     longest_half_wavelength_timoshenko=15e-3, half_wavelengths=np.array([7.5e-3]),
     amplitudes=np.array([2e-6]), ceramics=5, length=59e-3, width=49e-3, area=28.91e-4,

@@ -14,9 +14,9 @@ from squeezefilm.core.kit.style import BLUE, ORANGE
 from squeezefilm.validation.explanations import (
     MEASUREMENTS,
     Explanation,
+    PlatePoint,
     PrototypeStudy,
     Separation,
-    WorkingPoint,
 )
 from squeezefilm.validation.report.page import prototype_sections
 from squeezefilm.validation.report.prototype import (
@@ -30,8 +30,8 @@ from squeezefilm.validation.report.prototype import (
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 
-D31 = WorkingPoint((8, 0), 33.55e3, 10.0, 160e-9, 60.0, 34.8920e3)
-E31 = WorkingPoint((8, 0), 35.6e3, 10.0, 80e-9, 60.0, 37.38e3)
+D31 = PlatePoint((8, 0), 33.55e3, 10.0, 160e-9, 60.0, 34.8920e3)
+E31 = PlatePoint((8, 0), 35.6e3, 10.0, 80e-9, 60.0, 37.38e3)
 
 
 def explained(name: str, **changes: Any) -> Explanation:

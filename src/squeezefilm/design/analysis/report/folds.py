@@ -248,7 +248,7 @@ _NEXT = 5
 _ASSUMED = 20
 
 
-class Table(NamedTuple):
+class FoldTable(NamedTuple):
     """A table of plain texts: caption, heads of its columns, rows."""
 
     caption: str
@@ -261,7 +261,7 @@ class Fold(NamedTuple):
 
     question: str
     figures: tuple[str, ...]
-    tables: list[Table]
+    tables: list[FoldTable]
     said: list[str]
 
 
@@ -283,31 +283,35 @@ def _folds(analysis: Analysis) -> Iterator[Fold]:
         load = analysis.drive_electronics
         driving += electronics_rows(load) if whole else electrical_rows(load)
     at = f"A{working_point(p)[1:]}"
-    yield Fold("Can I drive it?", ("response",), [Table(at, NUMBERS, new(driving))], [])
+    yield Fold("Can I drive it?", ("response",), [FoldTable(at, NUMBERS, new(driving))], [])
     if p.voltage:
         hot = heat_rows(p.heat) if whole else heat_rows(p.heat)[:4]
         rows = [*new(hot), *sound_rows_at_ear(analysis.ears)]
-        yield Fold("Does it get hot or loud?", (), [Table("Driven for long", NUMBERS, rows)], [])
+        yield Fold(
+            "Does it get hot or loud?", (), [FoldTable("Driven for long", NUMBERS, rows)], []
+        )
     felt = texture_rows(analysis)
-    yield Fold("What can a finger feel?", (), [Table("Gratings", NUMBERS, felt)], [])
+    yield Fold("What can a finger feel?", (), [FoldTable("Gratings", NUMBERS, felt)], [])
     yield _how_sure(analysis, new(friction_rows(analysis)))
     if analysis.has_sensitivities and (shifts := analysis.sensitivities) is not None:
         caption = f"From the 5 % to the 95 % end of each range; plates by {shifts.plate_model}"
         head = ("Value", "From, to", "Frequency", "Amplitude", "µ′/µ", "Range")
-        table = Table(caption, head, sensitivity_rows(shifts))
+        table = FoldTable(caption, head, sensitivity_rows(shifts))
         yield Fold("What does each value do?", (), [table], [])
     yield _origin(analysis)
     if whole:
         tables = [
-            Table("Beside the first screen", NUMBERS, new(more_rows(analysis))),
-            Table(
+            FoldTable("Beside the first screen", NUMBERS, new(more_rows(analysis))),
+            FoldTable(
                 "The same plate by other theories, without a finger", _THEORY, theories(analysis)
             ),
         ]
         if unsure is not None:
             weights = weight_rows(unsure)
-            tables += [Table("Laws that are drawn", ("What", "Which", "Weight", "Why"), weights)]
-            tables += [Table("Intervals", NUMBERS, interval_rows(unsure))]
+            tables += [
+                FoldTable("Laws that are drawn", ("What", "Which", "Weight", "Why"), weights)
+            ]
+            tables += [FoldTable("Intervals", NUMBERS, interval_rows(unsure))]
         missed = [MISSED_HEADING.format(p.model), *missed_directions(p.model, why=True)]
         yield Fold("What do other models say?", (), tables, missed)
 
@@ -331,10 +335,12 @@ def friction_rows(analysis: Analysis) -> list[Row]:
 def _how_sure(analysis: Analysis, rows: list[Row]) -> Fold:
     """Section on what the friction depends on, what could be measured, what is doubtful."""
     unsure, whole, short = analysis.uncertainty, analysis.whole, doubted(analysis)
-    tables = [Table("Where and on what", NUMBERS, rows)]
+    tables = [FoldTable("Where and on what", NUMBERS, rows)]
     if unsure is not None:
         tables += [
-            Table(group_words(group), _INFLUENCES, influence_rows(unsure, group.knowledge, most))
+            FoldTable(
+                group_words(group), _INFLUENCES, influence_rows(unsure, group.knowledge, most)
+            )
             for group in unsure.groups
             if whole or group.knowledge == "measurable"
             for most in (len(unsure.influences) if whole else _NEXT,)
@@ -366,6 +372,6 @@ def _origin(analysis: Analysis) -> Fold:
         for value in shown
     ]
     head = ("Key", "Value", "Source", "Evidence")
-    tables = [Table(caption, head, rows)] if rows else []
-    made = Table("What made the numbers", ("Link of the chain", "Model"), models(analysis))
+    tables = [FoldTable(caption, head, rows)] if rows else []
+    made = FoldTable("What made the numbers", ("Link of the chain", "Model"), models(analysis))
     return Fold("Where do the values come from?", (), [made, *tables], [])

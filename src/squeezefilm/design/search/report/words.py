@@ -21,7 +21,7 @@ from squeezefilm.design.search.reasons import (
 )
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.space import Choice, Variable
-from squeezefilm.design.search.stock import OWN, Room
+from squeezefilm.design.search.stock import OWN, PlateRoom
 
 ALWAYS = ("resonance_frequency", "vibration_amplitude", "temperature_rise")
 """Criteria told of every plate beside its objectives."""
@@ -86,7 +86,7 @@ def _sides(sides: tuple[si.Metre, si.Metre]) -> str:
     return " × ".join(shown(side, si.Unit("m")) for side in sides)
 
 
-def _size(room: Room) -> str:
+def _size(room: PlateRoom) -> str:
     """Sides that a plate may have."""
     least, most = _sides(room.least), _sides(room.most)
     return least if least == most else f"at least {least} and at most {most}"

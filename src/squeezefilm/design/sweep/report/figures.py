@@ -19,7 +19,7 @@ from squeezefilm.design.sweep.report.words import (
     scaled,
     step_words,
 )
-from squeezefilm.design.sweep.swept import Column, Sweep
+from squeezefilm.design.sweep.swept import Sweep, SweptColumn
 from squeezefilm.design.sweep.tradeoffs import non_dominated
 
 if TYPE_CHECKING:
@@ -89,16 +89,16 @@ def _order(axes: list[Axis]) -> tuple[Axis, Axis | None]:
     return (second, first) if swap else (first, second)
 
 
-def _panels(drawn: list[Column]) -> list[list[Column]]:
+def _panels(drawn: list[SweptColumn]) -> list[list[SweptColumn]]:
     """Columns by what they are of: modes that were followed share a panel."""
-    panels: dict[str, list[Column]] = {}
+    panels: dict[str, list[SweptColumn]] = {}
     for column in drawn:
         own = column.name if mode_of(column) is None else quantity_of(column)
         panels.setdefault(own, []).append(column)
     return list(panels.values())
 
 
-def _values(sweep: Sweep, along: Axis, beside: Axis | None, column: Column) -> si.FloatArray:
+def _values(sweep: Sweep, along: Axis, beside: Axis | None, column: SweptColumn) -> si.FloatArray:
     """A column over the two axes, shape (along, beside)."""
     grid = column.values.reshape([len(axis) for axis in sweep.axes if len(axis) > 1])
     order = [axis for axis in sweep.axes if len(axis) > 1]
@@ -107,7 +107,9 @@ def _values(sweep: Sweep, along: Axis, beside: Axis | None, column: Column) -> s
     return grid if order.index(along) == 0 else grid.T
 
 
-def _lines(axes: Axes, sweep: Sweep, along: Axis, beside: Axis | None, panel: list[Column]) -> None:
+def _lines(
+    axes: Axes, sweep: Sweep, along: Axis, beside: Axis | None, panel: list[SweptColumn]
+) -> None:
     numbers = along.numbers
     x = np.arange(len(along)) if numbers is None else numbers
     factor, symbol = (1.0, "") if numbers is None else scaled(numbers, along.units[0])
@@ -138,7 +140,7 @@ def _lines(axes: Axes, sweep: Sweep, along: Axis, beside: Axis | None, panel: li
         style.legend_below(axes, columns=4, gap=0.22)
 
 
-def _panel_name(panel: list[Column]) -> str:
+def _panel_name(panel: list[SweptColumn]) -> str:
     return f"{quantity_of(panel[0])} of {len(panel)} modes" if len(panel) > 1 else name_of(panel[0])
 
 
@@ -157,7 +159,7 @@ def _along(axes: Axes, along: Axis, symbol: str) -> None:
 
 
 def _map(
-    figure: Figure, axes: Axes, sweep: Sweep, along: Axis, beside: Axis, column: Column
+    figure: Figure, axes: Axes, sweep: Sweep, along: Axis, beside: Axis, column: SweptColumn
 ) -> None:
     assert beside.numbers is not None
     x = np.arange(len(along), dtype=float) if along.numbers is None else along.numbers
@@ -193,7 +195,7 @@ def varied_name(value: Varied) -> str:
     return without_units(value.name).replace("_", " ")
 
 
-def drawn_columns(sweep: Sweep) -> list[Column]:
+def drawn_columns(sweep: Sweep) -> list[SweptColumn]:
     """The answers that are drawn: those that vary, four at the most."""
     several = [c for c in sweep.columns if len(np.unique(c.values[np.isfinite(c.values)])) > 1]
     return several[:MOST_ANSWERS]
@@ -333,6 +335,6 @@ def tradeoffs_figure(drawn: tuple[Sweep, tuple[tuple[str, int], ...]]) -> Figure
     return figure
 
 
-def _wish(column: Column, better: dict[str, int]) -> str:
+def _wish(column: SweptColumn, better: dict[str, int]) -> str:
     words = {1: ", less is better", -1: ", more is better"}
     return name_of(column) + words.get(better.get(column.name, 0), "")

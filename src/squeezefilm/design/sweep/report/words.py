@@ -8,10 +8,10 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import shown
 from squeezefilm.design.sweep.answers import FOLLOWED, without_units
 from squeezefilm.design.sweep.axes import Axis
-from squeezefilm.design.sweep.swept import Column
+from squeezefilm.design.sweep.swept import SweptColumn
 
 
-def name_of(column: Axis | Column) -> str:
+def name_of(column: Axis | SweptColumn) -> str:
     """A name without its unit, words apart: ``resonance frequency``."""
     if isinstance(column, Axis):
         return ", ".join(name.replace("_", " ") for name in column.names)
@@ -19,13 +19,13 @@ def name_of(column: Axis | Column) -> str:
     return quantity_of(column) if mode is None else f"{mode} {quantity_of(column)}"
 
 
-def mode_of(column: Column) -> str | None:
+def mode_of(column: SweptColumn) -> str | None:
     """The label of the mode that was followed; None of any other number."""
     parts = column.name.split(".")
     return parts[1] if parts[0] == FOLLOWED else None
 
 
-def quantity_of(column: Column) -> str:
+def quantity_of(column: SweptColumn) -> str:
     """Quantity of a column, without the mode."""
     name = without_units(column.name)
     return (name if mode_of(column) is None else name.rpartition(".")[2]).replace("_", " ")

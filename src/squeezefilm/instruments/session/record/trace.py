@@ -149,7 +149,7 @@ class _Found:
     lost_blocks: int = 0
     lost_bytes: int = 0
     closed: bool = False
-    gaps: list[file.Gap] = field(default_factory=list)
+    gaps: list[file.TraceGap] = field(default_factory=list)
     misread: int = 0
 
 
@@ -163,7 +163,7 @@ def _trace(data: bytes | mmap.mmap, tell: ShareProgress | None) -> Trace:
             told = place + max(len(data) // 50, _TOLD)
 
     for part in file.blocks(data, looked_at):
-        if isinstance(part, file.Gap):
+        if isinstance(part, file.TraceGap):
             content.lost_bytes += part.end - part.start
             content.gaps.append(part)
         elif part.number < content.next_number:

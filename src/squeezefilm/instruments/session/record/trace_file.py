@@ -55,7 +55,7 @@ class Block:
 
 
 @dataclass(frozen=True, slots=True)
-class Gap:
+class TraceGap:
     """Bytes of a file, from `start` to before `end`, that belong to no whole block."""
 
     start: int
@@ -87,7 +87,7 @@ def header_version(data: bytes | mmap) -> int | None:
 
 def blocks(
     data: bytes | mmap, looked_at: Callable[[int], object] = lambda _: None
-) -> Iterator[Block | Gap]:
+) -> Iterator[Block | TraceGap]:
     """Every whole block in the order of the file, and the gaps between them. Raises nothing.
 
     A block is believed only by its CRC, so it does not matter what the bytes before it were.
@@ -104,11 +104,11 @@ def blocks(
             at = marker + 1
             continue
         if marker > lost_from:
-            yield Gap(lost_from, marker)
+            yield TraceGap(lost_from, marker)
         yield block
         at = lost_from = block.start + block.length + _CRC.size
     if len(data) > lost_from:
-        yield Gap(lost_from, len(data))
+        yield TraceGap(lost_from, len(data))
 
 
 def _marker(data: bytes | mmap, at: int, looked_at: Callable[[int], object]) -> int:

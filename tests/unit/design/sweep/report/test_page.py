@@ -11,7 +11,7 @@ from squeezefilm.design.sweep.axes import Axis
 from squeezefilm.design.sweep.effects import varied_values
 from squeezefilm.design.sweep.report.figures import drawn_columns, means
 from squeezefilm.design.sweep.report.page import sweep_page, wishes
-from squeezefilm.design.sweep.swept import Column, Sweep
+from squeezefilm.design.sweep.swept import Sweep, SweptColumn
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 
@@ -30,8 +30,8 @@ def made(points: int = 40) -> Sweep:
     amplitude = 1e-6 * random[:, 0] * random[:, 1]
     friction[3] = amplitude[3] = math.nan
     columns = (
-        Column("relative_friction", si.Unit("1"), friction),
-        Column("amplitude_m", si.Unit("m"), amplitude),
+        SweptColumn("relative_friction", si.Unit("1"), friction),
+        SweptColumn("amplitude_m", si.Unit("m"), amplitude),
     )
     reasons = tuple("too <wide>" if k == 3 else "" for k in range(points))
     told = {"finger": "person 3's"}

@@ -23,7 +23,7 @@ from squeezefilm.design.sweep.report.terminal import (
     sweep_columns,
 )
 from squeezefilm.design.sweep.report.words import name_of, scaled
-from squeezefilm.design.sweep.swept import NOT_YET, Column, Sweep
+from squeezefilm.design.sweep.swept import NOT_YET, Sweep, SweptColumn
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 
@@ -37,7 +37,7 @@ def axis(name: str, values: list[Any], unit: si.Unit | None, log: bool = False) 
 THICK = axis("actuator.thickness", [1e-3, 2e-3, 3e-3], M)
 
 
-def made(axes: tuple[Axis, ...], *columns: Column, **changes: Any) -> Sweep:
+def made(axes: tuple[Axis, ...], *columns: SweptColumn, **changes: Any) -> Sweep:
     points = int(np.prod([len(one) for one in axes]))
     values: dict[str, Any] = {
         "title": "plate", "verbs": ("predict",), "axes": axes, "columns": columns,
@@ -47,8 +47,8 @@ def made(axes: tuple[Axis, ...], *columns: Column, **changes: Any) -> Sweep:
     return Sweep(**{**values, **changes})
 
 
-FRICTION = Column("relative_friction", ONE, np.array([0.3, np.nan, 0.5]))
-AMPLITUDE = Column("vibration_amplitude_m", M, np.array([2e-6, np.nan, 1e-6]))
+FRICTION = SweptColumn("relative_friction", ONE, np.array([0.3, np.nan, 0.5]))
+AMPLITUDE = SweptColumn("vibration_amplitude_m", M, np.array([2e-6, np.nan, 1e-6]))
 LINE = made((THICK,), FRICTION, AMPLITUDE, reasons=("", "=too thick, at 2 mm", ""))
 
 
@@ -71,7 +71,7 @@ def test_people_read_units_once_and_a_dash_for_nothing() -> None:
     assert scaled(np.array([np.nan, 33.5e3]), HZ) == (pytest.approx(1e-3), "kHz")
     assert scaled(np.array([0.0]), HZ) == (1.0, "Hz")
     assert scaled(np.array([2.0]), None) == (1.0, "")
-    followed = Column("followed.(8,0).amplitude_per_volt_m_per_V", si.Unit("m/V"), np.zeros(1))
+    followed = SweptColumn("followed.(8,0).amplitude_per_volt_m_per_V", si.Unit("m/V"), np.zeros(1))
     assert name_of(followed) == "(8,0) amplitude per volt"
 
 
@@ -98,17 +98,20 @@ def test_the_terminal_says_what_failed_what_was_warned_of_and_what_is_missing(
 
 def test_many_points_are_cut_and_many_numbers_turned(capsys: pytest.CaptureFixture[str]) -> None:
     volts = axis("voltage", [float(k) for k in range(100)], V)
-    text = said(capsys, made((volts,), Column("relative_friction", ONE, np.arange(100.0))))
+    text = said(capsys, made((volts,), SweptColumn("relative_friction", ONE, np.arange(100.0))))
     assert "…" in text
     assert "19 V" in text
     assert "20 V" not in text
     few = axis("voltage", [float(k) for k in range(40)], V)
-    assert "…" not in said(capsys, made((few,), Column("relative_friction", ONE, np.arange(40.0))))
+    assert "…" not in said(
+        capsys, made((few,), SweptColumn("relative_friction", ONE, np.arange(40.0)))
+    )
 
     def table(points: int, numbers: int) -> str:
         steps = axis("voltage", [float(k) for k in range(points)], V)
         columns = [
-            Column(f"number{k}", ONE, np.arange(float(points)) + 10 * k) for k in range(numbers)
+            SweptColumn(f"number{k}", ONE, np.arange(float(points)) + 10 * k)
+            for k in range(numbers)
         ]
         return said(capsys, made((steps,), *columns))
 
@@ -125,7 +128,7 @@ def test_modes_that_were_followed_are_counted(capsys: pytest.CaptureFixture[str]
         FollowedMode("(0,5)", (1, None, None), np.array([1, 0.2, np.nan]), False),
     )
     columns = [
-        Column(f"followed.{one.label}.frequency_Hz", HZ, 1e3 * np.array([30.0, 31, 32]))
+        SweptColumn(f"followed.{one.label}.frequency_Hz", HZ, 1e3 * np.array([30.0, 31, 32]))
         for one in modes
     ]
     found = made((THICK,), *columns, follows=modes, verbs=("followed",))
@@ -156,14 +159,14 @@ def test_a_second_axis_is_lines_or_a_map_by_its_steps() -> None:
     volts = axis("voltage", [1.0, 10.0, 100.0], V, log=True)
     values = np.arange(9.0)
     values[4] = np.nan
-    few = sweep_figure(made((THICK, volts), Column("relative_friction", ONE, values)))
+    few = sweep_figure(made((THICK, volts), SweptColumn("relative_friction", ONE, values)))
     legend = few.axes[0].get_legend()
     assert legend is not None
     assert [one.get_text() for one in legend.get_texts()] == ["1 V", "10 V", "100 V"]
     steps = axis("voltage", [float(10**k) for k in range(9)], V, log=True)
     grid = np.arange(27.0)
     grid[5] = np.nan
-    drawn = sweep_figure(made((THICK, steps), Column("relative_friction", ONE, grid)))
+    drawn = sweep_figure(made((THICK, steps), SweptColumn("relative_friction", ONE, grid)))
     face = drawn.axes[0]
     assert (face.get_xlabel(), face.get_ylabel(), face.get_yscale()) == (
         "actuator.thickness (mm)", "voltage (MV)", "log",
@@ -175,7 +178,9 @@ def test_a_second_axis_is_lines_or_a_map_by_its_steps() -> None:
     )  # type: ignore[union-attr]
     assert np.ma.getmaskarray(mesh.get_array()).sum() == 1
     words = axis("surface", ["bare", "adhesive"], None)
-    named = sweep_figure(made((words, THICK), Column("relative_friction", ONE, np.arange(6.0))))
+    named = sweep_figure(
+        made((words, THICK), SweptColumn("relative_friction", ONE, np.arange(6.0)))
+    )
     assert named.axes[0].get_xlabel() == "actuator.thickness (mm)"
 
 
@@ -190,7 +195,7 @@ def test_a_second_axis_is_lines_or_a_map_by_its_steps() -> None:
 def test_what_cannot_be_drawn_says_why(
     axes: tuple[Axis, ...], values: list[float], message: str
 ) -> None:
-    figure = sweep_figure(made(axes, Column("relative_friction", ONE, np.array(values))))
+    figure = sweep_figure(made(axes, SweptColumn("relative_friction", ONE, np.array(values))))
     texts = [one.get_text() for one in (*figure.texts, *(t for a in figure.axes for t in a.texts))]
     assert message in " ".join(" ".join(texts).split())
 

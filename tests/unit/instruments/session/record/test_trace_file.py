@@ -6,7 +6,7 @@ from squeezefilm.instruments.session.record.trace_file import (
     HEADER_SIZE,
     Block,
     BlockKind,
-    Gap,
+    TraceGap,
     block_bytes,
     blocks,
     file_header,
@@ -40,5 +40,5 @@ def test_a_damaged_header_is_a_gap_and_costs_no_block() -> None:
 def test_what_is_behind_the_last_block_is_a_gap() -> None:
     data = file_header() + METADATA + b"half"
     last = list(blocks(data))[-1]
-    assert last == Gap(len(data) - 4, len(data))
+    assert last == TraceGap(len(data) - 4, len(data))
     assert list(blocks(b"")) == []
