@@ -1,4 +1,4 @@
-"""What the terminal and the page show of a motor."""
+"""Rows and figures of a motor, for the terminal and the page."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the terminal and the page show of a skin-stretch array."""
+"""Rows and figures of a skin-stretch array, for the terminal and the page."""
 
 from __future__ import annotations
 

@@ -224,7 +224,7 @@ def _silence(seen: _Watched, sensor: SensorModel, *, here: bool) -> CheckResult:
 def _delay(
     seen: _Watched, sensor: SensorModel, truth: Callable[[si.SecondArray], si.MetreArray]
 ) -> CheckResult:
-    """By how much the places shown are late against the true ones: the shift of least squares."""
+    """Delay of the places shown behind the true ones: the shift of least squares."""
     when, place = seen.time[seen.moved], seen.place[seen.moved]
     times = np.arange(when[0] - _DELAYS[-1], when[-1] - _DELAYS[0] + 1e-3, 1e-3)
     true = truth(times)

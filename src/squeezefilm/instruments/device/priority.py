@@ -1,4 +1,4 @@
-"""What has deadlines, the loop, the player, a device's twin: before ordinary work, never paused."""
+"""Priority of what has deadlines (loop, player, a twin): before ordinary work, never paused."""
 
 from __future__ import annotations
 

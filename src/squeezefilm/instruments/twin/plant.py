@@ -297,7 +297,7 @@ def _friction(point: WorkingPoint) -> FrictionTables:
 def _parts(
     friction: FrictionTables, settings: TwinSettings, pad: FingerpadDynamics, force: float
 ) -> int:
-    """In how many parts the skin is marched over a step of the plant."""
+    """Number of parts in which the skin is marched over a step of the plant."""
     step, dry = 1e-6 * (settings.tick_us // settings.steps_per_tick), settings.dry
     strongest = float(dry.kinetic_force(friction.coefficient.max(), force))
     fall = -float(np.min(np.diff(friction.relative, axis=2) / np.diff(friction.speed)))

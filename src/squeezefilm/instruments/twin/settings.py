@@ -1,4 +1,4 @@
-"""What a twin assumes of plate, amplifier, hand, sensor and pickup; readable from a TOML file.
+"""Assumptions of a twin about plate, amplifier, hand, sensor and pickup; readable from a TOML file.
 
 Every table has an `evidence`. Nothing here was measured on a device: the defaults are assumed, and
 say so. Write the source of your own numbers there.

@@ -1,4 +1,4 @@
-"""What a display's description makes of plate, film and finger: the constants of a twin's plant."""
+"""Plate, film and finger of a display's description: the constants of a twin's plant."""
 
 from __future__ import annotations
 

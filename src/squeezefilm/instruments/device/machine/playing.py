@@ -1,4 +1,4 @@
-"""What a device plays and when it reports: an envelope from now, a timed envelope, or its tile, a
+"""Playing and reporting of a device: an envelope from now, a timed envelope, or its tile, a
 texture of amplitudes (µV) over position (µm), at a place or at the finger.
 
 One at a time; a new one takes the last one's place. Times are the device's 32 bits of µs, which

@@ -1,4 +1,4 @@
-"""What a host is asked to send, as numbers that the wire can carry; anything else is refused here.
+"""Numbers that a host is asked to send, such as the wire can carry; anything else is refused here.
 
 The device refuses a whole frame for one bad number, when it is too late to say whose it was.
 """

@@ -1,4 +1,4 @@
-"""What frames say: one frozen dataclass per message, with its type's number and its layout.
+"""Messages in frames: one frozen dataclass per message, with its type's number and its layout.
 
 Volts are IEEE binary32, everything else is integer; all little-endian. What is within the limits of
 a session is for the host and the device to say. Refused here is what the layout cannot carry, and

@@ -1,4 +1,4 @@
-"""What a display may be driven with, and which drives may play above touch-safe voltage.
+"""Voltages that a display may be driven with, and which drives may play above touch-safe voltage.
 
 The limits are refused, never clipped. They are set on the device, and the device holds them: the
 host's copy only tells a mistake earlier.

@@ -1,4 +1,4 @@
-"""What a device is doing, why it faulted, and what became of a frame: numbers on the wire."""
+"""States of a device, faults, and the fate of a frame: numbers on the wire."""
 
 from __future__ import annotations
 
