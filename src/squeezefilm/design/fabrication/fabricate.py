@@ -153,14 +153,8 @@ def fabricate(
     p = prediction
     load = load_of_mode(display.actuator, p.mode, p.voltage, p.frequency)
     mass = math.fsum(part.mass for part in parts)
-    known = PlanFacts(
-        prediction,
-        () if blind is None else blind.predictions,
-        mass,
-        nodal,
-        load,
-        uncertainty,
-    )
+    expected = () if blind is None else blind.predictions
+    known = PlanFacts(prediction, expected, mass, nodal, load, uncertainty)
     return Fabrication(
         display=display,
         prediction=prediction,

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Literal
 
 from squeezefilm.core import hard_limits as hard
@@ -133,15 +133,7 @@ class Strips(Shape):
             for number, x in enumerate(_places(count, piece, length, inset))
         ]
         above = [
-            CeramicPatch(
-                patch.x,
-                patch.y,
-                patch.length,
-                patch.width,
-                patch.thickness,
-                polarity=-1 if patch.polarity == 1 else 1,
-                face="top",
-            )
+            replace(patch, polarity=-1 if patch.polarity == 1 else 1, face="top")
             for patch in below
             if self.both_faces
         ]
