@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
 import textwrap
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.distributions import Normal
@@ -125,44 +126,25 @@ class Sheet:
 
     def interrupted(self, line: Polyline | Arc) -> None:
         """A straight line or an arc, left out where labels are."""
-
-        def place(share: float) -> tuple[float, float]:
-            if isinstance(line, Arc):
-                angle = line.start + share * (line.end - line.start)
-                turn = math.cos(angle), math.sin(angle)
-                return line.x + line.radius * turn[0], line.y + line.radius * turn[1]
-            (x, y), (x_to, y_to) = line.points[0], line.points[-1]
-            return x + share * (x_to - x), y + share * (y_to - y)
-
-        shares = [k / _PIECES for k in range(_PIECES + 1)]
-        free = [self._is_free(*place(share)) for share in shares]
-        if all(free):
-            self.add(line)
-            return
-        start = None
-        for share, is_free in zip([*shares, 1.0], [*free, False], strict=True):
-            if is_free and start is None:
-                start = share
-            elif not is_free and start is not None:
-                end = share - (0.0 if share == 1.0 and free[-1] else 1 / _PIECES)
-                if end > start:
-                    self.add(self._piece(line, start, end, place))
-                start = None
-
-    @staticmethod
-    def _piece(
-        line: Polyline | Arc,
-        start: float,
-        end: float,
-        place: Callable[[float], tuple[float, float]],
-    ) -> Item:
+        shares = np.linspace(0.0, 1.0, _PIECES + 1)
         if isinstance(line, Arc):
-            turn = line.end - line.start
-            return replace(line, start=line.start + start * turn, end=line.start + end * turn)
-        return replace(line, points=(place(start), place(end)))
-
-    def _is_free(self, x: float, y: float) -> bool:
-        return not any(a <= x <= c and b <= y <= d for a, b, c, d in self.kept_free)
+            angles = line.start + shares * (line.end - line.start)
+            x, y = line.x + line.radius * np.cos(angles), line.y + line.radius * np.sin(angles)
+        else:
+            x, y = (np.interp(shares, (0.0, 1.0), ends) for ends in zip(*line.points, strict=True))
+        free = np.ones(shares.size, dtype=bool)
+        for left, bottom, right, top in self.kept_free:
+            free &= ~((left <= x) & (x <= right) & (bottom <= y) & (y <= top))
+        # Where what is free begins, and behind its last place.
+        edges = np.flatnonzero(np.diff(free, prepend=False, append=False)).reshape(-1, 2)
+        for first, last in (edges - (0, 1)).tolist():
+            if free.all():
+                self.add(line)
+            elif last > first and isinstance(line, Arc):
+                self.add(replace(line, start=float(angles[first]), end=float(angles[last])))
+            elif last > first:
+                ends = (float(x[first]), float(y[first])), (float(x[last]), float(y[last]))
+                self.add(replace(line, points=ends))
 
     def box(self, layer: str, left: float, bottom: float, right: float, top: float) -> None:
         """A rectangle on paper (mm)."""
