@@ -249,8 +249,5 @@ def _found(
     search, stopped = search_until_stopped(
         SearchRequest(requirements, out=out, progress=say, watch=watch, **how)
     )
-    return {"failed": False, "message": _ending(stopped), "result": result(search)}
-
-
-def _ending(stopped: str) -> str:
-    return SearchProcess.stopped if stopped else "finished"
+    message = SearchProcess.stopped if stopped else "finished"
+    return {"failed": False, "message": message, "result": result(search)}

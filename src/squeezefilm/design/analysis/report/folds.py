@@ -300,11 +300,10 @@ def _folds(analysis: Analysis) -> Iterator[Fold]:
         yield Fold("What does each value do?", (), [table], [])
     yield _origin(analysis)
     if whole:
+        beside = theory_rows(analysis) if analysis.other_models else []
         tables = [
             FoldTable("Beside the first screen", NUMBERS, new(more_rows(analysis))),
-            FoldTable(
-                "The same plate by other theories, without a finger", _THEORY, theories(analysis)
-            ),
+            FoldTable("The same plate by other theories, without a finger", _THEORY, beside),
         ]
         if unsure is not None:
             weights = weight_rows(unsure)
@@ -317,11 +316,6 @@ def _folds(analysis: Analysis) -> Iterator[Fold]:
 
 
 _THEORY = ("Model", "Resonance", "Half wavelength", "Amplitude")
-
-
-def theories(analysis: Analysis) -> list[tuple[str, str, str, str]]:
-    """Rows of other theories of the plate; none where there is no other."""
-    return theory_rows(analysis) if analysis.other_models else []
 
 
 def friction_rows(analysis: Analysis) -> list[Row]:
