@@ -7,8 +7,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from squeezefilm.design.plate.changed_plates import with_glue
 from squeezefilm.physics.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
-from squeezefilm.validation.explanations import with_glue
 
 
 def _with_one(

@@ -9,17 +9,17 @@ import pytest
 from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.core.materials import ElasticMaterial
 from squeezefilm.design.analysis.coarse_shift import CoarseShifts
-from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.physics.plate.solid.solve import solve_modes
-from squeezefilm.physics.plate.working_mode import working_mode
-from squeezefilm.physics.uncertainty.parameters import with_values
-from squeezefilm.validation.explanations import (
+from squeezefilm.design.plate.changed_plates import (
     with_ceramic_stiffness,
     with_glue,
     with_loss_in_ceramic_alone,
     working_point,
 )
+from squeezefilm.physics.display import load_display
+from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.working_mode import working_mode
+from squeezefilm.physics.uncertainty.parameters import with_values
 
 
 def _paper() -> RectangularPlate:

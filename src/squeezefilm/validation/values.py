@@ -18,6 +18,12 @@ from squeezefilm.design.analysis.paper_procedure import (
     friction_criterion,
     timoshenko_half_wavelength,
 )
+from squeezefilm.design.plate.changed_plates import (
+    PlatePoint,
+    with_glue,
+    with_loss_in_ceramic_alone,
+    working_point,
+)
 from squeezefilm.physics.chain.friction import friction_law
 from squeezefilm.physics.contact.sharing.paper import relative_friction, vibration_amplitude_for
 from squeezefilm.physics.display import Display, load_display
@@ -36,15 +42,7 @@ from squeezefilm.physics.plate.beam.modes import (
 from squeezefilm.physics.plate.beam.response import beam_response
 from squeezefilm.physics.plate.laminate import Laminate, Layer, laminate, plate_laminate
 from squeezefilm.physics.plate.layout import AnnularStator
-from squeezefilm.validation.explanations import (
-    MODAL_FREQUENCY,
-    PlatePoint,
-    paper_plate,
-    paper_points,
-    with_glue,
-    with_loss_in_ceramic_alone,
-    working_point,
-)
+from squeezefilm.validation.explanations import MODAL_FREQUENCY, paper_plate, paper_points
 
 PRINTED_HALF_WAVELENGTH: si.Metre = 10.37e-3
 PRINTED_WIDTH: si.Metre = 50e-3  # section 3.1.1 chooses b = 50 mm, section 3.1.2 ends at 49 mm

@@ -10,6 +10,7 @@ from scipy.special import ndtri
 
 from squeezefilm.core.distributions import Normal, Uniform
 from squeezefilm.core.errors import InputError
+from squeezefilm.design.plate.changed_plates import with_ceramic_stiffness, with_glue
 from squeezefilm.measure.calibration.priors import (
     CHARGE_SHARE,
     PERMITTIVITY_SHARE,
@@ -21,7 +22,6 @@ from squeezefilm.measure.calibration.priors import (
     with_calibrated,
 )
 from squeezefilm.physics.display import load_display
-from squeezefilm.validation.explanations import with_ceramic_stiffness, with_glue
 
 PAPER = load_display("biet2008-plate")
 
