@@ -187,7 +187,7 @@ def play(asked: PlayOptions) -> None:
     what was played cannot be used: too few ticks, too long a gap, too many late commands.
     """
     from squeezefilm.instruments.bench.play import play_texture
-    from squeezefilm.instruments.report.terminal import live_view, show_play
+    from squeezefilm.instruments.report.terminal import line_a_second, show_play
     from squeezefilm.measure.fits.friction.person import with_finger
     from squeezefilm.physics.display import load_display
     from squeezefilm.physics.texture_files.texture_file import load_texture
@@ -195,18 +195,16 @@ def play(asked: PlayOptions) -> None:
     what = load_texture(asked.texture)
 
     def step(text: str) -> None:
-        # Lines, since only one thing at a time may move on a terminal, and that is the session.
         if not asked.as_json:
             typer.echo(f"  {text} …", err=True)
 
-    with live_view(not asked.as_json) as show:
-        result = play_texture(
-            with_finger(load_display(asked.display), asked.finger),
-            what,
-            **given(asked, leave="texture display finger as_json"),
-            show=show,
-            progress=step,
-        )
+    result = play_texture(
+        with_finger(load_display(asked.display), asked.finger),
+        what,
+        **given(asked, leave="texture display finger as_json"),
+        show=None if asked.as_json else line_a_second(),
+        progress=step,
+    )
     page = None
     if asked.out is not None:
         from squeezefilm.instruments.report.page import write_play

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core import quantities as si
@@ -14,15 +13,12 @@ from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, tab
 from squeezefilm.physics.render.fidelity.report import lag_rows
 
 if TYPE_CHECKING:
-    from rich.console import Group
-
     from squeezefilm.instruments.bench.check_result import DeviceCheck
     from squeezefilm.instruments.bench.play import PlayResult
     from squeezefilm.instruments.bench.played_session import Judged, PlayedSession
     from squeezefilm.instruments.session.play.plan import PlayView
     from squeezefilm.instruments.session.record.trace import TraceExport
 
-_BAR = 28
 _LINE_PERIOD = 1.0
 _SPEED = si.Unit("m/s")
 
@@ -60,33 +56,20 @@ def show_check(check: DeviceCheck) -> None:
     console.print(f"{verdicts.count('pass')} of {count} checks passed{told}")
 
 
-@contextmanager
-def live_view(enabled: bool) -> Iterator[Callable[[PlayView], None] | None]:
-    """Show a session while it plays: a table at a terminal, a line a second elsewhere.
+def line_a_second() -> Callable[[PlayView], None]:
+    """Function that is shown a session while it plays, and tells it by a line a second.
 
-    Yields the function to tell each view to, or None where nothing is to be shown. On standard
-    error, so that what a program reads stays clean.
+    On standard error, so that what a program reads stays clean.
     """
-    if not enabled:
-        yield None
-        return
-    if not sys.stderr.isatty():
-        told = -math.inf
+    told = -math.inf
 
-        def line(view: PlayView) -> None:
-            nonlocal told
-            if view.time - told >= _LINE_PERIOD:
-                told = view.time
-                print(f"  {view_line(view)}", file=sys.stderr, flush=True)
+    def line(view: PlayView) -> None:
+        nonlocal told
+        if view.time - told >= _LINE_PERIOD:
+            told = view.time
+            print(f"  {view_line(view)}", file=sys.stderr, flush=True)
 
-        yield line
-        return
-    from rich.console import Console
-    from rich.live import Live
-
-    console = Console(stderr=True, highlight=False, markup=False, emoji=False)
-    with Live(console=console, refresh_per_second=10, transient=True) as live:
-        yield lambda view: live.update(view_table(view))
+    return line
 
 
 def view_line(view: PlayView) -> str:
@@ -103,47 +86,6 @@ def view_line(view: PlayView) -> str:
         *view.flags,
     ]
     return ", ".join(parts)
-
-
-def view_table(view: PlayView) -> Group:
-    """A moment of a session as a table with bars, and what the last tick said below it."""
-    from rich.console import Group
-    from rich.table import Table
-    from rich.text import Text
-
-    grid = Table.grid(padding=(0, 2))
-    for width in (13, 12, _BAR):
-        grid.add_column(no_wrap=True, min_width=width)
-    state = view.state.name.lower()
-    style = {"playing": "green", "fault": "bold red"}.get(state, "yellow")
-    known = "not known" if math.isnan(view.x) else f"{1e3 * view.x:.2f} mm"
-    speed = "" if math.isnan(view.speed) else f"{1e3 * view.speed:.0f} mm/s"
-    wanted = "" if math.isnan(view.wanted) else f"{1e6 * view.wanted:.2f} µm wanted"
-    fault = view.fault.name.lower() if view.fault else "none"
-    lines: list[tuple[str, str | Text, str]] = [
-        ("time", f"{view.time:.1f} s", f"{view.rows} rows recorded"),
-        ("state", Text(state, style=style), f"fault: {fault}"),
-        ("position", known, speed),
-        ("friction µ′/µ", _number(view.relative_friction, 1.0, 3), bar(view.relative_friction)),
-        ("amplitude", f"{_number(view.amplitude, 1e6)} µm", wanted),
-        ("output", f"{_number(view.level, 1.0)} V", ""),
-        ("lag", f"{_number(view.lag, 1e3, 3)} mm", "predicted across"),
-        ("lateness", f"{_number(view.lateness, 1e6, 1)} µs", ""),
-    ]
-    if view.held is not None:
-        lines.append(("loops", view.held.mode, view.held.words.partition(", ")[2]))
-    for name, value, remark in lines:
-        grid.add_row(Text(name, style="dim"), value, remark)
-    said = Text("; ".join(view.flags), no_wrap=True, overflow="ellipsis")
-    return Group(grid, said)
-
-
-def bar(share: float) -> str:
-    """A bar for a share from 0 to 1; empty where it is not known."""
-    if not math.isfinite(share):
-        return ""
-    filled = round(_BAR * min(max(share, 0.0), 1.0))
-    return "█" * filled + "·" * (_BAR - filled)
 
 
 def _number(value: float, scale: float, digits: int = 2) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 import math
 from types import SimpleNamespace
 from typing import Any
@@ -15,15 +14,13 @@ from tests.unit.printed import printed
 from squeezefilm.instruments.bench.check_result import CheckResult, DeviceCheck
 from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.report.terminal import (
-    bar,
-    live_view,
+    line_a_second,
     play_rows,
     play_warnings,
     show_check,
     show_export,
     show_play,
     view_line,
-    view_table,
 )
 from squeezefilm.instruments.session.play.held import HeldState
 from squeezefilm.instruments.session.play.plan import PlayView
@@ -51,51 +48,11 @@ def test_a_line_says_all_of_a_moment() -> None:
     assert "fault (watchdog), x       – mm" in view_line(UNKNOWN)
 
 
-def test_what_the_loops_say_is_in_line_and_table() -> None:
-    from rich.console import Console
-
+def test_what_the_loops_say_is_in_the_line() -> None:
     held = HeldState("locked", 0.1, -0.02, 12.0, 0.4, 30.0)
     view = dataclasses.replace(VIEW, held=held)
     assert f"late 12 µs, {held.words}, ticks were lost" in view_line(view)
-    stream = io.StringIO()
-    Console(file=stream, width=120).print(view_table(view))
-    assert "amplitude -2.0 %, reserve 12.0 V, finger 0.40, 30.0 °C" in stream.getvalue()
-
-
-@pytest.mark.parametrize("width", [60, 100])
-@pytest.mark.parametrize("view", [VIEW, UNKNOWN])
-def test_the_table_fits_a_terminal(view: PlayView, width: int) -> None:
-    from rich.console import Console
-
-    stream = io.StringIO()
-    Console(file=stream, width=width).print(view_table(view))
-    lines = stream.getvalue().splitlines()
-    assert len(lines) == 9
-    assert all(len(line) <= width for line in lines)
-    assert lines[0].startswith("time")
-    assert "friction µ′/µ" in stream.getvalue()
-    assert ("fault: watchdog" if view is UNKNOWN else "fault: none") in stream.getvalue()
-
-
-@pytest.mark.parametrize(("share", "full"), [(0.0, 0), (0.5, 14), (1.0, 28), (7.0, 28), (-1.0, 0)])
-def test_a_bar_is_as_long_as_its_share(share: float, full: int) -> None:
-    assert bar(share).count("█") == full
-    assert len(bar(share)) == 28
-    assert bar(math.nan) == ""
-
-
-def test_off_a_terminal_the_live_view_is_a_line_a_second(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    from dataclasses import replace
-
-    with live_view(True) as show:
-        assert show is not None
-        for tenth in range(25):
-            show(replace(VIEW, time=0.1 * tenth))
-    assert len(capsys.readouterr().err.splitlines()) == 3
-    with live_view(False) as show:
-        assert show is None
+    assert "amplitude -2.0 %, reserve 12.0 V, finger 0.40, 30.0 °C" in view_line(view)
 
 
 def test_a_check_shows_what_failed_and_what_to_do(capsys: pytest.CaptureFixture[str]) -> None:
@@ -112,83 +69,14 @@ def test_a_check_shows_what_failed_and_what_to_do(capsys: pytest.CaptureFixture[
     assert "1 of 2 checks passed" in said
 
 
-def cells(view: PlayView) -> list[str]:
-    """The lines of the table, runs of blanks as one."""
-    from rich.console import Console
-
-    stream = io.StringIO()
-    Console(file=stream, width=120).print(view_table(view))
-    return [" ".join(line.split()) for line in stream.getvalue().splitlines()]
-
-
-def test_every_line_of_the_table_has_its_number() -> None:
-    assert cells(VIEW) == [
-        "time 1.2 s 7 rows recorded",
-        "state playing fault: none",
-        "position 12.34 mm 60 mm/s",
-        f"friction µ′/µ 0.700 {bar(0.7)}",
-        "amplitude 0.90 µm 1.00 µm wanted",
-        "output 8.00 V",
-        "lag 0.400 mm predicted across",
-        "lateness 12.0 µs",
-        "ticks were lost just before this one",
-    ]
-    unknown = cells(UNKNOWN)
-    assert unknown[1:8] == [
-        "state fault fault: watchdog", "position not known", "friction µ′/µ –", "amplitude – µm",
-        "output – V", "lag – mm predicted across", "lateness – µs",
-    ]  # fmt: skip
-
-
-def test_a_table_says_all_that_the_last_tick_said() -> None:
-    from dataclasses import replace
-
-    assert cells(replace(VIEW, flags=("one", "two")))[-1] == "one; two"
-    assert view_line(replace(VIEW, flags=("one", "two"))).endswith(", late 12 µs, one, two")
-
-
-@pytest.mark.parametrize(
-    ("state", "style"),
-    [(State.PLAYING, "green"), (State.FAULT, "bold red"), (State.ARMED, "yellow")],
-)
-def test_a_state_has_its_colour(state: State, style: str) -> None:
-    from dataclasses import replace
-
-    grid: Any = view_table(replace(VIEW, state=state)).renderables[0]
-    assert list(grid.columns[1].cells)[1].style == style
-
-
-def test_at_a_terminal_the_table_is_shown_and_taken_away(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    class Terminal(io.StringIO):
-        def isatty(self) -> bool:
-            return True
-
-    screen = Terminal()
-    monkeypatch.setattr("sys.stderr", screen)
-    monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setenv("COLUMNS", "100")
-    with live_view(True) as show:
-        assert show is not None
-        show(VIEW)
-    said = screen.getvalue()
-    assert "12.34 mm" in said
-    assert "position" in said
-    # No line as elsewhere, but a drawing in one place.
-    assert "   1.25 s, playing" not in said
-    assert "\x1b[" in said
-
-
-def test_off_a_terminal_a_moment_is_a_line_at_once_and_again_after_a_second(
+def test_a_moment_is_a_line_at_once_and_again_after_a_second(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     from dataclasses import replace
 
-    with live_view(True) as show:
-        assert show is not None
-        for time in (0.5, 1.25, 1.5, 2.4375, 2.5):
-            show(replace(VIEW, time=time))
+    show = line_a_second()
+    for time in (0.5, 1.25, 1.5, 2.4375, 2.5):
+        show(replace(VIEW, time=time))
     said = capsys.readouterr()
     assert said.out == ""
     assert [line[:11] for line in said.err.splitlines()] == [
