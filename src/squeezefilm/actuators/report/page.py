@@ -60,10 +60,9 @@ def write_page(
     key_numbers: Sequence[Row],
     figures: Mapping[str, tuple[str, Figure]],
     more: str = "",
-    pictures: Mapping[str, bytes] | None = None,
 ) -> Path:
-    """Write result.json, a PNG of each of the `figures` (by file name: heading and figure),
-    other `pictures` by file name, and report.html into `folder`; the path of the page.
+    """Write result.json, a PNG of each of the `figures` (by file name: heading and figure), and
+    report.html into `folder`; the path of the page.
 
     `more` are sections of HTML after the figures. Raises `InputError` where the folder cannot be
     written to.
@@ -74,7 +73,6 @@ def write_page(
     files: dict[str, str | bytes] = {
         f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
     }
-    files |= pictures or {}
     files["result.json"] = json_text(summary | {"stamp": stamped_with})
     warned = [*analysis.warnings, assumed_words(described.provenance)]
     head = ("quantity", "value", "remark")

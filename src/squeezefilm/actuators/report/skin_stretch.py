@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import io
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +23,6 @@ from squeezefilm.actuators.skin_stretch.load_line import (
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, M, N, Row, V, W, shown
-from squeezefilm.core.kit.page_style import section
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -37,7 +35,6 @@ _ANSWERS = {
     "force_on_skin_N": "force on the skin",
     "crosstalk": "crosstalk",
 }
-_MOVING = "wave.png"
 
 
 def skin_stretch_rows(analysis: SkinStretchAnalysis) -> list[Row]:
@@ -113,12 +110,8 @@ def show_skin_stretch(analysis: SkinStretchAnalysis) -> None:
 
 
 def write_skin_stretch(analysis: SkinStretchAnalysis, folder: Path) -> Path:
-    """Write result.json, the figures, the moving texture and report.html into `folder`; the path of
-    the page. Raises `InputError` where the folder cannot be written to."""
-    moving = section(
-        "The texture as it moves",
-        f'<figure><img src="{_MOVING}" alt="The skin while a texture moves past"></figure>',
-    )
+    """Write result.json, the figures and report.html into `folder`; the path of the page. Raises
+    `InputError` where the folder cannot be written to."""
     return write_page(
         analysis,
         folder,
@@ -129,12 +122,10 @@ def write_skin_stretch(analysis: SkinStretchAnalysis, folder: Path) -> Path:
             "strain": ("The skin under the array", strain_figure(analysis)),
             "crosstalk": ("Crosstalk and seat", crosstalk_figure(analysis)),
         },
-        more=moving + how_sure(analysis.drawn, _ANSWERS),
-        pictures={_MOVING: wave_animation(analysis)},
+        more=how_sure(analysis.drawn, _ANSWERS),
     )
 
 
-_FRAME_MS = 60
 _DRAWN_TIMES = 10
 
 
@@ -238,17 +229,17 @@ def strain_figure(analysis: SkinStretchAnalysis) -> Figure:
         4.4,
     )
     left, right = figure.subplots(1, 2)
-    _strain_map(figure, left, wave, 0)
-    _contactors(right, analysis, 0)
+    _strain_map(figure, left, wave)
+    _contactors(right, analysis)
     style.legend_below(right, columns=2)
     return figure
 
 
-def _contactors(axes: Axes, analysis: SkinStretchAnalysis, frame: int) -> None:
+def _contactors(axes: Axes, analysis: SkinStretchAnalysis) -> None:
     """Places of each contactor's skin, drawn larger, and which slip."""
-    slips = analysis.wave.slips[frame]
+    slips = analysis.wave.slips[0]
     x, y = (1e3 * place for place in analysis.array.cradle.places)
-    moved = _DRAWN_TIMES * 1e3 * analysis.wave.displacements[frame]
+    moved = _DRAWN_TIMES * 1e3 * analysis.wave.displacements[0]
     true_length: dict[str, Any] = {"angles": "xy", "scale_units": "xy", "scale": 1}
     axes.quiver(x, y, moved, np.zeros(moved.size), color=style.BLUE, width=0.006, **true_length)
     axes.plot(x[~slips], y[~slips], "o", ms=3, color="black", label="sticks")
@@ -259,9 +250,9 @@ def _contactors(axes: Axes, analysis: SkinStretchAnalysis, frame: int) -> None:
     axes.set_title(f"the skin's way under contactors, {_DRAWN_TIMES} times", fontsize="medium")
 
 
-def _strain_map(figure: Figure, axes: Axes, wave: ShownWave, frame: int) -> None:
+def _strain_map(figure: Figure, axes: Axes, wave: ShownWave) -> None:
     most = 100 * float(np.max(np.abs(wave.strain)))
-    cells = (1e3 * wave.edges_x, 1e3 * wave.edges_y, 100 * wave.strain[frame].T)
+    cells = (1e3 * wave.edges_x, 1e3 * wave.edges_y, 100 * wave.strain[0].T)
     drawn = axes.pcolormesh(*cells, cmap="RdBu_r", vmin=-most, vmax=most)
     figure.colorbar(drawn, ax=axes, shrink=0.8)
     axes.set(xlabel="along the finger (mm)", ylabel="across (mm)", aspect="equal")
@@ -296,28 +287,3 @@ def crosstalk_figure(analysis: SkinStretchAnalysis) -> Figure:
     right.set(xlabel="along the finger (mm)", ylabel="across (mm)", aspect="equal")
     right.set_title("finger's force on each contactor (mN)", fontsize="medium")
     return figure
-
-
-def wave_animation(analysis: SkinStretchAnalysis) -> bytes:
-    """The strain and the contactors while the texture moves past, slowed, as an animated PNG."""
-    from PIL import Image
-
-    wave, frames = analysis.wave, []
-    for number in range(wave.times.size):
-        with style.rc():
-            figure = style.new_figure(
-                f"A texture of {1e3 * wave.period:.3g} mm moves under the finger",
-                "elastic layer on bone, quasi-static, contactors held by friction",
-                4.2,
-            )
-            left, right = figure.subplots(1, 2)
-            _strain_map(figure, left, wave, number)
-            _contactors(right, analysis, number)
-            style.legend_below(right, columns=2)
-        frames.append(Image.open(io.BytesIO(style.png(figure, 80))).convert("RGB"))
-    stream = io.BytesIO()
-    first, *others = frames
-    first.save(
-        stream, format="PNG", save_all=True, append_images=others, duration=_FRAME_MS, loop=0
-    )
-    return stream.getvalue()
