@@ -8,7 +8,7 @@ import squeezefilm as sf
 
 def main() -> dict[str, float]:
     found = {}
-    for name, figure in (("winfield2007-tpad", "shape"), ("biet2008-plate", "surface")):
+    for name, figure in (("winfield2007-tpad", "shape"), ("biet2008-plate", "plan")):
         mode = sf.predict(name).mode
         found[name] = mode.resonance_frequency
         print(

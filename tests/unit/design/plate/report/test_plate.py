@@ -23,7 +23,6 @@ from squeezefilm.design.plate.report.plate import (
     driven_shape,
     frequency_response,
     line_scan,
-    mode_surface,
     plan_view,
 )
 
@@ -244,7 +243,6 @@ def test_numbers_volume_and_pictures_are_written_each_under_its_name(
     monkeypatch.setattr(page, "write_mode", lambda _, file: written.append(file))
     monkeypatch.setattr(page, "plate_page", text)
     always = {
-        "mode-surface": ("Mode shape", "mode_surface"),
         "mode-plan": ("Mode shape from above", "plan_view"),
         "line-scan": ("Line scan along the plate", "line_scan"),
         "frequency-response": ("Frequency response", "frequency_response"),
@@ -275,78 +273,3 @@ def test_the_volume_is_the_mode_by_itself_at_the_displays_voltage(
     assert write_mode(result, tmp_path / "a.vtu") == tmp_path / "a.vtu"
     named = {"response": result.response, "at": 200, "voltage": 15.0}
     assert asked == [((tmp_path / "a.vtu", "modes", 3), named)]
-
-
-@pytest.fixture
-def coarse(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Fewer points than a picture needs."""
-    monkeypatch.setattr(plate, "_POINTS", (41, 11))
-
-
-@pytest.mark.usefixtures("coarse")
-def test_the_surface_has_its_heights_and_lies_on_its_nodal_lines() -> None:
-    figure = mode_surface(solved())
-    assert words(figure.get_suptitle()) == "Mode (4,0) at 30.01 kHz: up to 100 nm per volt"
-    # 16 % of 80 mm for ±1.5 µm: 12.8 mm over 3 µm.
-    assert (
-        "solid, all electrodes driven at resonance; heights drawn 4 300 times those at 15 V, "
-        "length and width to scale; nodal lines in black" in words(figure.get_supxlabel())
-    )
-    axes, bar = figure.axes
-    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()) == (
-        "x (mm)", "y (mm)", "w (nm/V)",
-    )  # fmt: skip
-    assert bar.get_ylabel() == "w per volt (nm/V)"
-    assert axes.get_xlim() == pytest.approx((0, 80))
-    assert axes.get_ylim() == pytest.approx((0, 50))
-    assert axes.get_zlim() == pytest.approx((-100, 100))
-    shape = np.asarray(axes._box_aspect)
-    assert shape / shape[0] == pytest.approx([1, 50 / 80, 0.16])
-    (surface,) = axes.collections
-    assert surface.get_clim() == (-100, 100)
-    lines = [line.get_data_3d() for line in axes.get_lines()]
-    assert len(lines) == 4
-    for x, y, z in lines:
-        assert np.all(np.asarray(z) == 0)
-        at = np.asarray(x)[np.isfinite(x)]
-        assert np.min(np.abs(at[:, None] - 1e3 * NODES), axis=1) == pytest.approx(
-            np.zeros(at.size), abs=0.1
-        )
-        assert np.nanmin(y) >= 0
-        assert np.nanmax(y) <= 50
-    assert any(np.any(np.isfinite(x)) for x, _, _ in lines)
-
-
-@pytest.mark.usefixtures("coarse")
-def test_without_a_voltage_heights_are_said_for_one_volt() -> None:
-    said = words(mode_surface(solved(volts=0.0)).get_supxlabel())
-    assert "heights drawn 64 000 times those at 1 V" in said
-
-
-def test_a_nodal_line_is_hidden_behind_a_wall_that_is_high_or_near_enough() -> None:
-    """The eye is seen from the plate at 38° above it, to the right and to the front."""
-    x, y = np.linspace(0, 0.2, 401), np.linspace(0, 0.2, 401)
-    towards = np.array([np.cos(np.radians(-62)), np.sin(np.radians(-62))])
-    here = np.array([0.1, 0.1])
-    height = 0.02  # of the highest point as drawn, half of what it is from peak to peak
-    way = (x[:, None] - here[0]) * towards[0] + (y[None, :] - here[1]) * towards[1]
-    far = height / np.tan(np.radians(38))
-
-    def hidden(wall: np.ndarray, reach: float = 7.0) -> bool:
-        w = np.where(wall, reach, 0.0)
-        return plate._Hidden(x, y, w, (0.2, 0.2, 2 * height), reach)(*here)
-
-    assert hidden(way > 0.8 * far)
-    assert not hidden(way > 1.15 * far)
-    assert not hidden(way < -0.1 * far)
-    # To the sides of the line of sight nothing stands in the way.
-    aside = -(x[:, None] - here[0]) * towards[1] + (y[None, :] - here[1]) * towards[0]
-    assert not hidden(np.abs(aside) > 0.005)
-    assert hidden((np.abs(aside) < 0.005) & (way > 0.3 * far))
-    # A wall half as high hides what is half as far behind it.
-    low = np.where(way > 0.3 * far, 0.5, 0.0)
-    assert plate._Hidden(x, y, low, (0.2, 0.2, 2 * height), 1.0)(*here)
-    low = np.where(way > 0.6 * far, 0.5, 0.0)
-    assert not plate._Hidden(x, y, low, (0.2, 0.2, 2 * height), 1.0)(*here)
-    # Beyond the plate there is nothing.
-    assert not plate._Hidden(x, y, 0 * way, (0.2, 0.2, 2 * height), 1.0)(0.2, 0.0)

@@ -5,9 +5,7 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 import pytest
-from scipy.interpolate import RectBivariateSpline
 
 from squeezefilm import subjects
 from squeezefilm.core.errors import InputError
@@ -16,10 +14,8 @@ from squeezefilm.design.plate.report import page
 from squeezefilm.design.plate.report.page import plate_page
 from squeezefilm.design.plate.report.plate import (
     admittance,
-    driven_shape,
     frequency_response,
     line_scan,
-    mode_surface,
     plan_view,
 )
 from squeezefilm.physics.display import load_display
@@ -32,32 +28,6 @@ def result() -> PlateAnalysis:
 
 def _words(figure: object) -> str:
     return str(figure.get_suptitle()).replace("\u00a0", " ").replace("\n", " ")  # type: ignore[attr-defined]
-
-
-@pytest.mark.slow
-def test_the_surface_says_its_exaggeration_and_draws_the_nodal_lines(
-    result: PlateAnalysis,
-) -> None:
-    figure = mode_surface(result)
-    assert "(8,0)" in _words(figure)
-    assert "163 nm" in _words(figure)
-    assert "2 700 times those at 15 V" in figure.get_supxlabel().replace("\n", " ")
-    axes = figure.axes[0]
-    lines = [line for line in axes.get_lines() if np.size(line.get_data_3d()[0]) > 10]
-    # Eight lines across the length, on the surface's zero.
-    assert len(lines) == 8
-    # On another grid than the figure's own: one phase for all of the face.
-    along, across = np.linspace(0, 83e-3, 150), np.linspace(0, 49e-3, 70)
-    shape = RectBivariateSpline(along, across, driven_shape(result, along, across))
-    for line in lines:
-        x, y, z = (np.asarray(part, dtype=float) for part in line.get_data_3d())
-        assert np.all(z == 0)
-        seen = np.flatnonzero(np.isfinite(x))[::7]
-        at = shape(x[seen] / 1e3, y[seen] / 1e3, grid=False)
-        assert np.max(np.abs(at)) < 2e-3 * result.amplitude_per_volt
-    assert (axes.get_xlabel(), axes.get_ylabel(), axes.get_zlabel()) == (
-        "x (mm)", "y (mm)", "w (nm/V)",
-    )  # fmt: skip
 
 
 @pytest.mark.slow
