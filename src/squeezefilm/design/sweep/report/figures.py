@@ -1,4 +1,4 @@
-"""A sweep drawn: lines over one axis, maps over two, main effects, shares, trade-offs."""
+"""A sweep drawn: lines over one axis, maps over two, main effects, trade-offs."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.design.sweep.answers import without_units
-from squeezefilm.design.sweep.effects import Effects, Varied, varied_values
+from squeezefilm.design.sweep.effects import Varied, varied_values
 from squeezefilm.design.sweep.report.words import (
     labelled,
     mode_of,
@@ -256,47 +256,6 @@ def _short(name: str) -> str:
             lines.append("")
         lines[-1] = f"{lines[-1]} {word}".strip()
     return "\n".join(lines)
-
-
-def shares_figure(effects: tuple[Effects, ...], varied: tuple[Varied, ...]) -> Figure:
-    """Figure of each value's share of the variance of each answer: alone, and with others."""
-    return _shares((effects[:MOST_ANSWERS], varied))
-
-
-@style.drawn
-def _shares(drawn: tuple[tuple[Effects, ...], tuple[Varied, ...]]) -> Figure:
-    effects, varied = drawn
-    exact = all(effect.explained is None for effect in effects)
-    figure = style.new_figure(
-        "What decides: shares of the variance over the sweep",
-        "analysis of variance of the whole grid"
-        if exact
-        else "polynomial fit of the points; whiskers: one standard error either way",
-        1.2 + 0.5 * len(varied) + 0.4,
-    )
-    row = figure.subplots(1, len(effects), squeeze=False, sharey=True)[0]
-    places = np.arange(len(varied))
-    for axes, effect in zip(row, effects, strict=True):
-        for offset, key, color, label in (
-            (-0.18, "first", style.BLUE, "alone"),
-            (0.18, "total", style.ORANGE, "with interactions"),
-        ):
-            axes.barh(
-                places + offset,
-                [getattr(share, key) for share in effect.shares],
-                0.34,
-                xerr=[getattr(share, f"{key}_error") for share in effect.shares],
-                color=color,
-                ecolor=style.INK,
-                label=label,
-            )
-        axes.set_xlim(0, 1.05)
-        axes.set_title(_short(name_of(effect.column)), fontsize=10)
-        axes.set_yticks(places, [_short(varied_name(v)) for v in varied])
-        axes.set_xlabel("share")
-    row[0].invert_yaxis()
-    style.legend_below(row[0], columns=2, gap=0.3)
-    return figure
 
 
 @style.drawn

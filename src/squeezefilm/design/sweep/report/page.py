@@ -29,7 +29,6 @@ from squeezefilm.design.sweep.answers import FOLLOWED
 from squeezefilm.design.sweep.effects import Effects, Varied, effects_of, varied_values
 from squeezefilm.design.sweep.report.figures import (
     effects_figure,
-    shares_figure,
     sweep_figure,
     tradeoffs_figure,
     varied_name,
@@ -85,8 +84,6 @@ def sweep_page(
     if not any(axis.sampled for axis in sweep.axes):
         figures["sweep"] = ("The sweep", sweep_figure(sweep))
     figures["effects"] = ("Main effects", effects_figure(sweep))
-    if effects:
-        figures["shares"] = ("What decides", shares_figure(effects, varied))
     if len(sweep.columns) > 1:
         figures["tradeoffs"] = ("Trade-offs", tradeoffs_figure((sweep, better)))
     title = escape(printable(sweep.title))

@@ -42,7 +42,7 @@ def made(points: int = 40) -> Sweep:
 
 def test_it_has_every_part_and_its_pictures() -> None:
     files = sweep_page(made(), ["sweep.csv"], (("relative_friction", 1), ("amplitude_m", 1)))
-    assert sorted(files) == ["effects.png", "index.html", "shares.png", "tradeoffs.png"]
+    assert sorted(files) == ["effects.png", "index.html", "tradeoffs.png"]
     page = str(files["index.html"])
     for said in (
         "a sweep of 40 points",
