@@ -20,7 +20,7 @@ def main() -> dict[float, float]:
         settled = loop.time > 15 * rendered.time_constant
         kept[speed] = float(np.ptp(loop.amplitude[settled]) / np.ptp(loop.wanted[settled]))
         print(f"{speed * 1e3:3.0f} mm/s: {kept[speed]:.0%} of the amplitude's swing is left")
-    sf.plot(rendered, "contrast").savefig("grating_under_a_finger.png")
+    sf.plot(rendered, "friction").savefig("grating_under_a_finger.png")
     return kept
 
 

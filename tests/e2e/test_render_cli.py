@@ -39,7 +39,7 @@ def test_everything_is_written_and_belongs_together(tmp_path: Path) -> None:
     assert "lost" in done.stdout
     assert {path.name for path in out.iterdir()} == {
         "index.html", "trace.csv", "envelope.wav", "drive.wav", "fidelity.json", "texture.hjif",
-        "render-friction.png", "render-drive.png", "render-contrast.png", "render-way.png",
+        "render-friction.png", "render-drive.png", "render-way.png",
     }  # fmt: skip
     numbers = json.loads((out / "fidelity.json").read_text())
     trace = table_from_csv(out / "trace.csv")

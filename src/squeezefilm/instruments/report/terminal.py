@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import HZ, M, S, V, printable, shown
 from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, table
-from squeezefilm.physics.render.fidelity.report import lag_rows
+from squeezefilm.physics.render.fidelity.report import contrast_rows, lag_rows
 
 if TYPE_CHECKING:
     from squeezefilm.instruments.bench.check_result import DeviceCheck
@@ -152,14 +152,7 @@ def _judged_rows(who: str, judged: Judged) -> list[tuple[str, str, str]]:
     fidelity = judged.fidelity
     if fidelity is None:
         return [(f"{who}: contrast, lag", "–", judged.unjudged or "")]
-    rows = []
-    for f, kept, swing in zip(
-        fidelity.spatial_frequency, fidelity.contrast_kept, fidelity.swing_kept, strict=True
-    ):
-        if math.isfinite(kept):
-            said = f"in its place; {100 * swing:.0f} % of that wave anywhere"
-            name = f"{who}: contrast at {shown(1 / f, M, 3)}"
-            rows.append((name, f"{100 * kept:.0f} %", said))
+    rows = contrast_rows(fidelity, f"{who}: contrast at")
     said = f"RMS of µ′/µ, swing wanted {fidelity.wanted_swing:.2f}; by {judged.way.source}"
     rows.append((f"{who}: friction error", f"{fidelity.rms_error:.3f}", said))
     return rows + lag_rows(fidelity, f"{who}: lag")

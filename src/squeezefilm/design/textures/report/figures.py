@@ -1,4 +1,4 @@
-"""Figures of a rendered texture: friction along the way, drive and force, contrast, the map."""
+"""Figures of a rendered texture: friction along the way, drive and force, the map."""
 
 from __future__ import annotations
 
@@ -102,47 +102,6 @@ def drive(result: RenderAnalysis) -> Figure:
     below.set(xlabel="time (s)", ylabel="force (N)", xlim=(0, float(stroke.time[-1])))
     for axes in (above, below):
         style.legend_beside(axes)
-    return figure
-
-
-@style.drawn
-def contrast(result: RenderAnalysis) -> Figure:
-    """Share of the texture's contrast kept, by spatial frequency."""
-    judged = result.fidelity
-    if judged is None:
-        return style.message_figure("This stroke cannot be judged", result.unjudged or "")
-    f, kept, swing = judged.spatial_frequency, judged.contrast_kept, judged.swing_kept
-    good = np.isfinite(kept)
-    period = 1 / f[good]
-    worst = int(np.argmin(kept[good])) if np.any(good) else 0
-    title = "The texture has nothing at the spatial frequencies looked at"
-    if np.any(good):
-        title = (
-            f"Of its contrast at {shown(float(period[worst]), M, 2)} the texture keeps "
-            f"{100 * float(kept[good][worst]):.0f} % in its place"
-        )
-    figure = style.new_figure(title, judged.model, 3.6)
-    axes = figure.subplots()
-    axes.set_xscale("log")
-    axes.plot(
-        1e3 * period,
-        100 * swing[good],
-        "s",
-        ms=9,
-        color=style.ORANGE,
-        mfc="none",
-        mew=1.6,
-        label="of each wave kept, wherever it lies",
-    )
-    named = "contrast kept in its place"
-    axes.plot(1e3 * period, 100 * kept[good], **style.ESTIMATE, label=named)
-    axes.axhline(100, **style.REFERENCE)
-    axes.set(xlabel="spatial period (mm)", ylabel="kept (%)")
-    axes.set(ylim=(0, 1.1 * max(100.0, 100 * float(np.max(swing[good], initial=0.0)))))
-    style.plain_log(axes.xaxis)
-    if period.size:
-        axes.set_xlim(0.5e3 * float(period.min()), 2e3 * float(period.max()))
-    style.legend_below(axes, gap=0.24)
     return figure
 
 
@@ -256,7 +215,6 @@ def picture(texture: TextureFile) -> Figure:
 FIGURES = (
     FigureOf("friction", "Friction along the stroke", friction),
     FigureOf("drive", "Drive and tangential force", drive),
-    FigureOf("contrast", "Contrast by spatial period", contrast),
     FigureOf("way", "The finger's way over the texture", way),
     FigureOf("wave", "The standing wave", ripple, has=lambda result: result.wave != "ignored"),
 )

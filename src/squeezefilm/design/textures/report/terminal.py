@@ -9,7 +9,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import HZ, M, N, S, V, shown
 from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, table
-from squeezefilm.physics.render.fidelity.report import lag_rows
+from squeezefilm.physics.render.fidelity.report import contrast_rows, lag_rows
 
 if TYPE_CHECKING:
     from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
@@ -75,13 +75,7 @@ def _judged_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
     judged = result.fidelity
     if judged is None:
         return [("Contrast, lag", "–", result.unjudged or "")]
-    contrast = zip(judged.spatial_frequency, judged.contrast_kept, strict=True)
-    rows = [
-        (f"Contrast kept at {shown(1 / f, M, 3)}", f"{100 * kept:.0f} %", "")
-        for f, kept in contrast
-        if np.isfinite(kept)
-    ]
-    return rows + lag_rows(judged)
+    return contrast_rows(judged, "Contrast kept at") + lag_rows(judged)
 
 
 def show_render(result: RenderAnalysis) -> None:

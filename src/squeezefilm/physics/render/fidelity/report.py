@@ -17,7 +17,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import LAG_PRODUCTS, require_within
-from squeezefilm.core.kit.numbers import S, shown
+from squeezefilm.core.kit.numbers import M, S, shown
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import SensorModel
@@ -328,6 +328,20 @@ def strongest_lines(stroke: RenderedStroke, period: si.Metre | None) -> si.Float
     strong = peaks[power[peaks] > _FAINT_LINE * power[least:].max(initial=0.0)]
     best = np.sort(strong[np.argsort(power[strong])[::-1][:_MOST_LINES]])
     return np.asarray(best / length, dtype=float) if best.size else None
+
+
+def contrast_rows(judged: FidelityReport, what: str) -> list[tuple[str, str, str]]:
+    """Rows on the share of each wave of the pattern that is kept, in its place and anywhere."""
+    waves = zip(judged.spatial_frequency, judged.contrast_kept, judged.swing_kept, strict=True)
+    return [
+        (
+            f"{what} {shown(1 / frequency, M, 3)}",
+            f"{100 * kept:.0f} %",
+            f"in its place; {100 * swing:.0f} % of that wave anywhere",
+        )
+        for frequency, kept, swing in waves
+        if math.isfinite(kept)
+    ]
 
 
 def lag_rows(judged: FidelityReport, what: str = "Lag") -> list[tuple[str, str, str]]:

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.unit.drawn import labelled, words
+from tests.unit.drawn import words
 
-from squeezefilm.design.textures.report.figures import contrast, drive, friction, ripple, way
+from squeezefilm.design.textures.report.figures import drive, friction, ripple, way
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
@@ -144,48 +144,6 @@ def test_drive_and_force_stand_over_one_time() -> None:
 def test_an_amplitude_that_was_given_has_no_volts() -> None:
     given = SimpleNamespace(voltage=None)
     assert texts(drive(made(prediction=given)).axes[0])[2] == "largest: 2 µm"
-
-
-def test_contrast_is_drawn_by_period_where_there_is_any() -> None:
-    figure = contrast(RESULT)
-    axes = figure.axes[0]
-    lines = labelled(axes)
-    swing, kept = lines["of each wave kept, wherever it lies"], lines["contrast kept in its place"]
-    assert swing.get_xdata() == pytest.approx([2, 1])
-    assert swing.get_ydata() == pytest.approx([95, 130])
-    assert kept.get_xdata() == pytest.approx([2, 1])
-    assert kept.get_ydata() == pytest.approx([90, 40])
-    assert axes.get_lines()[2].get_ydata() == [100, 100]
-    assert axes.get_xscale() == "log"
-    assert axes.get_xlim() == pytest.approx((0.5, 4))
-    assert axes.get_ylim() == pytest.approx((0, 143))
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("spatial period (mm)", "kept (%)")
-    assert axes.xaxis.get_major_formatter()(0.5) == "0.5"
-    assert words(figure.get_suptitle()) == (
-        "Of its contrast at 1 mm the texture keeps 40 % in its place"
-    )
-    assert figure.get_supxlabel() == "Model: a judge"
-    assert texts(axes) == list(lines)
-
-
-def test_small_swings_stand_below_the_whole() -> None:
-    judged = SimpleNamespace(
-        spatial_frequency=np.array([100.0]), contrast_kept=np.array([0.1]),
-        swing_kept=np.array([0.2]), model="a judge",
-    )  # fmt: skip
-    assert contrast(made(fidelity=judged)).axes[0].get_ylim() == pytest.approx((0, 110))
-
-
-def test_without_contrast_or_judgement_the_figure_says_so() -> None:
-    nothing = SimpleNamespace(
-        spatial_frequency=np.array([100.0]), contrast_kept=np.array([np.nan]),
-        swing_kept=np.array([np.nan]), model="a judge",
-    )  # fmt: skip
-    title = contrast(made(fidelity=nothing)).get_suptitle()
-    assert words(title) == "The texture has nothing at the spatial frequencies looked at"
-    figure = contrast(made(fidelity=None, unjudged="too short"))
-    assert figure.get_suptitle() == "This stroke cannot be judged"
-    assert [one.get_text() for one in figure.axes[0].texts] == ["too short"]
 
 
 def test_the_way_lies_on_the_texture_at_the_mean_speed() -> None:

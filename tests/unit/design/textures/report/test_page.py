@@ -35,7 +35,7 @@ HOSTILE = "<script>alert(1)</script> & more"
 SINE = SineWave(2e-3)
 FILES = {
     "trace.csv", "envelope.wav", "drive.wav", "texture.hjif", "fidelity.json", "index.html",
-    "render-friction.png", "render-drive.png", "render-contrast.png", "render-way.png",
+    "render-friction.png", "render-drive.png", "render-way.png",
     "render-wave.png",
 }  # fmt: skip
 
@@ -168,7 +168,7 @@ def test_all_files_are_written_with_what_they_are_named_after(
     assert json.loads(written["texture.hjif"]) == export.document
     for name, begin in (
         ("friction", "friction is rendered within"), ("drive", "The drive is at a limit"),
-        ("contrast", "contrast"), ("way", "of finger motion over"), ("wave", "Along the wave"),
+        ("way", "of finger motion over"), ("wave", "Along the wave"),
     ):  # fmt: skip
         assert begin in written[f"render-{name}.png"].decode()
 

@@ -34,7 +34,8 @@ def judged(lag: float, **changes: Any) -> SimpleNamespace:
     """Contrast at two periods, of which the pattern has one."""
     values = {
         "spatial_frequency": np.array([1 / 4.3216e-3, 1000.0]),
-        "contrast_kept": np.array([0.876, NAN]), "lag": lag, "lag_time": lag / 0.06,
+        "contrast_kept": np.array([0.876, NAN]),
+        "swing_kept": np.array([0.91, 0.2]), "lag": lag, "lag_time": lag / 0.06,
         "mean_speed": 0.06012,
     }  # fmt: skip
     return SimpleNamespace(**{**values, **changes})
@@ -94,7 +95,7 @@ def test_a_rendered_texture_is_said_with_all_that_there_is() -> None:
         ("Friction asked for", "0.700 ± 0.200", "mean and RMS swing of µ′/µ"),
         ("Friction rendered", "0.800 ± 0.100", ""),
         ("RMS error of µ′/µ", "0.123", "rendered − asked for"),
-        ("Contrast kept at 4.32 mm", "88 %", ""),
+        ("Contrast kept at 4.32 mm", "88 %", "in its place; 91 % of that wave anywhere"),
         ("Lag", "0.123 mm", "behind the finger, 2.1 ms at 60.1 mm/s"),
         ("Drive at a limit", "4.65 %", "of the time"),
         (
