@@ -117,7 +117,6 @@ def write_skin_stretch(analysis: SkinStretchAnalysis, folder: Path) -> Path:
         folder,
         key_numbers=skin_stretch_rows(analysis),
         figures={
-            "actuator": ("One actuator", actuator_figure(analysis)),
             "load-line": ("One actuator against the skin", load_line_figure(analysis)),
             "strain": ("The skin under the array", strain_figure(analysis)),
             "crosstalk": ("Crosstalk and seat", crosstalk_figure(analysis)),
@@ -174,48 +173,6 @@ def _intervals(axes: Axes, analysis: SkinStretchAnalysis, free: float) -> None:
     along = [[max(0, x - um * left)], [max(0, um * right - x)]]
     axes.errorbar(x, y, across, along, color=style.ORANGE, capsize=3)
     axes.set_ylim(0, 1.05 * mn * analysis.blocked_force)
-
-
-@style.drawn
-def actuator_figure(analysis: SkinStretchAnalysis) -> Figure:
-    """One actuator's cross-section, and its line of deflection: free, on the skin, and blocked."""
-    actuator, tip, um, mm = analysis.array.actuator, analysis.tip, 1e6, 1e3
-    figure = style.new_figure(
-        f"An actuator {mm * actuator.length:.3g} mm long, {mm * actuator.width:.3g} mm wide and "
-        f"{mm * actuator.thickness:.3g} mm thick",
-        "right: a slender beam clamped at 0, drawn through the tip's deflection",
-        3.6,
-    )
-    left, right = figure.subplots(1, 2)
-    layers = [
-        ("ceramic", actuator.ceramic_thickness, style.BLUE),
-        ("shim", actuator.shim_thickness, "0.55"),
-        ("ceramic", actuator.ceramic_thickness, style.BLUE),
-    ]
-    bottom = -mm * sum(thickness for _, thickness, _ in layers) / 2
-    for number, (name, thickness, colour) in enumerate(layers):
-        label = name if number < 2 else None
-        left.bar(
-            0, mm * thickness, mm * actuator.width, bottom, color=colour, alpha=0.55, label=label
-        )
-        bottom += mm * thickness
-    half = mm * actuator.width / 2
-    left.set(
-        xlabel="across (mm)", ylabel="height (mm)", aspect="equal", xlim=(-1.15 * half, 1.15 * half)
-    )
-    left.set_ylim(1.25 * -bottom, 1.25 * bottom)
-    style.legend_below(left, columns=2)
-    share = np.linspace(0, 1, 200)
-    bent, pushed = share**2, 1.5 * share**2 - 0.5 * share**3
-    free = um * analysis.free_deflection
-    back = {"free": 0.0, "on the skin": free - um * tip.deflection, "blocked": free}
-    for (name, less), colour in zip(back.items(), (style.BLUE, style.ORANGE, "black"), strict=True):
-        right.plot(
-            mm * actuator.length * share, free * bent - less * pushed, color=colour, label=name
-        )
-    right.set(xlabel="from the clamp (mm)", ylabel=f"deflection at {analysis.voltage:.3g} V (µm)")
-    style.legend_below(right, columns=3)
-    return figure
 
 
 @style.drawn

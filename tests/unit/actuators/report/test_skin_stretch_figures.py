@@ -11,7 +11,6 @@ import pytest
 
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.report.skin_stretch import (
-    actuator_figure,
     crosstalk_figure,
     load_line_figure,
     strain_figure,
@@ -64,23 +63,6 @@ def test_the_load_lines_meet_where_the_tip_is() -> None:
     assert np.abs(found.motion) * 1e6 == pytest.approx(right.lines[0].get_ydata())
     none = SimpleNamespace(**{**vars(found), "drawn": SimpleNamespace(intervals={})})
     assert not load_line_figure(none).axes[0].collections
-
-
-def test_blocked_free_and_loaded_tips_end_where_they_are() -> None:
-    found = analysis()
-    layers, bent = actuator_figure(found).axes
-    ends = {line.get_label(): line.get_ydata()[-1] for line in bent.lines}
-    assert ends == pytest.approx(
-        {
-            "free": 1e6 * found.free_deflection,
-            "on the skin": 1e6 * found.tip.deflection,
-            "blocked": 0.0,
-        },
-        abs=1e-9,
-    )
-    thick = sum(patch.get_height() for patch in layers.patches)
-    assert thick == pytest.approx(1e3 * found.array.actuator.thickness)
-    assert layers.patches[0].get_y() == pytest.approx(-thick / 2)
 
 
 def test_what_slips_is_drawn_apart_from_what_sticks() -> None:
