@@ -40,12 +40,10 @@ from squeezefilm.core.kit.numbers import (
     HZ,
     PER_VOLT,
     SPEED,
-    A,
     M,
     N,
     S,
     V,
-    W,
     printable,
     shown,
     span,
@@ -59,7 +57,6 @@ if TYPE_CHECKING:
     from squeezefilm.design.analysis.ears import EarExposure
     from squeezefilm.design.analysis.other_models import MeasuredBeside
     from squeezefilm.physics.chain.prediction import Prediction
-    from squeezefilm.physics.plate.electronics import ElectricalLoad
     from squeezefilm.physics.plate.working_mode import WorkingMode
 
 
@@ -179,32 +176,6 @@ def _grating(analysis: Analysis, at: int) -> Row:
     )
 
 
-def electrical_rows(load: ElectricalLoad | None) -> list[Row]:
-    """Rows of what the free plate takes from its amplifier at the drive's frequency."""
-    if load is None:
-        said = "it takes a voltage, and an admittance solved near it"
-        return [("Current", "not known", said)]
-    real = f"{shown(load.real_power, W, 3)} of it real"
-    able = {
-        can: [check.part for check in load.amplifiers if check.suffices == can]
-        for can in (True, False)
-    }
-    each = [
-        f"{' and '.join(parts)} {'can' if can else 'cannot'}"
-        for can, parts in able.items()
-        if parts
-    ]
-    return [
-        (
-            "Current",
-            shown(load.current, A, 3),
-            "zero-to-peak, without a finger" + ("; of an assumed ceramic" if load.assumed else ""),
-        ),
-        ("Apparent power", f"{load.apparent_power:.3g} VA", real),
-        ("Amplifiers that can", f"{len(able[True])} of {len(load.amplifiers)}", "; ".join(each)),
-    ]
-
-
 def sound_rows_at_ear(ears: EarExposure | None) -> list[Row]:
     """The level at an ear, beside the guidance."""
     if ears is None:
@@ -280,8 +251,7 @@ def _folds(analysis: Analysis) -> Iterator[Fold]:
     driving = with_measured(vibration_rows(p), analysis.measured, p.voltage)
     driving += wanted_rows(analysis.wanted)
     if p.voltage is not None:
-        load = analysis.drive_electronics
-        driving += electronics_rows(load) if whole else electrical_rows(load)
+        driving += electronics_rows(analysis.drive_electronics)
     at = f"A{working_point(p)[1:]}"
     yield Fold("Can I drive it?", ("response",), [FoldTable(at, NUMBERS, new(driving))], [])
     if p.voltage:

@@ -1,5 +1,5 @@
-"""Rows of a working point that several verbs show: place, heat, sound, the finger's speed, what
-a plate asks of its amplifier; each a quantity, its value, a remark."""
+"""Rows of a working point that several verbs show: place, heat, sound, what a plate asks of its
+amplifier; each a quantity, its value, a remark."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.schema import leaves
-from squeezefilm.core.kit.numbers import HZ, SPEED, A, Row, V, W, dotted, shown
+from squeezefilm.core.kit.numbers import HZ, A, Row, V, W, dotted, shown
 from squeezefilm.physics.chain.active_area import CRITERIA, percent
 from squeezefilm.physics.chain.pad_place import place_words
 from squeezefilm.physics.display import Display
@@ -44,11 +44,6 @@ def place_rows(p: Prediction, judged: JudgedArea | None) -> list[Row]:
             f"{places}; median {area.median:.2f}; {shares}",
         ),
     ]
-
-
-def speed_row(p: Prediction) -> Row:
-    """The finger's speed that the friction is for: quantity, value, remark."""
-    return "Finger speed", shown(p.speed, SPEED), "of sliding"
 
 
 def reduction_row(p: Prediction) -> Row:

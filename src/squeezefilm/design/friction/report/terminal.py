@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.kit.numbers import HZ, M, N, V, printable, shown
+from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, V, printable, shown
 from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.design.analysis.report.decisions import interval_rows, wanted_rows
 from squeezefilm.design.analysis.report.model_rows import (
@@ -17,7 +17,6 @@ from squeezefilm.design.analysis.report.model_rows import (
 from squeezefilm.design.analysis.report.point_rows import (
     place_rows,
     reduction_row,
-    speed_row,
 )
 from squeezefilm.design.plate.report.heat_and_sound import heat_rows
 
@@ -85,7 +84,7 @@ def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
     rows += [
         ("Surface", p.surface.name, f"roughness {shown(p.surface.roughness, M)}"),
         ("Normal force", shown(p.normal_force, N), ""),
-        speed_row(p),
+        ("Finger speed", shown(p.speed, SPEED), "of sliding"),
         ("Ambient pressure", shown(result.display.gas.ambient_pressure, si.Unit("Pa")), ""),
     ]
     if p.law.kind.friction == "lift":

@@ -10,7 +10,6 @@ from tests.unit.made_results import WARM
 
 from squeezefilm.design.analysis.other_models import MeasuredBeside
 from squeezefilm.design.analysis.report.folds import (
-    electrical_rows,
     more_rows,
     rival_rows,
     sound_rows_at_ear,
@@ -107,20 +106,6 @@ def test_the_free_amplitude_is_told_from_that_under_the_finger() -> None:
 
 def rows_of(*rows: tuple[str, str, str]) -> dict[str, tuple[str, str]]:
     return {label: (text, remark) for label, text, remark in rows}
-
-
-def test_what_the_amplifier_has_to_give_and_which_can() -> None:
-    kinds = [SimpleNamespace(part=part, suffices=part == "B") for part in "ABC"]
-    load: Any = SimpleNamespace(
-        current=0.3, apparent_power=1.5, real_power=1.2, amplifiers=kinds, assumed=""
-    )
-    said = rows_of(*electrical_rows(load))
-    assert said["Current"] == ("300 mA", "zero-to-peak, without a finger")
-    load.assumed = "its ceramic"
-    assert rows_of(*electrical_rows(load))["Current"][1].endswith("of an assumed ceramic")
-    assert said["Apparent power"] == ("1.5 VA", "1.2 W of it real")
-    assert said["Amplifiers that can"] == ("1 of 3", "B can; A and C cannot")
-    assert rows_of(*electrical_rows(None))["Current"][0] == "not known"
 
 
 def test_the_level_at_an_ear_stands_beside_its_limits() -> None:
