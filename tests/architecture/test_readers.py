@@ -44,7 +44,6 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "measure/recordings/files/sound.py": {"wave.open": "bytes that `read_regular` read"},
     "measure/recordings/description.py": {"tomllib.loads": TOML},
     "physics/texture_files/image_file.py": {"Pillow.open": CHILD},
-    "actuators/report/skin_stretch.py": {"Image.open": "bytes that Matplotlib just drew"},
     "design/plate/report/page.py": {"read_bytes": "a draft in a folder of its own"},
     "study/report/session.py": {"path.open": WRITES},
     "instruments/session/record/trace.py": {"mmap.mmap": "over the descriptor that `opened` gave"},

@@ -147,11 +147,11 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "shifts": np.array([0.0]),
         "theory": "timoshenko",
     },
-    "actuators.motor.force_law.inverted_law": {
+    "actuators.motor.closed_loop.inverted_law": {
         "speeds": np.array([0.01]),
         "amplitudes": np.array([0.2e-6, 0.5e-6]),
     },
-    "actuators.motor.force_law.track_force": {"wanted": np.array([0.5, 0.5]), "speed": 0.01},
+    "actuators.motor.closed_loop.track_force": {"wanted": np.array([0.5, 0.5]), "speed": 0.01},
     "actuators.motor.description.Motor": Later(lambda: fields_of(made(Motor))),
     "actuators.motor.force_law.ForceLaw": Later(lambda: fields_of(made(ForceLaw))),
     "physics.plate.electronics.amplifier_check": {"slew_rate": 1e6, "current": 0.01},

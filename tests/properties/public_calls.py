@@ -54,7 +54,7 @@ NOT_CALLED = {
     actuators.motor.averaged.AveragedMotor actuators.motor.in_time.MotorMotion
     actuators.motor.plane.PlaneMotion
     actuators.motor.curves.MotorMap
-    actuators.motor.force_law.TrackedForce actuators.motor.force_law.TrackedForce.mean_error
+    actuators.motor.closed_loop.TrackedForce actuators.motor.closed_loop.TrackedForce.mean_error
     actuators.motor.assembled.FaceMode
     physics.plate.electronics.Amplifier
     physics.plate.electronics.ElectricalLoad physics.plate.electronics.RingAdmittance

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.unit.actuators.test_motor import PRELOAD, motor
 
-from squeezefilm.actuators.motor.force_law import inverted_law, track_force
+from squeezefilm.actuators.motor.closed_loop import inverted_law, track_force
 from squeezefilm.core.errors import InputError
 
 SPEED = 0.01

@@ -18,6 +18,7 @@ from squeezefilm.actuators.motor.averaged import (
     no_load_speed,
     stall_force,
 )
+from squeezefilm.actuators.motor.closed_loop import TrackedForce, inverted_law, track_force
 from squeezefilm.actuators.motor.curves import (
     MotorMap,
     motor_map,
@@ -25,7 +26,6 @@ from squeezefilm.actuators.motor.curves import (
     speed_force_curve,
 )
 from squeezefilm.actuators.motor.description import MotorDescription
-from squeezefilm.actuators.motor.force_law import TrackedForce, inverted_law, track_force
 from squeezefilm.actuators.motor.in_time import MotorMotion, simulate
 from squeezefilm.actuators.motor.plane import PlaneMotion, simulate_plane
 from squeezefilm.core import quantities as si

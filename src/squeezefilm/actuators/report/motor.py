@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.actuators.motor.averaged import AveragedMotor
+    from squeezefilm.actuators.motor.closed_loop import TrackedForce
     from squeezefilm.actuators.motor.curves import MotorMap
-    from squeezefilm.actuators.motor.force_law import TrackedForce
     from squeezefilm.actuators.motor.in_time import MotorMotion
     from squeezefilm.actuators.motor.plane import PlaneMotion
 

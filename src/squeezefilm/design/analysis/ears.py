@@ -169,9 +169,9 @@ def moving_surface(display: Display, prediction: Prediction) -> RadiatingSurface
             min(2 * p.mode.half_wavelength, _AIR / p.frequency),
         )
     if isinstance(actuator, DiscPlate):
-        mode = ring_body(actuator).mode()
-        shape = mode.surface_shape / np.max(np.abs(mode.surface_shape))
-        radius = np.linspace(mode.surface_radius[0], mode.surface_radius[-1], 81)
-        line = np.interp(radius, mode.surface_radius, shape)
-        return ring_surface(radius, 1j * omega * free * line, mode.harmonic, p.frequency)
+        ring_mode = ring_body(actuator).mode()
+        shape = ring_mode.surface_shape / np.max(np.abs(ring_mode.surface_shape))
+        radius = np.linspace(ring_mode.surface_radius[0], ring_mode.surface_radius[-1], 81)
+        line = np.interp(radius, ring_mode.surface_radius, shape)
+        return ring_surface(radius, 1j * omega * free * line, ring_mode.harmonic, p.frequency)
     return None

@@ -12,8 +12,8 @@ from matplotlib.text import Text
 from tests.unit import drawn
 from tests.unit.actuators.test_motor import WORKING, motor
 
+from squeezefilm.actuators.motor.closed_loop import TrackedForce
 from squeezefilm.actuators.motor.curves import motor_map, speed_force_curve
-from squeezefilm.actuators.motor.force_law import TrackedForce
 from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.actuators.motor.plane import simulate_plane
 from squeezefilm.actuators.report import motor as report

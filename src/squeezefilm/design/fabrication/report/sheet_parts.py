@@ -144,7 +144,7 @@ class Sheet:
                 self.add(replace(line, start=float(angles[first]), end=float(angles[last])))
             elif last > first:
                 ends = (float(x[first]), float(y[first])), (float(x[last]), float(y[last]))
-                self.add(replace(line, points=ends))
+                self.add(Polyline(line.layer, ends))
 
     def box(self, layer: str, left: float, bottom: float, right: float, top: float) -> None:
         """A rectangle on paper (mm)."""
