@@ -186,7 +186,7 @@ def test_the_page_shows_names_as_text_with_numbers_pictures_and_links(
     assert f"<td>{felt.rms_error:.3f}</td><td>rendered − asked for</td></tr>" in text
     headings = [
         "Numbers", "Friction along the stroke", "Drive and tangential force",
-        "Contrast by spatial period", "The finger's way over the texture", "The standing wave",
+        "The finger's way over the texture", "The standing wave",
         "Warnings",
     ]  # fmt: skip
     places = [text.index(f"<h2>{one.replace(chr(39), '&#x27;')}</h2>") for one in headings]
