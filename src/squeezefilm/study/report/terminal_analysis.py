@@ -83,7 +83,7 @@ def show_power(power: PlannedPower) -> None:
 
 
 def show_precision(precision: PlannedPrecision) -> None:
-    """Print how many people make an answer precise, and what stopping early does."""
+    """Print how many people make an answer precise."""
     console = plain_console()
     scale, unit = (100, " %") if precision.measure in PARTS else (1, "")
     wanted = f"± {scale * precision.precision:g}{unit}"
