@@ -63,7 +63,6 @@ from squeezefilm.physics.plate.ring.stator import StatorAssumptions, StatorFit, 
 from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.solid.response import (
     HarmonicResponse,
-    SurfaceLoad,
     harmonic_response,
 )
 from squeezefilm.physics.plate.solid.solve import solve_modes
@@ -219,7 +218,6 @@ MADE: dict[Any, Callable[[], Any]] = {
     HeatSource: lambda: HeatSource(30e3, 60.0, 1e-6, 1.0),
     CeramicPatch: lambda: PLATE.patches[0],
     LoadedMode: lambda: LoadedMode(30e3, 60.0, 0.01 + 0.01j),
-    SurfaceLoad: lambda: SurfaceLoad(10e-3, 2e-3, 5e-3, 5e-3, 1.0),
     EquivalentCircuit: lambda: EquivalentCircuit(30e3, 60.0, 1e-9, 100.0, 0.03, 1e-9),
     DrivenResponse: _capacitor,
     Amplifier: lambda: AMPLIFIERS[0],

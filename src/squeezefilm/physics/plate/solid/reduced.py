@@ -1,8 +1,8 @@
 """A plate reduced to a few dozen coordinates that answer a drive over a band.
 
 The coordinates of a class of symmetry are a Krylov space of (K − σM)⁻¹ started from the forces at
-work (the electrodes' and those of surface loads): the modes near the band, and what the modes left
-out add quasi-statically, in one. Losses, loads and circuits are projected on it.
+work: the modes near the band, and what the modes left out add quasi-statically, in one. Losses and
+circuits are projected on it.
 """
 
 from __future__ import annotations
@@ -185,18 +185,10 @@ def surface_values(
 
 
 def harmonic_solution(
-    parts: list[ReducedClass],
-    omega: si.FloatArray,
-    added: si.ComplexArray | None,
-    force: si.ComplexArray | None,
-    voltage: float,
+    parts: list[ReducedClass], omega: si.FloatArray
 ) -> tuple[si.ComplexArray, list[si.ComplexArray], si.ComplexArray]:
     """Coordinates (frequencies × coordinates), electrode potentials of each class (frequencies ×
-    electrodes) and the charge at the drive's terminals, at angular frequencies `omega`.
-
-    `added` (frequencies × coordinates²) is the dynamic stiffness of surface loads, `force` outer
-    forces on the coordinates.
-    """
+    electrodes) and the charge at the drive's terminals, per volt at angular frequencies `omega`."""
     places = class_slices(parts)
     total, extra = places[-1].stop, sum(len(one.circuit) for one in parts)
     A = np.zeros((omega.size, total + extra, total + extra), dtype=complex)
@@ -204,9 +196,9 @@ def harmonic_solution(
     row, w2 = total, (omega**2)[:, None, None]
     for one, at in zip(parts, places, strict=True):
         A[:, at, at] = one.stiffness + 1j * one.loss - w2 * one.mass
-        b[:, at] = -(one.coupling @ one.drive) * voltage
+        b[:, at] = -(one.coupling @ one.drive)
         # Charge = −(Gᵀx + C V); a shunt draws V = −iωR · charge, an open electrode none.
-        held = one.capacitance @ one.drive * voltage
+        held = one.capacitance @ one.drive
         for number, resistance, share in one.circuit:
             A[:, at, row] = one.coupling[:, number]
             # Matrices are of the whole plate; one patch carries this part of them.
@@ -221,17 +213,13 @@ def harmonic_solution(
                 A[:, row, row] -= 1
             b[:, row] = -unit * held[number]
             row += 1
-    if added is not None:
-        A[:, :total, :total] += added
-    if force is not None:
-        b[:, :total] += force
     # Circuit rows are in farads, the others in newtons: bring them to one size.
     scale_rows = np.max(np.abs(A), axis=2, keepdims=True)
     solution = np.linalg.solve(A / scale_rows, (b / scale_rows[:, :, 0])[:, :, None])[:, :, 0]
     potentials, charge = [], np.zeros(omega.size, dtype=complex)
     row = total
     for one, at in zip(parts, places, strict=True):
-        V = np.broadcast_to(one.drive * voltage, (omega.size, one.drive.size)).astype(complex)
+        V = np.broadcast_to(one.drive, (omega.size, one.drive.size)).astype(complex)
         for number, _, _ in one.circuit:
             V[:, number] = solution[:, row]
             row += 1

@@ -9,17 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.core.errors import GeometryError, InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.physics.plate.solid import response
 from squeezefilm.physics.plate.solid.layers import COARSE
-from squeezefilm.physics.plate.solid.response import (
-    HarmonicResponse,
-    SurfaceLoad,
-    harmonic_response,
-)
+from squeezefilm.physics.plate.solid.response import HarmonicResponse, harmonic_response
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480)
 CERAMIC = Piezoceramic("P1-91", 67.9e9, 0.2897, 23e9, 7700, -247e-12, 1900, 60)
@@ -65,44 +61,6 @@ def test_a_circuits_admittance_at_its_resonance_and_far_away() -> None:
     assert high.real == pytest.approx(4e-9 - one.motional_capacitance / 1e6, rel=1e-6)
 
 
-class _Class:
-    """What a response reads of a reduced class."""
-
-    def __init__(self, size: int, copies: int, circuit: tuple[Any, ...], scale: float) -> None:
-        self.basis = np.zeros((7, size))
-        self.loss = scale * np.diag(np.arange(1.0, size + 1))
-        self.mass = 2 * self.loss
-        self.stiffness = 5 * self.loss
-        self.circuit = circuit
-        self.solved = SimpleNamespace(copies=copies)
-
-
-def test_power_and_energy_of_two_classes_a_shunt_and_a_load(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    f = np.array([100.0, 300.0])
-    omega = 2 * np.pi * f
-    q = np.array([[1 + 1j, 2.0, 1j], [0.5, 1j, 3.0]])
-    parts = [_Class(2, 4, ((1, 50.0, 0.5), (0, np.inf, 1.0)), 1.0), _Class(1, 2, (), 10.0)]
-    potentials = [np.array([[9.0, 2j], [9.0, 3.0]]), np.zeros((2, 1))]
-    load = SurfaceLoad(1e-3, 2e-3, 4e-3, 5e-3, damping=7.0)
-    # The surface moves by 1 m and 2 m per volt, the same everywhere under the load.
-    monkeypatch.setattr(
-        response, "surface_values",
-        lambda parts, x, y, top: np.ones((3, x.size, y.size)) * np.array([0, 1, 0])[:, None, None],
-    )  # fmt: skip
-    one = answered(f, np.zeros(2), parts, _coordinates=q, _potentials=potentials, _loads=(load,))
-    first = np.array([2 + 2 * 4, 0.25 + 2 * 1.0])
-    second = 10 * np.array([1.0, 9.0])
-    shunt = 4 / 0.5 * np.array([4.0, 9.0]) / 100
-    damped = omega**2 / 2 * 7.0 * 20e-6 * np.array([4.0, 1.0])
-    expected = omega / 2 * (first + second) + shunt + damped
-    assert one.dissipated_power(3.0) == pytest.approx(9 * expected)
-    kinetic, potential = one.stored_energy(3.0)
-    assert kinetic == pytest.approx(9 * omega**2 / 4 * 2 * (first + second))
-    assert potential == pytest.approx(9 / 4 * 5 * (first + second))
-
-
 def test_surface_amplitudes_are_read_off_the_modes(monkeypatch: pytest.MonkeyPatch) -> None:
     def values(parts: Any, x: np.ndarray, y: np.ndarray, top: float) -> np.ndarray:
         assert top == 1.2e-3
@@ -126,16 +84,6 @@ def test_surface_amplitudes_are_read_off_the_modes(monkeypatch: pytest.MonkeyPat
             one.motion(at, np.zeros(1), np.zeros(1))
 
 
-def test_a_loads_points_integrate_over_its_rectangle() -> None:
-    x, y, area = SurfaceLoad(1e-3, 2e-3, 4e-3, 6e-3).points()
-    assert area.sum() == pytest.approx(24e-6)
-    # Exact to the fifteenth degree in each direction.
-    integral = np.sum(area * x[:, None] ** 3 * y**2)
-    assert integral == pytest.approx((5e-3**4 - 1e-3**4) / 4 * (8e-3**3 - 2e-3**3) / 3)
-    assert x.min() > 1e-3
-    assert y.max() < 8e-3
-
-
 @pytest.mark.parametrize("frequencies", [[2e3, 1e3], [1e3, 1e3]])
 def test_frequencies_that_do_not_ascend_are_refused(frequencies: list[float]) -> None:
     with pytest.raises(InputError, match="ascend") as caught:
@@ -157,12 +105,6 @@ def test_what_cannot_answer_is_refused_before_anything_is_solved(
         harmonic_response(plate("shorted"), f)
     with pytest.raises(InputError, match="steps"):
         harmonic_response(plate(), f, steps=0)
-    for load in (SurfaceLoad(20e-3, 0.0, 4.1e-3, 1e-3), SurfaceLoad(0.0, 13e-3, 1e-3, 1.1e-3)):
-        with pytest.raises(GeometryError, match="overhangs"):
-            harmonic_response(plate(), f, loads=[load])
-    # One that ends at the edge does not overhang.
-    with pytest.raises(AssertionError, match="a plate was solved"):
-        harmonic_response(plate(), f, loads=[SurfaceLoad(20e-3, 13e-3, 4e-3, 1e-3)])
 
 
 def test_a_band_chooses_how_long_the_krylov_space_is_and_the_progress_is_told(
@@ -173,7 +115,7 @@ def test_a_band_chooses_how_long_the_krylov_space_is_and_the_progress_is_told(
 
     def reduced(plate: Any, parity: Any, band: Any, steps: int, *_: object) -> Any:
         asked.append((band, steps))
-        return _Class(0, 1, (), 1.0)
+        return SimpleNamespace(basis=np.zeros((7, 0)))
 
     monkeypatch.setattr(response, "reduced_class", reduced)
     # A ceramic without a charge coefficient leaves no coordinates: that is said.

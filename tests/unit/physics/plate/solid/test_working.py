@@ -126,8 +126,7 @@ def test_another_process_has_the_solved_plate_to_the_bit(
         assert np.array_equal(found.modes.frequencies, mode.modes.frequencies)
         assert np.array_equal(found.response.displacement(x, y), mode.response.displacement(x, y))
         assert found.neighbour == mode.neighbour
-        power = found.response.dissipated_power(10.0)
-        assert power == pytest.approx(mode.response.dissipated_power(10.0), rel=1e-12)
+        assert np.array_equal(found.response.maximum, mode.response.maximum)
         field = found.modes.field(0, x, y, PLATE.thickness)
         assert np.array_equal(field, mode.modes.field(0, x, y, PLATE.thickness))
     # Another plate is another question.
