@@ -160,13 +160,15 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "speed": np.array([0.0, 0.1]),
         "coefficient": np.array([0.2, 0.5]),
     },
+    "physics.contact.sharing.paper.least_amplitude": {
+        "friction": falling_friction,
+        "highest": 5e-5,
+    },
     "physics.film.planar.film.solve_planar": {
         "shape": "rectangle",
         "gap": planar_gap,
         "squeeze_number": 10.0,
     },
-    "physics.film.gap.PaperGap.wave_phase": {"X": _GRID},
-    "physics.film.gap.PaperGap.ridge_phase": {"X": _GRID},
     "physics.film.planar.gap.PlanarGap.__call__": {"X": _GRID, "Y": _GRID, "T": _GRID},
     "physics.texture_files.hjif.friction_along": {"document": Later(hjif_document)},
     "physics.texture_files.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},

@@ -21,7 +21,14 @@ from squeezefilm.core.distributions import Normal, Uniform
 from squeezefilm.core.materials import ElasticMaterial, Gas, Piezoceramic, PiezoConstants
 from squeezefilm.core.progress import Deadline
 from squeezefilm.core.quantities import Unit
-from squeezefilm.physics.chain.friction import FrictionLaw
+from squeezefilm.physics.chain.friction import (
+    LAWS,
+    AsymptoteLaw,
+    FittedLaw,
+    FrictionLaw,
+    LiftedLaw,
+)
+from squeezefilm.physics.chain.friction_models import FrictionModel
 from squeezefilm.physics.chain.pad_place import PadPlace
 from squeezefilm.physics.contact.asperities import AsperityLaw
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
@@ -124,10 +131,8 @@ def falling_friction(amplitude: Any, speed: Any = None) -> Any:
     return 1 - np.asarray(amplitude) / 4e-6
 
 
-def _law() -> FrictionLaw:
-    return FrictionLaw(
-        Surface("bare", 1e-6, 0.6), FINGER, AIR, 8e-3, 30e3, 0.5, "partial-levitation"
-    )
+def _law(model: FrictionModel) -> FrictionLaw:
+    return LAWS[model](Surface("bare", 1e-6, 0.6), FINGER, AIR, 8e-3, 30e3, 0.5, model)
 
 
 def disc_section() -> AnnularSection:
@@ -198,7 +203,10 @@ MADE: dict[Any, Callable[[], Any]] = {
     PlanarGap: lambda: PlanarGap(0.2),
     GapProfile: lambda: flexural_profile(0.2),
     ReferenceDevice: lambda: ReferenceDevice("mine", 200.0, 5.0, 1e-4),
-    FrictionLaw: _law,
+    FrictionLaw: lambda: _law("partial-levitation"),
+    AsymptoteLaw: lambda: _law("paper2008"),
+    LiftedLaw: lambda: _law("levitation-2016"),
+    FittedLaw: lambda: _law("levitation"),
     ElasticMaterial: lambda: BRASS,
     Gas: lambda: AIR,
     Piezoceramic: lambda: PZT,

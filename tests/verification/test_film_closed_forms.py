@@ -219,7 +219,7 @@ def test_small_amplitude_asymptote_joins_the_second_order_load() -> None:
 # --- the paper's pressure -------------------------------------------------------------------
 
 STATOR = PaperGap(0.6e-6, 2e-6, 50e-6, 350e-6, 18.7e-3, 10e-3)
-SHIFTED = PaperGap(0.6e-6, 2e-6, 3e-6, 2e-3, 7e-3, 10e-3, wave_offset=1e-3, ridge_offset=0.3e-3)
+FEW = PaperGap(0.6e-6, 2e-6, 3e-6, 2e-3, 7e-3, 10e-3)
 
 
 def numbers(gap: PaperGap) -> tuple[float, float, float, float]:
@@ -252,42 +252,10 @@ def test_smooth_flat_contact_is_salbus_limit() -> None:
     assert closed.contact_mean_pressure(gap) == pytest.approx(trapped_load(0.5), rel=1e-8)
 
 
-def test_profile_solves_the_averaged_reynolds_equation_off_centre() -> None:
-    # Paper eq 5 integrated once: ½ a (Ψ²)′ − Ψ² a′ is constant along X.
-    X = np.linspace(-0.49, 0.49, 41)
-    gap, step = SHIFTED, 1e-5
-
-    def a(x):
-        return 1 + gap.ridge_ratio * np.cos(gap.ridge_phase(x))
-
-    def b(x):
-        return gap.amplitude_ratio * np.cos(gap.wave_phase(x))
-
-    def psi2(x):
-        return closed.mean_pressure_profile(x, gap) ** 2 * (a(x) ** 2 - b(x) ** 2)
-
-    def slope(f):
-        return (f(X + step) - f(X - step)) / (2 * step)
-
-    flow = 0.5 * a(X) * slope(psi2) - psi2(X) * slope(a)
-    assert np.ptp(flow) < 1e-5 * np.max(np.abs(psi2(X) * slope(a)))
-    assert abs(flow.mean()) > 10 * np.ptp(flow)
-    edges = np.array([-0.5, 0.5])
-    np.testing.assert_allclose(psi2(edges), a(edges) ** 2 + 1.5 * b(edges) ** 2, rtol=1e-12)
-
-
-def test_general_profile_joins_the_symmetric_one() -> None:
-    X = np.linspace(-0.5, 0.5, 301)
-    nudged = PaperGap(0.6e-6, 2e-6, 50e-6, 350e-6, 18.7e-3, 10e-3, wave_offset=1e-18)
-    np.testing.assert_allclose(
-        closed.mean_pressure_profile(X, nudged), closed.mean_pressure_profile(X, STATOR), rtol=1e-12
-    )
-
-
 @pytest.mark.parametrize(
     "gap",
-    [STATOR, SHIFTED, PaperGap(1e-8, 5e-6, 50e-6, 350e-6, 5e-3, 10e-3)],
-    ids=["stator", "shifted", "near contact"],
+    [STATOR, FEW, PaperGap(1e-8, 5e-6, 50e-6, 350e-6, 5e-3, 10e-3)],
+    ids=["stator", "few ridges", "near contact"],
 )
 def test_contact_mean_is_converged_quadrature(gap: PaperGap) -> None:
     # Brute force: a midpoint rule and its Richardson extrapolation.
@@ -310,22 +278,11 @@ def test_contact_mean_is_the_same_one_by_one_and_vectorised() -> None:
     ).shape == (4, 7)
 
 
-def test_mirrored_contact_has_the_same_mean() -> None:
-    left, right = (
-        PaperGap(0.6e-6, 2e-6, 50e-6, 350e-6, 18.7e-3, 10e-3, s * 2e-3, s * 0.1e-3) for s in (-1, 1)
-    )
-    assert closed.contact_mean_pressure(left) == pytest.approx(
-        closed.contact_mean_pressure(right), rel=1e-12
-    )
-
-
 def test_pressure_refuses_a_closed_gap_and_a_point_outside() -> None:
     with pytest.raises(OutOfRangeError, match="roughness"):
         closed.paper_mean_pressure(0.0, 0.5, 0.5, 1.0, 1.0)
     with pytest.raises(InputError, match="X = "):
         closed.mean_pressure_profile(np.array([0.6]), STATOR)
-    with pytest.raises(InputError, match="centred"):
-        closed.mean_pressure_profile(np.array([0.0]), SHIFTED, "paper2008-printed")
     with pytest.raises(InputError, match="is not known"):
         closed.contact_mean_pressure(STATOR, "paper2007")
     with pytest.raises(ConvergenceError, match="settle"):

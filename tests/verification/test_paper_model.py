@@ -156,22 +156,6 @@ def test_inverse_gives_back_the_friction(wanted) -> None:
     assert friction(amplitude) == pytest.approx(wanted, abs=1e-9)
 
 
-def test_contact_of_half_a_wave_ripples_as_it_moves() -> None:
-    # Over a node of the standing wave the same film carries less than over an antinode. (16 whole
-    # ridges: the edges lie in grooves.)
-    offsets = np.linspace(0, 18.7e-3 / 2, 9)
-    short = [
-        paper.relative_friction(
-            PaperGap(0.6e-6, 2e-6, 50e-6, 350e-6, 18.7e-3, 5.6e-3, wave_offset=float(offset)),
-            0.5 * 0.56**2, AMBIENT,
-        )
-        for offset in offsets
-    ]  # fmt: skip
-    assert short[0] == pytest.approx(short[-1], rel=1e-9)
-    assert short[4] == max(short)
-    assert max(short) - min(short) == pytest.approx(0.35, abs=0.01)
-
-
 def test_model_hangs_on_where_the_contact_ends() -> None:
     # A contact that ends on a ridge crest (29 ridges, 10.15 mm) lets the whole film start from the
     # crest's pressure: µ′/µ drops by a quarter over 1.5 % of length. An artefact of the 1-D model.
@@ -186,6 +170,6 @@ def test_refusals_name_what_was_asked() -> None:
     with pytest.raises(InputError, match=r"relative_friction = 1\.2"):
         paper.vibration_amplitude_for(1.2, gap(), FORCE, AMBIENT)
     with pytest.raises(UnreachableError, match="press less"):
-        paper.vibration_amplitude_for(0.1, gap(), 5.0, AMBIENT, highest=3e-6)
+        paper.vibration_amplitude_for(0.1, gap(), 500.0, AMBIENT)
     with pytest.raises(InputError, match="paper2009"):
         paper.vibration_amplitude_for(0.5, gap(), FORCE, AMBIENT, "paper2009")

@@ -111,7 +111,7 @@ def pressure_profiles(prediction: Prediction) -> tuple[PressureProfile, ...]:
     law, p = prediction.law, prediction
     gap = law.gap(p.vibration_amplitude)
     X = np.linspace(-0.5, 0.5, 4001)
-    ridges = gap.ridge_amplitude * np.cos(gap.ridge_phase(X))
+    ridges = gap.ridge_amplitude * np.cos(gap.ridge_number * X)
     thickness = np.asarray(gap.reference_thickness + ridges)
     position = X * gap.contact_length
     profiles = [PressureProfile(position, thickness, mean_pressure_profile(X, gap), "paper2008")]

@@ -14,10 +14,10 @@ from squeezefilm.core.errors import OutOfRangeError, SqueezefilmError, Unreachab
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.physics.chain.free_vibration import amplitude_per_volt
 from squeezefilm.physics.chain.friction import FrictionLaw
-from squeezefilm.physics.chain.pad_law import HIGHEST_AMPLITUDE
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.touch import kept_at
 from squeezefilm.physics.chain.wanted_voltage import voltage_for_friction
+from squeezefilm.physics.contact.sharing.paper import HIGHEST_AMPLITUDE
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.draws import (
     Draw,

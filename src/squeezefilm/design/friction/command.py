@@ -247,7 +247,7 @@ def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
     p = prediction
     amplitude = np.linspace(0, max(3e-6, 2 * p.vibration_amplitude), points)
     force = np.geomspace(0.1 * p.normal_force, 4 * p.normal_force, points)
-    law = dataclasses.replace(p.law, model=p.law.model if p.law.kind.shares_load else DEFAULT_MODEL)
+    law = p.law if p.law.kind.shares_load else p.law.by(DEFAULT_MODEL)
     rows = np.empty((points, points))
     for number, newtons in enumerate(force):
         at = dataclasses.replace(law, normal_force=float(newtons))

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal, NamedTuple
-
-from squeezefilm.core import quantities as si
 
 FrictionModel = Literal[
     "paper2008",
@@ -27,13 +24,11 @@ class ModelKind(NamedTuple):
     at the gap where both balance the load. Of that it takes the part that asperities carry
     ("load"), or the closed form of 2016 ("lift"), while the balance only says what the plate feels
     of the finger. `fitted` is whether that has the finger's length, fitted to people and growing
-    with the speed, or the constants published in 2016; `ridges`, whether it takes the solved film
-    over each ridge in place of the closed form.
+    with the speed, or the constants published in 2016.
     """
 
     friction: Literal["asymptote", "load", "lift"]
     fitted: bool = False
-    ridges: bool = False
 
     @property
     def shares_load(self) -> bool:
@@ -45,22 +40,7 @@ MODEL_KINDS: dict[FrictionModel, ModelKind] = {
     "paper2008": ModelKind("asymptote"),
     "paper2008-printed": ModelKind("asymptote"),
     "levitation-2016": ModelKind("lift"),
-    "levitation-ridges": ModelKind("lift", fitted=True, ridges=True),
+    "levitation-ridges": ModelKind("lift", fitted=True),
     "partial-levitation": ModelKind("load"),
     "levitation": ModelKind("lift", fitted=True),
 }
-
-
-@si.checked_numbers
-@dataclass(frozen=True, eq=False)
-class FrictionLimits:
-    """Relative friction µ′/µ (dimensionless) at amplitudes (m) in the two limits of the skin; how
-    far they are apart belongs in the uncertainty of µ′/µ.
-
-    `own`: each ridge at its own balance (a skin compliant at rest, the default); `one_gap`: all
-    ridges tied to one mean gap.
-    """
-
-    amplitude: si.MetreArray
-    own: si.DimensionlessArray
-    one_gap: si.DimensionlessArray

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,98 +13,36 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
-from squeezefilm.core.errors import InputError, OutOfRangeError, UnreachableError
+from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.core.hard_limits import FINGER_SPEED
 from squeezefilm.core.materials import Gas
-from squeezefilm.physics.chain.friction_models import (
-    MODEL_KINDS,
-    FrictionLimits,
-    FrictionModel,
-    ModelKind,
-)
+from squeezefilm.physics.chain.friction_models import MODEL_KINDS, FrictionModel, ModelKind
 from squeezefilm.physics.chain.pad_place import PadPlace
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED, Finger
 from squeezefilm.physics.contact.finger.load import compiled_finger
 from squeezefilm.physics.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.physics.contact.sharing.balance import require_balanced
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.physics.contact.sharing.levitation import (
-    PUBLISHED_DECAY_LENGTH,
-    levitation_friction,
-    levitation_scale,
-    published_rest_gap,
-    ridge_films,
-    ridge_friction,
-)
-from squeezefilm.physics.contact.sharing.pad import (
-    FrictionRipple,
-    Limit,
-    PadFriction,
-    pad_friction,
-    pad_points,
-)
+from squeezefilm.physics.contact.sharing.pad import Limit, PadFriction, pad_friction, pad_points
+from squeezefilm.physics.contact.sharing.paper import HIGHEST_AMPLITUDE
 from squeezefilm.physics.display import Surface
 from squeezefilm.physics.plate.loaded_mode import mean_square_wave
 
 if TYPE_CHECKING:
     from squeezefilm.physics.contact.sharing.kernel import CompiledPad
 
-HIGHEST_AMPLITUDE: si.Metre = 50e-6
-
-
-def least_amplitude(
-    friction: Callable[[float], float],
-    wanted: si.Dimensionless,
-    model: str,
-    highest: Annotated[si.Metre, si.Above(2e-8)] = HIGHEST_AMPLITUDE,
-) -> si.Metre:
-    """The least amplitude (m) at which `friction` of an amplitude falls to `wanted`.
-
-    Raises `UnreachableError` where none up to `highest` (m, 50 µm) does.
-    """
-    from scipy.optimize import brentq
-
-    if wanted == 1:
-        return 0.0
-
-    def excess(amplitude: float) -> float:
-        return friction(amplitude) - wanted
-
-    # What is asked for may be within the rounding of what a still surface has.
-    if excess(0.0) <= 0:
-        return 0.0
-    low, least = 0.0, 1.0
-    for high in np.geomspace(2e-8, highest, 24):
-        try:
-            left = excess(float(high))
-        except OutOfRangeError:
-            # So strong a vibration closes the gap at some ridge: it is no way to get there.
-            break
-        if left <= 0:
-            return float(brentq(excess, low, high, xtol=1e-20, rtol=1e-12))
-        low, least = float(high), min(least, left + wanted)
-    raise UnreachableError(
-        f"relative_friction = {wanted:.4g} is not reached by any vibration amplitude up to "
-        f"{si.format_quantity(highest, si.Unit('m'))}: the model '{model}' "
-        f"gives {least:.4g} at the least; press less, take a smoother surface or ask for less"
-    )
-
-
-_RIPPLE_POSITIONS = 24
 PascalPerMetreComplex = Annotated[complex, si.Unit("Pa/m")]
 
 
 @si.checked_numbers
 @dataclass(frozen=True)
 class PadLaw:
-    """Law by which film and asperities share the load of a pad, at one frequency and force, and the
-    friction that this leaves.
+    """Law by which film and asperities share the load of a pad, at one frequency and force.
 
     `position` is the pad's centre from an antinode, along a wave whose antinodes are all alike; a
     `place` on the face, with what the ridges meet there, stands in its stead, and amplitudes are
     still the best antinode's. `slip` is the gas's law of slip where the load is shared.
-    Without a place the wave is even. Raises `InputError` for a position and a place, and for either
-    with a model that knows the finger over an antinode only.
+    Without a place the wave is even. Raises `InputError` for a position and a place.
     """
 
     surface: Surface
@@ -120,13 +58,6 @@ class PadLaw:
     place: PadPlace | None = None
 
     def __post_init__(self) -> None:
-        elsewhere = self.position != 0 or self.place is not None
-        if elsewhere and not self.kind.shares_load:
-            raise InputError(
-                f"the model '{self.model}' knows the finger over an antinode only; ask a "
-                "levitation model, or leave position and place out",
-                quantity="place" if self.place is not None else "position",
-            )
         if self.position and self.place is not None:
             raise InputError("give a position along the wave or a place on the face, not both")
 
@@ -140,62 +71,8 @@ class PadLaw:
         """Sharing of the load between film and asperities at amplitudes (m), whatever the model, in
         a limit of the skin."""
         met, shares = self.ridge_swings
-        _require_tabulated(amplitude, met)
+        require_tabulated(amplitude, met)
         return self._pad(amplitude, met, shares, limit)
-
-    @si.checked_numbers
-    def limits(self, amplitude: si.MetreLike) -> FrictionLimits:
-        """Relative friction µ′/µ in both limits of the skin at amplitudes (m)."""
-        a = np.atleast_1d(np.asarray(amplitude, dtype=float))
-        return FrictionLimits(a, self.friction_in("own", a), self.friction_in("one-gap", a))
-
-    def friction_in(self, limit: Limit, amplitude: si.MetreArray) -> si.DimensionlessArray:
-        """Relative friction µ′/µ in a limit of the skin at amplitudes (m), shape (n,), at the law's
-        speed."""
-        if self.kind.friction == "lift":
-            return np.asarray(self._lifted(amplitude, self.speed, limit)[0])
-        return self.sharing(amplitude, limit).relative_friction
-
-    def _lifted(
-        self, amplitude: si.MetreArray, speed: si.MetrePerSecondLike, limit: Limit
-    ) -> si.DimensionlessArray:
-        """Relative friction µ′/µ by `levitation_friction`, shape (speeds, amplitudes): the mean
-        over ridges that each meet their own amplitude, or one film that meets the root of their
-        mean square."""
-        met, shares = self.ridge_swings
-        _require_tabulated(amplitude, met)
-        if limit == "one-gap":
-            met, shares = np.sqrt(met**2 @ shares)[None], np.ones(1)
-        at_ridges = amplitude[:, None] * met
-        speeds = np.atleast_1d(speed).tolist()
-        return np.stack([self._lifted_ridge(at_ridges, pace) @ shares for pace in speeds])
-
-    def _lifted_ridge(
-        self, amplitude: si.MetreArray, speed: si.MetrePerSecond
-    ) -> si.DimensionlessArray:
-        """Relative friction µ′/µ of a ridge at the amplitudes that it meets (m), any shape, by
-        `levitation_friction` with the length fitted to people or the gap and length of 2016, or by
-        `ridge_friction`."""
-        pressure, ambient = self.contact_pressure, self.gas.ambient_pressure
-        if self.kind.ridges:
-            load = self.finger.plateau_pressure(self.normal_force)
-            width, length = self.finger.plateau_width, self.finger.ridge_length_at(speed)
-            films = ridge_films(self.frequency, width, self.gas, self.slip)
-            return ridge_friction(films, amplitude, load, length)
-        if self.kind.fitted:
-            length = float(self.finger.decay_length_at(speed))
-            return levitation_friction(amplitude / levitation_scale(length, pressure, ambient))
-        scale = levitation_scale(PUBLISHED_DECAY_LENGTH, pressure, ambient)
-        return levitation_friction(amplitude / scale, published_rest_gap(pressure))
-
-    def ripple(self, amplitude: si.Metre) -> FrictionRipple:
-        """Relative friction µ′/µ along an even wave at an amplitude (m), each ridge by itself, as
-        the pad crosses the wave's nodes over half a wavelength. Raises `InputError` for a model
-        that knows the finger over an antinode only."""
-        position = np.arange(_RIPPLE_POSITIONS) / _RIPPLE_POSITIONS * self.half_wavelength
-        along = [replace(self, place=None, position=float(x)) for x in position]
-        friction = [law.friction_in("own", np.array([amplitude]))[0] for law in along]
-        return FrictionRipple(position, np.array(friction), self.contact_side, self.half_wavelength)
 
     @property
     def _films(self) -> FilmTable:
@@ -226,7 +103,7 @@ class PadLaw:
         from squeezefilm.physics.contact.sharing import kernel
 
         met, known = self._even_swings[0], self._compiled
-        _require_tabulated(amplitude, met)
+        require_tabulated(amplitude, met)
         rows, table = np.zeros((met.size, kernel.COLUMNS)), self._films
         while True:
             _, found, lacking = kernel.felt_stiffness(amplitude, known, table.compiled, rows)
@@ -295,14 +172,6 @@ class PadLaw:
         kinds, alike = np.unique(np.round(wave, 9), return_inverse=True)
         return kinds, np.bincount(alike, weights=points.shares).astype(float)
 
-    @si.checked_numbers
-    def ridge_friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
-        """Relative friction µ′/µ of one ridge at the amplitudes that it meets (m), shape (n,): the
-        pad's in the limit "own" is the mean over its ridges."""
-        if self.kind.friction == "lift":
-            return self._lifted_ridge(amplitude, self.speed)
-        return self._pad(amplitude, np.ones(1), np.ones(1), "own").relative_friction
-
     @cached_property
     def friction_coefficient(self) -> si.Dimensionless:
         """µ without vibration, at this force. See `Finger.friction_coefficient`."""
@@ -338,7 +207,7 @@ class PadLaw:
             raise OutOfRangeError(f"under a normal force of {shown}: {error}") from error
 
 
-def _require_tabulated(amplitude: si.MetreLike, met: si.DimensionlessArray) -> None:
+def require_tabulated(amplitude: si.MetreLike, met: si.DimensionlessArray) -> None:
     """Refuse what ridges cannot meet: films at such swings take minutes to tabulate, and no plate
     moves so far."""
     most = float(np.max(amplitude)) * float(np.max(met))

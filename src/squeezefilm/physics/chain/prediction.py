@@ -15,6 +15,8 @@ import warnings
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+import numpy as np
+
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError, OutOfRangeError, OutOfRangeWarning
@@ -298,8 +300,8 @@ def _felt(
     if law.kind.shares_load:
         # The limit that is not the model's own may be out of reach where the model is not.
         with contextlib.suppress(OutOfRangeError):
-            found = law.limits(felt.amplitude)
-            limits = float(found.own[0]), float(found.one_gap[0])
+            tied = law.friction_in("one-gap", np.array([felt.amplitude]))
+            limits = friction, float(tied[0])
     base = law.friction_coefficient
     sigma = squeeze_number(
         drive.frequency,

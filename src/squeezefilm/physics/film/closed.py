@@ -113,13 +113,6 @@ def _true(E: Any, e: Any) -> Any:
     return E + 2 * np.arctan(beta * np.sin(E) / (1 - beta * np.cos(E)))
 
 
-def _inverse_cube_integral(theta: Any, delta: Any) -> Any:
-    """∫ dθ / (1 + δ cos θ)³ from 0, in closed form by way of the eccentric anomaly, times a
-    constant that cancels in ratios, (1 − δ²)^(5/2)."""
-    E = _eccentric(theta, delta)
-    return E - 2 * delta * np.sin(E) + delta**2 * (E / 2 + np.sin(2 * E) / 4)
-
-
 @si.checked_numbers
 def mean_pressure_profile(
     X: Annotated[si.DimensionlessLike, si.AtLeast(-0.5), si.AtMost(0.5)],
@@ -131,12 +124,9 @@ def mean_pressure_profile(
     `X` = x/l0 in [-1/2, 1/2], of any shape for a single amplitude; for an array of A amplitudes X
     is 1-D or a scalar, and the result has the shape (A, len(X)).
 
-    "paper2008" also holds for a contact off the centre, whose edges differ:
-    P̄ = Ψ/√(a² − b²), Ψ² = a² {v_L + (v_R − v_L) ∫_{-1/2}^X a⁻³ / ∫_{-1/2}^{1/2} a⁻³} and
-    v = 1 + 1.5 (b/a)² at each edge (from paper eq 5). With equal edges it is
-    `paper_mean_pressure`. "paper2008-printed" is the printed eq 12 with the printed ε of eq 2.
-    Raises `InputError` for an X outside the contact, an unknown model, or an off-centre contact of
-    the printed model; `OutOfRangeError` where the printed root fails.
+    "paper2008" is `paper_mean_pressure`, "paper2008-printed" the printed eq 12 with the printed ε
+    of eq 2. Raises `InputError` for an X outside the contact or an unknown model, `OutOfRangeError`
+    where the printed root fails.
     """
     X = np.asarray(X, dtype=float)
     array = np.ndim(gap.vibration_amplitude) == 1
@@ -147,27 +137,9 @@ def mean_pressure_profile(
     lift = _column if array else np.asarray
     k1, k2, delta = gap.wave_number, gap.ridge_number, lift(gap.ridge_ratio)
     if model == "paper2008-printed":
-        if not gap.symmetric:
-            raise InputError(
-                "the printed equation 12 knows a centred contact only; set wave_offset and "
-                "ridge_offset to 0 or use the model 'paper2008'"
-            )
         ratio = lift(gap.amplitude_ratio_printed)
         return np.asarray(paper_mean_pressure_printed(X, ratio, delta, k1, k2))
-    epsilon = lift(gap.amplitude_ratio)
-    if gap.symmetric:
-        return np.asarray(paper_mean_pressure(X, epsilon, delta, k1, k2))
-    theta = gap.ridge_phase(X)
-    a, b = 1 + delta * np.cos(theta), epsilon * np.cos(gap.wave_phase(X))
-    ends = np.array([-0.5, 0.5])
-    theta_l, theta_r = np.asarray(gap.ridge_phase(ends))
-    wave_l, wave_r = np.cos(gap.wave_phase(ends))
-    v_l = 1 + 1.5 * (epsilon * wave_l / (1 + delta * np.cos(theta_l))) ** 2
-    v_r = 1 + 1.5 * (epsilon * wave_r / (1 + delta * np.cos(theta_r))) ** 2
-    start = _inverse_cube_integral(theta_l, delta)
-    whole = _inverse_cube_integral(theta_r, delta) - start
-    share = (_inverse_cube_integral(theta, delta) - start) / whole
-    return np.asarray(a * np.sqrt(v_l + (v_r - v_l) * share) / np.sqrt(a**2 - b**2))
+    return np.asarray(paper_mean_pressure(X, lift(gap.amplitude_ratio), delta, k1, k2))
 
 
 def _panels(gap: PaperGap) -> tuple[si.FloatArray, float]:
@@ -181,12 +153,11 @@ def _panels(gap: PaperGap) -> tuple[si.FloatArray, float]:
     open_gap = gap.roughness / float(np.max(gap.reference_thickness))
     q = open_gap / (2 * delta) if delta > 0 else 1.0
     e = (1 - q) / (1 + q) if q < 1 else 0.0
-    low, high = (float(_eccentric(gap.ridge_phase(np.array(x)), e)) for x in (-0.5, 0.5))
+    low, high = (float(_eccentric(gap.ridge_number * x, e)) for x in (-0.5, 0.5))
     ridges = np.pi * np.arange(np.ceil(low / np.pi), np.floor(high / np.pi) + 1)
-    first, last = np.asarray(gap.wave_phase(np.array([-0.5, 0.5])))
-    waves = np.pi / 2 * np.arange(np.ceil(2 * first / np.pi), np.floor(2 * last / np.pi) + 1)
-    positions = waves / gap.wave_number + gap.wave_offset / gap.contact_length
-    inner = np.concatenate([ridges, _eccentric(gap.ridge_phase(positions), e)])
+    last = np.floor(gap.wave_number / np.pi)
+    positions = np.pi / 2 * np.arange(-last, last + 1) / gap.wave_number
+    inner = np.concatenate([ridges, _eccentric(gap.ridge_number * positions, e)])
     inner = inner[(inner > low) & (inner < high)]
     return np.unique(np.concatenate([[low], inner, [high]])), e
 
@@ -214,7 +185,7 @@ def contact_mean_pressure(
         E = (middle[:, np.newaxis] + half[:, np.newaxis] * node).ravel()
         theta = _true(E, e)
         dX = np.sqrt(1 - e**2) / (1 - e * np.cos(E)) / gap.ridge_number
-        X = theta / gap.ridge_number + gap.ridge_offset / gap.contact_length
+        X = theta / gap.ridge_number
         weights = (half[:, np.newaxis] * weight).ravel() * dX
         mean = 1 + (mean_pressure_profile(np.clip(X, -0.5, 0.5), gap, model) - 1) @ weights
         if previous is not None:

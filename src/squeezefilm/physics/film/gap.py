@@ -98,9 +98,8 @@ def frequency_for_squeeze_number(
 class PaperGap:
     """The gap of the paper's model; lengths in m, the vibration amplitude a scalar or 1-D array.
 
-    `ridge_amplitude` is half the ridges' height (0 for a smooth finger). `wave_offset` and
-    `ridge_offset` are the positions of an antinode and of a groove relative to the centre of the
-    contact; 0, as in the paper, makes the contact symmetric.
+    `ridge_amplitude` is half the ridges' height (0 for a smooth finger). As in the paper an
+    antinode and a groove lie at the centre of the contact.
 
     Raises `InputError` for lengths that are not finite or not positive, and for an array of
     amplitudes of more than one dimension. The roughness must be positive: without it the
@@ -113,8 +112,6 @@ class PaperGap:
     ridge_period: Annotated[si.Metre, si.Above(0)]
     wavelength: Annotated[si.Metre, si.Above(0)]
     contact_length: Annotated[si.Metre, si.Above(0)]
-    wave_offset: si.Metre = 0.0
-    ridge_offset: si.Metre = 0.0
 
     def __post_init__(self) -> None:
         if np.ndim(self.vibration_amplitude) > 1:
@@ -163,23 +160,8 @@ class PaperGap:
         """k2 = 2π l0/L (dimensionless)."""
         return 2 * np.pi * self.contact_length / self.ridge_period
 
-    @property
-    def symmetric(self) -> bool:
-        """True where antinode and groove lie at the centre of the contact, as in the paper."""
-        return self.wave_offset == 0 and self.ridge_offset == 0
-
     @si.checked_numbers
     def squeeze_number(self, frequency: si.Hertz, gas: Gas) -> si.DimensionlessLike:
         """The paper's σ in a gas at a frequency (Hz): on l0 and H0 (dimensionless)."""
         thickness, length = self.reference_thickness, self.contact_length
         return squeeze_number(frequency, length, thickness, gas.viscosity, gas.ambient_pressure)
-
-    @si.checked_numbers
-    def wave_phase(self, X: si.DimensionlessLike) -> si.DimensionlessLike:
-        """The argument of the wave's cosine at X = x/l0 (rad)."""
-        return self.wave_number * (X - self.wave_offset / self.contact_length)
-
-    @si.checked_numbers
-    def ridge_phase(self, X: si.DimensionlessLike) -> si.DimensionlessLike:
-        """The argument of the ridges' cosine at X = x/l0 (rad)."""
-        return self.ridge_number * (X - self.ridge_offset / self.contact_length)

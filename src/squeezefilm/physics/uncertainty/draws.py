@@ -17,7 +17,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.errors import OutOfRangeWarning, SqueezefilmError
-from squeezefilm.physics.chain.friction import FrictionLaw
+from squeezefilm.physics.chain.friction import LAWS, FrictionLaw
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.touch import Touch, touch
@@ -317,7 +317,7 @@ class Mixture:
     def law(self, draw: Draw) -> FrictionLaw:
         """The friction law of a draw, at the prediction's frequency, place and speed."""
         p = self.prediction
-        return FrictionLaw(
+        return LAWS[draw.model](
             surface=draw.display.surface(p.surface.name),
             finger=draw.display.finger,
             gas=draw.display.gas,

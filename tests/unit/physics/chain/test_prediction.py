@@ -127,7 +127,7 @@ def test_film_and_asperities_share_the_load_where_a_rival_is_asked_for(
 def test_a_stiff_pad_out_of_range_does_not_take_the_friction_with_it() -> None:
     p = predict("biet2008-stator", vibration_amplitude=45e-6, model="partial-levitation")
     with pytest.raises(OutOfRangeError, match="pressed through"):
-        p.law.limits(45e-6)
+        p.law.friction_in("one-gap", np.array([45e-6]))
     assert p.relative_friction_limits is None
     assert p.relative_friction == pytest.approx(float(p.law.sharing(45e-6).relative_friction[0]))
     assert [one for one in p.warnings if "all ridges hang on one mean gap is out" in one]

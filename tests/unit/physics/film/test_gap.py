@@ -42,7 +42,6 @@ def test_gap_is_its_dimensionless_numbers() -> None:
         + GAP.ridge_ratio * np.cos(GAP.ridge_number * X)
     )
     np.testing.assert_allclose(GAP.reference_thickness * H, h, rtol=1e-12)
-    np.testing.assert_allclose(np.cos(GAP.wave_phase(X)), np.cos(GAP.wave_number * X))
     assert GAP.amplitude_ratio_printed + GAP.ridge_ratio == pytest.approx(1)
 
 
@@ -50,7 +49,6 @@ def test_amplitude_broadcasts_through_the_properties() -> None:
     many = GAP.with_amplitude(np.array([0.0, 2e-6]))
     np.testing.assert_allclose(many.amplitude_ratio, [0, GAP.amplitude_ratio])
     np.testing.assert_allclose(many.crest_thickness, [0.6e-6, 2.6e-6])
-    assert GAP.symmetric
 
 
 @pytest.mark.parametrize(
@@ -61,7 +59,6 @@ def test_amplitude_broadcasts_through_the_properties() -> None:
         ("vibration_amplitude", np.array([1e-6, np.nan]), "nan"),
         ("vibration_amplitude", np.ones((2, 2)) * 1e-6, "2 dimensions"),
         ("wavelength", float("inf"), "wavelength = inf"),
-        ("ridge_offset", float("nan"), "ridge_offset"),
     ],
 )
 def test_refuses_what_is_no_gap(field, value, message) -> None:

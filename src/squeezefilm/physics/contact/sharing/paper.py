@@ -7,14 +7,17 @@ equations as they stand. Both take σ → ∞, which the paper's σ ≈ 20 is fa
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated, Any
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import UnreachableError
+from squeezefilm.core.errors import OutOfRangeError, UnreachableError
 from squeezefilm.physics.film.closed import PaperModel, contact_mean_pressure
 from squeezefilm.physics.film.gap import PaperGap
+
+HIGHEST_AMPLITUDE: si.Metre = 50e-6
 
 
 def _unclipped(gap: PaperGap, force: Any, ambient: float, model: PaperModel) -> Any:
@@ -51,35 +54,55 @@ def vibration_amplitude_for(
     normal_force: Annotated[si.Newton, si.Above(0.0)],
     ambient_pressure: Annotated[si.Pascal, si.Above(0.0)],
     model: PaperModel = "paper2008",
-    *,
-    highest: Annotated[si.Metre, si.AtLeast(1e-12)] = 50e-6,
 ) -> si.Metre:
     """The least vibration amplitude (m, zero-to-peak) that brings µ′/µ down to a wanted value.
 
-    `relative_friction` in [0, 1]; the amplitude in `gap` is disregarded. Searched up to `highest`
-    (m). Raises `InputError` for values out of bounds and `UnreachableError` where no amplitude up
-    to `highest` brings the friction that low.
+    `relative_friction` in [0, 1]; the amplitude in `gap` is disregarded. Raises `InputError` for
+    values out of bounds and `UnreachableError` where no amplitude up to 50 µm brings the friction
+    that low.
+    """
+
+    def friction(amplitude: float) -> float:
+        at = gap.with_amplitude(amplitude)
+        return float(_unclipped(at, normal_force, ambient_pressure, model))
+
+    return least_amplitude(friction, relative_friction, model)
+
+
+@si.checked_numbers
+def least_amplitude(
+    friction: Callable[[float], float],
+    wanted: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)],
+    model: str,
+    highest: Annotated[si.Metre, si.Above(2e-8)] = HIGHEST_AMPLITUDE,
+) -> si.Metre:
+    """The least amplitude (m) at which `friction` of an amplitude falls to `wanted`.
+
+    Raises `UnreachableError` where none up to `highest` (m, 50 µm) does.
     """
     from scipy.optimize import brentq
 
-    def excess(amplitude: Any) -> Any:
-        friction = _unclipped(gap.with_amplitude(amplitude), normal_force, ambient_pressure, model)
-        return friction - relative_friction
-
-    amplitudes = np.concatenate([[0.0], np.geomspace(highest * 1e-5, highest, 120)])
-    values = excess(amplitudes)
-    below = np.flatnonzero(values <= 0)
-    if below.size == 0:
-        best = int(np.argmin(values))
-        closest = si.format_quantity(float(amplitudes[best]), si.Unit("m"))
-        raise UnreachableError(
-            f"relative_friction = {relative_friction:.4g} is not reached by any vibration "
-            f"amplitude up to {si.format_quantity(highest, si.Unit('m'))}: the model '{model}' "
-            f"gives {values[best] + relative_friction:.4g} at {closest}"
-            " at the least; press less, take a smoother surface or ask for less"
-        )
-    index = int(below[0])
-    if index == 0:
+    if wanted == 1:
         return 0.0
-    low, high = float(amplitudes[index - 1]), float(amplitudes[index])
-    return float(brentq(excess, low, high, xtol=1e-16, rtol=1e-12))
+
+    def excess(amplitude: float) -> float:
+        return friction(amplitude) - wanted
+
+    # What is asked for may be within the rounding of what a still surface has.
+    if excess(0.0) <= 0:
+        return 0.0
+    low, least = 0.0, 1.0
+    for high in np.geomspace(2e-8, highest, 24):
+        try:
+            left = excess(float(high))
+        except OutOfRangeError:
+            # So strong a vibration closes the gap at some ridge: it is no way to get there.
+            break
+        if left <= 0:
+            return float(brentq(excess, low, high, xtol=1e-20, rtol=1e-12))
+        low, least = float(high), min(least, left + wanted)
+    raise UnreachableError(
+        f"relative_friction = {wanted:.4g} is not reached by any vibration amplitude up to "
+        f"{si.format_quantity(highest, si.Unit('m'))}: the model '{model}' "
+        f"gives {least:.4g} at the least; press less, take a smoother surface or ask for less"
+    )
