@@ -21,6 +21,7 @@ from squeezefilm.physics.contact.sliding.kernel import (
 )
 from squeezefilm.physics.contact.sliding.march import slide
 from squeezefilm.physics.contact.sliding.skin_motion import Skin
+from squeezefilm.physics.contact.sliding.skin_path import Pull
 
 SPEED = np.array([0.0, 0.1, 0.5])
 ROWS = np.array([[0.2, 0.4, 0.3], [0.0, 0.9, 0.1]])
@@ -53,11 +54,12 @@ def test_a_line_is_followed_a_little_beyond_its_knots() -> None:
 
 
 def test_works_of_rest_are_exact_for_a_parabola_of_force() -> None:
-    f, pull, vb, rate, c, part = 0.3, (9.0, 40.0, -300.0), 0.05, 2.0, 0.7, 0.02
+    f, pull, c, part = 0.3, Pull(9.0, 40.0, -300.0, 0.05, 2.0), 0.7, 0.02
     t = np.polynomial.Polynomial([0, 1])
-    speed, force = vb + rate * t, f + pull[1] * t + pull[2] * t**2
+    speed = pull.bone_speed + pull.bone_rate * t
+    force = f + pull.rate * t + pull.bend * t**2
     bone, damped = (force * speed).integ()(part), (c * speed**2).integ()(part)
-    assert works_of_rest(part, f, pull, vb, rate, c) == pytest.approx((bone, damped), rel=1e-12)
+    assert works_of_rest(part, f, pull, c) == pytest.approx((bone, damped), rel=1e-12)
 
 
 def test_too_many_slips_in_one_sample_are_given_up() -> None:
