@@ -15,6 +15,8 @@ from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
 from squeezefilm.physics.plate.elements.slabs import Slabs
 
 _MOST_STEPS = 40
+# Of a block's square: what two projections leave of what the basis holds.
+_ROUNDING = 1e-26
 Solve = Callable[[si.FloatArray], si.FloatArray]
 
 
@@ -64,9 +66,13 @@ def modes_near(
     H = np.zeros((0, 0))
     X = solve(slabs.mass_times(start))
     before: si.FloatArray | None = None
+    chosen = H
     for _ in range(_MOST_STEPS):
         X, MX = orthonormal(slabs, X, Q, MQ)
         if not X.shape[1]:
+            # The space holds all that the start leads to: what was found in it is exact.
+            if before is not None and before.size:
+                return Pairs(before, Q @ chosen)
             break
         Q, MQ = np.concatenate([Q, X], axis=1), np.concatenate([MQ, MX], axis=1)
         X = solve(MX)
@@ -85,14 +91,14 @@ def modes_near(
             from scipy.optimize import linear_sum_assignment
 
             index = linear_sum_assignment(-((start.T @ MQ @ coefficients) ** 2))[1]
-        now = values[index]
+        now, chosen = values[index], coefficients[:, index]
         if (
             before is not None
             and before.size == now.size
             and np.all(np.abs(now - before) <= tolerance * np.maximum(np.abs(now), abs(shift)))
             and now.size
         ):
-            return Pairs(now, Q @ coefficients[:, index])
+            return Pairs(now, Q @ chosen)
         before = now
     if before is not None and before.size == 0:
         return Pairs(before, np.zeros((slabs.unknowns, 0)))
@@ -108,12 +114,15 @@ def orthonormal(
 ) -> tuple[si.FloatArray, si.FloatArray]:
     """A block orthonormal in mass to itself and to the basis Q, and M times it; directions that
     the basis has are left out."""
-    for _ in range(2):
-        X = X - Q @ (MQ.T @ X)
+    held = MQ.T @ X
+    X = X - Q @ held
+    X = X - Q @ (MQ.T @ X)
     MX = slabs.mass_times(X)
     gram = X.T @ MX
     size, turn = np.linalg.eigh((gram + gram.T) / 2)
-    good = size > 1e-13 * max(size[-1], 1e-300)
+    # Of a block that lies in the basis rounding is left, whose directions are none.
+    least = _ROUNDING * np.max(np.sum(held**2, axis=0), initial=0.0)
+    good = size > max(1e-13 * size[-1], least, 1e-300)
     if not good.any():
         return X[:, good], MX[:, good]
     scale = turn[:, good] / np.sqrt(size[good])

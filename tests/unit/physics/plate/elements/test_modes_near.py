@@ -67,3 +67,16 @@ def test_one_that_does_not_settle_is_told(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(krylov, "_MOST_STEPS", 3)
     with pytest.raises(ConvergenceError, match="did not converge in 3 steps; ask for a narrower"):
         modes_near(SLABS, solve_about(20.3), 20.3, between(5.5, 35.5), START, tolerance=1e-14)
+
+
+def test_a_space_that_is_used_up_has_its_modes_exactly() -> None:
+    """Three blocks of four span all that twelve masses can do; what is left then is rounding."""
+    few: Any = Springs()
+    few.unknowns, few.mass_times = 12, lambda x: MASS[:12, None] * x
+
+    def solve(right: np.ndarray) -> np.ndarray:
+        return right / (MASS[:12] * (VALUES[:12] - 5.3))[:, None]
+
+    pairs = modes_near(few, solve, 5.3, between(0.5, 12.5), START[:12], tolerance=1e-300)
+    assert pairs.values == pytest.approx(VALUES[:12], rel=1e-10)
+    assert pairs.vectors.T @ few.mass_times(pairs.vectors) == pytest.approx(np.eye(12), abs=1e-9)
