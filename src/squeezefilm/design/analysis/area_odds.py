@@ -17,7 +17,8 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
-from squeezefilm.physics.chain.active_area import CRITERIA, ActiveArea, active_area
+from squeezefilm.physics.chain.active_area import CRITERIA, ActiveArea
+from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.pad_place import pad_place
 from squeezefilm.physics.chain.prediction import Prediction
@@ -150,7 +151,7 @@ def judged_area(
     display: Display, prediction: Prediction, *, samples: int, seed: int = 1
 ) -> JudgedArea | None:
     """The active area with its odds, where samples were asked for; None without an area."""
-    area = active_area(display, prediction)
+    area = active_area(display, prediction.mode, prediction.law, prediction.drive)
     if area is None:
         return None
     if not samples:

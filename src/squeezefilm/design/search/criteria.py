@@ -15,7 +15,7 @@ from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.core.materials import VACUUM_PERMITTIVITY
 from squeezefilm.design.analysis.ears import ear_exposure
 from squeezefilm.design.search.requirements import Limits, Requirements
-from squeezefilm.physics.chain.active_area import active_area
+from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.perception.felt import (
@@ -225,7 +225,7 @@ def numbers_of_solved(
         math.inf if beside is None or beside.share < CROWDED else abs(beside.distance)
     )
     if limits.least_area is not None or limits.most_relative_friction is not None:
-        area = active_area(display, p)
+        area = active_area(display, p.mode, p.law, p.drive)
         wanted = limits.most_relative_friction or 0.7
         share = None if area is None else area.share_below(wanted)
         if share is not None:

@@ -20,7 +20,7 @@ from squeezefilm.core.progress import Pace
 from squeezefilm.core.results import stamp, to_json
 from squeezefilm.lab.designing.form import covered, display_of, edited, form, stretched
 from squeezefilm.lab.worker import tell
-from squeezefilm.physics.chain.active_area import active_area
+from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.electronics import load_of_mode
@@ -203,7 +203,7 @@ def _area(display: Display, p: Prediction) -> dict[str, Any] | None:
     None for a plate that is not solved: a beam's is alike all across, which no plate is.
     """
     solved = p.mode.solid is not None or not isinstance(display.actuator, RectangularPlate)
-    area = active_area(display, p) if solved else None
+    area = active_area(display, p.mode, p.law, p.drive) if solved else None
     if area is None:
         return None
     shown = {**area.summary(), "said": area.sentence, "map": None}

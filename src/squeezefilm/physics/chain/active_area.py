@@ -9,10 +9,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.chain.area_map import area_map, lowest
 from squeezefilm.physics.chain.pad_place import place_words
-from squeezefilm.physics.chain.prediction import Prediction
-from squeezefilm.physics.display import Display
 
 CRITERIA: tuple[si.Dimensionless, ...] = (0.70, 0.80)
 """The paper asks for µ′/µ of 0.70; from 0.80 on, a drop of 0.2, people notice it."""
@@ -194,36 +191,13 @@ def percent(share: si.Dimensionless | None) -> str:
     return f"{100 * share:.0f} %"
 
 
-@si.checked_numbers
-def active_area(
-    display: Display, prediction: Prediction, *, refinement: int = 1
-) -> ActiveArea | None:
-    """The active area of a display at the working point of a prediction.
-
-    Its places are the display's own `active_area`, or those from which the contact does not
-    overhang the face, the best antinode among them; `refinement` times the default dozen to a half
-    wavelength (96 at the most). The shape of the vibration is that without a finger: one finger
-    changes it by the small parts that its neighbouring modes have. None where the actuator's mode
-    has no shape over a face.
-    """
-    p = prediction
-    found = area_map(display, p.mode, p.law, p.drive, refinement=refinement)
-    if found is None:
-        return None
-    lobe = found.lobe_amplitude
-    return ActiveArea(
-        x=found.x,
-        y=found.y,
-        amplitude=lobe * found.at_centre,
-        lobe_amplitude=lobe,
-        amplitude_under_pad=lobe * np.sqrt(found.mean_square),
-        relative_friction=found.relative_friction,
-        contact_side=found.contact_side,
-        rule=found.rule,
-        shape_model=found.shape.model,
-        shape_words=found.shape.words,
-        why_not=found.why_not,
-    )
+def lowest(relative_friction: si.DimensionlessArray, moved: si.FloatArray) -> int:
+    """Index at which a map of µ′/µ is lowest; of places alike the one that is moved most, so that a
+    vibration too small for any friction to fall has its best place where a larger one has it."""
+    rounded = np.round(relative_friction, 9)
+    alike = rounded == np.nanmin(rounded)
+    size = np.abs(moved)
+    return int(np.argmax(np.where(alike, np.round(size / (np.nanmax(size) or 1.0), 9), -1.0)))
 
 
 def _halfway(values: si.FloatArray) -> si.FloatArray:

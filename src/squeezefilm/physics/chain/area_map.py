@@ -1,4 +1,4 @@
-"""Map of what a finger meets at each place of a display's active area, and the best of them.
+"""What a finger meets at each place of a display's active area, and the best of them.
 
 The finger lies at one place after another. It takes from the vibration what it takes there (less
 beside the antinodes), the best antinode is left with an amplitude, the solved shape says what each
@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import GeometryError, OutOfRangeError, SqueezefilmError
+from squeezefilm.physics.chain.active_area import ActiveArea
 from squeezefilm.physics.chain.free_vibration import FreeVibration, free_vibration
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.pad_place import ALONG_RIDGE, PadPlace, met_by_pads, place_words
@@ -38,36 +38,6 @@ _MOST_BESIDE_LOBE = 1e3
 _AT_A_TIME = 2_000_000
 
 
-class AreaMap(NamedTuple):
-    """Map of what a pad meets at the places `x` × `y` (m) of an active area, arrays (x, y), NaN
-    where the face has no such place.
-
-    `at_centre` is the amplitude of the face at the place over the best antinode's, `lobe_amplitude`
-    (m) the best antinode's with the finger at the place, `mean_square` the mode's under the pad;
-    `relative_friction` is None for the reason in `why_not`. `rule` says where the area is from.
-    """
-
-    shape: SurfaceShape
-    rule: str
-    contact_side: si.Metre
-    x: si.MetreArray
-    y: si.MetreArray
-    at_centre: si.DimensionlessArray
-    lobe_amplitude: si.MetreArray
-    mean_square: si.DimensionlessArray
-    relative_friction: si.DimensionlessArray | None
-    why_not: str
-
-
-def lowest(relative_friction: si.DimensionlessArray, moved: si.FloatArray) -> int:
-    """Index at which a map of µ′/µ is lowest; of places alike the one that is moved most, so that a
-    vibration too small for any friction to fall has its best place where a larger one has it."""
-    rounded = np.round(relative_friction, 9)
-    alike = rounded == np.nanmin(rounded)
-    size = np.abs(moved)
-    return int(np.argmax(np.where(alike, np.round(size / (np.nanmax(size) or 1.0), 9), -1.0)))
-
-
 def at_best_place(display: Display, mode: WorkingMode, law: FrictionLaw) -> FrictionLaw:
     """A law with its pad at the best place of the active area: where friction is lowest at the
     display's own voltage (1 V where that is 0) and the law's frequency.
@@ -80,49 +50,45 @@ def at_best_place(display: Display, mode: WorkingMode, law: FrictionLaw) -> Fric
     if not mode.has_shape or not law.kind.shares_load:
         return law
     own = free_vibration(display, mode, law.frequency, display.drive.voltage or 1.0, None)
-    found = area_map(display, mode, law, own)
-    if found is None or found.relative_friction is None:
+    found = active_area(display, mode, law, own)
+    if found is None or found.best_place is None:
         return law
-    best = lowest(found.relative_friction, found.at_centre * found.lobe_amplitude)
-    i, j = np.unravel_index(best, found.relative_friction.shape)
-    place = PadPlace(found.shape, float(found.x[i]), float(found.y[j]), is_best_of_area=True)
+    shape = surface_shape(display.actuator, mode, own.frequency)
+    place = PadPlace(shape, *found.best_place, is_best_of_area=True)
     return dataclasses.replace(law, position=0.0, place=place)
 
 
-def area_map(
-    display: Display,
-    mode: WorkingMode,
-    law: FrictionLaw,
-    drive: FreeVibration,
-    *,
-    refinement: int = 1,
-) -> AreaMap | None:
-    """The active area of a display that vibrates in a mode, under a finger with a friction law.
+def active_area(
+    display: Display, mode: WorkingMode, law: FrictionLaw, drive: FreeVibration
+) -> ActiveArea | None:
+    """The active area of a display that vibrates in a mode, under a finger with a friction law,
+    wherever that has its own pad.
 
-    Wherever the law has its own pad. Kept for the last few. None where the mode has no shape over
-    a face, or its antinode hardly moves beside the rest of it. Raises `GeometryError` for an active
-    area beside the face.
+    Its places are the display's own `active_area`, or those from which the contact does not
+    overhang the face, the best antinode among them. The shape of the vibration is that without a
+    finger: one finger changes it by the small parts that its neighbouring modes have. Kept for the
+    last few. None where the mode has no shape over a face, or its antinode hardly moves beside the
+    rest of it. Raises `GeometryError` for an active area beside the face.
     """
     over = dataclasses.replace(law, place=None, position=0.0)
-    return _area_map(display.actuator, display.active_area, mode, over, drive, refinement)
+    return _active_area(display.actuator, display.active_area, mode, over, drive)
 
 
 # A prediction asks for its best place, whoever shows it for all of it.
 @functools.lru_cache(maxsize=4)
-def _area_map(
+def _active_area(
     actuator: Actuator,
     region: ActiveRegion | None,
     mode: WorkingMode,
     law: FrictionLaw,
     drive: FreeVibration,
-    refinement: int,
-) -> AreaMap | None:
+) -> ActiveArea | None:
     try:
         shape = surface_shape(actuator, mode, drive.frequency)
     except OutOfRangeError:
         return None
     side = law.contact_side
-    x, y, rule = _places(region, shape, side, refinement)
+    x, y, rule = _places(region, shape, side)
     at = np.argwhere(_inside(shape, side, x, y, region))
     swings, weights = _met(shape, (x, y), at, pad_points(law.finger, side, ALONG_RIDGE))
     mean_square = np.sum(weights * swings**2, axis=1)
@@ -141,8 +107,20 @@ def _area_map(
         friction = over(_friction(law, lobe[:, None] * swings, weights))
     except SqueezefilmError as error:
         why_not = str(error)
-    grids = shape.grid(x, y), over(lobe), over(mean_square)
-    return AreaMap(shape, rule, side, x, y, *grids, friction, why_not)
+    left = over(lobe)
+    return ActiveArea(
+        x=x,
+        y=y,
+        amplitude=left * shape.grid(x, y),
+        lobe_amplitude=left,
+        amplitude_under_pad=left * np.sqrt(over(mean_square)),
+        relative_friction=friction,
+        contact_side=side,
+        rule=rule,
+        shape_model=shape.model,
+        shape_words=shape.words,
+        why_not=why_not,
+    )
 
 
 def _met(
@@ -201,7 +179,7 @@ def _friction(
 
 
 def _places(
-    region: ActiveRegion | None, shape: SurfaceShape, side: si.Metre, refinement: int
+    region: ActiveRegion | None, shape: SurfaceShape, side: si.Metre
 ) -> tuple[si.MetreArray, si.MetreArray, str]:
     """The places along x and y (m), and by what rule they are the active area."""
     left, right, front, back = shape.bounds
@@ -224,22 +202,17 @@ def _places(
     else:
         spans = _inset(left, right, side), _inset(front, back, side)
         rule = f"the face less half the contact's {1e3 * side:.3g} mm at every edge"
-    step = shape.half_wavelength / (_TO_A_HALF_WAVE * refinement)
-    x, y = (
-        _along(span, step, at, _MOST_PLACES * refinement)
-        for span, at in zip(spans, shape.lobe, strict=True)
-    )
+    step = shape.half_wavelength / _TO_A_HALF_WAVE
+    x, y = (_along(span, step, at) for span, at in zip(spans, shape.lobe, strict=True))
     return x, y, rule
 
 
-def _along(
-    span: tuple[si.Metre, si.Metre], step: si.Metre, lobe: si.Metre, most: int
-) -> si.MetreArray:
+def _along(span: tuple[si.Metre, si.Metre], step: si.Metre, lobe: si.Metre) -> si.MetreArray:
     """Places along a side, evenly but for the best antinode, where friction is at its sharpest."""
     low, high = span
     if high <= low:
         return np.array([low])
-    count = int(np.clip(np.ceil((high - low) / step), _LEAST_PLACES - 1, most))
+    count = int(np.clip(np.ceil((high - low) / step), _LEAST_PLACES - 1, _MOST_PLACES))
     places = np.linspace(low, high, count + 1)
     nearest = int(np.argmin(np.abs(places - lobe)))
     if low <= lobe <= high and abs(places[nearest] - lobe) > 1e-6 * (high - low):

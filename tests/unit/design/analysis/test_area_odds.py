@@ -7,7 +7,7 @@ import pytest
 
 from squeezefilm.design.analysis import area_odds as room
 from squeezefilm.design.analysis.area_odds import area_odds, judged_area
-from squeezefilm.physics.chain.active_area import active_area
+from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.uncertainty.draws import Outcome
@@ -18,7 +18,7 @@ STATOR = load_display("biet2008-stator")
 
 def test_odds_fall_from_the_best_place_to_the_worst() -> None:
     p = predict(STATOR)
-    area = active_area(STATOR, p)
+    area = active_area(STATOR, p.mode, p.law, p.drive)
     assert area is not None
     odds = area_odds(STATOR, p, area, samples=16)
     assert odds is not None
@@ -36,7 +36,7 @@ def test_odds_fall_from_the_best_place_to_the_worst() -> None:
 def test_a_draw_that_is_as_described_has_the_friction_of_the_area(name: str) -> None:
     display = load_display(name)
     p = predict(display)
-    area = active_area(display, p)
+    area = active_area(display, p.mode, p.law, p.drive)
     assert area is not None
     found = Outcome(p.relative_friction, p.vibration_amplitude, None)
     over = room._elsewhere(display, p, area)
@@ -53,7 +53,7 @@ def test_no_draw_is_asked_for_more_amplitude_than_the_face_has() -> None:
     # A pad as wide as waves are long: its friction is that of no even wave on an antinode.
     display = load_display("winfield2007-tpad")
     p = predict(display)
-    area = active_area(display, p)
+    area = active_area(display, p.mode, p.law, p.drive)
     assert area is not None
     odds = area_odds(display, p, area, samples=16)
     assert odds is not None

@@ -14,7 +14,7 @@ from squeezefilm.core.progress import Pace
 from squeezefilm.lab.designing import numbers
 from squeezefilm.lab.designing.form import display_of, edited, form, preset_text
 from squeezefilm.lab.designing.numbers import DesignPoint, designed, opened, outline, predicted
-from squeezefilm.physics.chain.active_area import active_area
+from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.uncertainty.uncertainty import FrictionBand
 
@@ -96,7 +96,7 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
         "model", "validity", "objections", "drive_electronics", "place", "active_area",
         "neighbour",
     }  # fmt: skip
-    area, whole = found["active_area"], active_area(display, p)
+    area, whole = found["active_area"], active_area(display, p.mode, p.law, p.drive)
     assert whole is not None
     assert {key: area[key] for key in whole.summary()} == whole.summary()
     assert area["said"] == whole.sentence

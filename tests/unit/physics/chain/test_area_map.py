@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.physics.chain.active_area import active_area
-from squeezefilm.physics.chain.area_map import area_map, at_best_place, lowest
+from squeezefilm.physics.chain.active_area import lowest
+from squeezefilm.physics.chain.area_map import active_area, at_best_place
 from squeezefilm.physics.chain.pad_law import PadLaw
 from squeezefilm.physics.chain.pad_place import gauss_nodes
 from squeezefilm.physics.chain.prediction import Prediction, predict
@@ -37,7 +37,8 @@ def predicted(name: str) -> Prediction:
 
 @pytest.mark.parametrize("name", SOLVED)
 def test_the_headline_is_the_best_of_the_active_area(name: str) -> None:
-    p, area = predicted(name), active_area(load_display(name), predicted(name))
+    p = predicted(name)
+    area = active_area(load_display(name), p.mode, p.law, p.drive)
     assert area is not None
     assert p.place == area.best_place
     assert p.relative_friction == pytest.approx(area.best, abs=3e-5)
@@ -137,9 +138,9 @@ def test_a_plate_that_hardly_moves_has_its_best_place_where_it_moves_most() -> N
 
 def test_a_map_is_kept_whatever_place_its_law_has() -> None:
     p, display = predicted("winfield2007-tpad"), load_display("winfield2007-tpad")
-    here = area_map(display, p.mode, p.law, p.drive)
+    here = active_area(display, p.mode, p.law, p.drive)
     even = dataclasses.replace(p.law, place=None)
-    assert area_map(display, p.mode, even, p.drive) is here
+    assert active_area(display, p.mode, even, p.drive) is here
     law = at_best_place(display, p.mode, even)
     assert isinstance(law, PadLaw)
     assert law.place is not None

@@ -10,14 +10,15 @@ from tests.unit.made_curves import AMPLITUDE, made
 from squeezefilm.design.analysis.area_odds import judged_area
 from squeezefilm.design.analysis.report.figures import deciding
 from squeezefilm.design.analysis.report.point_rows import place_rows
-from squeezefilm.physics.chain.active_area import active_area, percent
+from squeezefilm.physics.chain.active_area import percent
+from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.pad_place import place_words
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
 
 STATOR = load_display("biet2008-stator")
 POINT = predict(STATOR)
-AREA = active_area(STATOR, POINT)
+AREA = active_area(STATOR, POINT.mode, POINT.law, POINT.drive)
 
 
 def test_rows_and_figure_say_the_range_and_its_places() -> None:
