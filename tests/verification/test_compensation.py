@@ -30,7 +30,7 @@ PERIOD = 0.4e-3
 
 
 def plate(braking: bool) -> DrivenEnvelope:
-    return DrivenEnvelope.of_resonator(Q, FREQUENCY, LIMIT / 15.0, 15.0, braking)
+    return DrivenEnvelope(TAU, TAU, LIMIT, braking)
 
 
 # Rest is reached only with phase inversion; without, the closed form refuses it.

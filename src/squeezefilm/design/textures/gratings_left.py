@@ -75,10 +75,8 @@ def speed_gains(prediction: Prediction) -> dict[str, float] | None:
     where no voltage makes an amplitude."""
     if not prediction.voltage or prediction.vibration_amplitude == 0:
         return None
-    mode, volts = prediction.mode, prediction.voltage
-    coasting = DrivenEnvelope.of_resonator(
-        mode.quality_factor, mode.resonance_frequency, mode.amplitude_per_volt, volts
-    )
+    tau, held = prediction.envelope_time_constant, prediction.mode.amplitude_per_volt
+    coasting = DrivenEnvelope(tau, tau, held * prediction.voltage)
     braking = dataclasses.replace(coasting, braking=True)
     high = _LEVEL * coasting.amplitude_limit
     # Scaled with the period, the speed leaves the same cycle: a metre stands for all.

@@ -15,7 +15,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
-from squeezefilm.physics.chain.friction_table import FrictionTable, tabulated
+from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.pad_law import PadLaw, require_tabulated
 from squeezefilm.physics.chain.pad_place import PadPlace
 from squeezefilm.physics.contact.sharing import paper
@@ -162,9 +162,19 @@ class FrictionLaw(PadLaw):
         """
         count = (65 if self.kind.shares_load else 257) if points is None else points
         si.require("points", count, at_least=2)
-        # A row of its own for the speed that is asked for most.
-        speeds = np.union1d(TABLE_SPEEDS, [self.speed]) if self.kind.fitted else None
-        return tabulated(self, highest_amplitude, count, speeds)
+        # Denser at small amplitudes, where the law bends within the roughness.
+        grid = highest_amplitude * np.linspace(0.0, 1.0, count) ** 2
+        if self.kind.fitted:
+            # A row of its own for the speed that is asked for most.
+            speeds = np.union1d(TABLE_SPEEDS, [self.speed])
+            return FrictionTable(grid, speeds, self.over_speeds(grid, speeds), self.speed)
+        known = self.curve(grid)
+        if known[-1] == 0:
+            # The law has a kink where the finger lifts off; a point of its own keeps it sharp.
+            kink = self.amplitude_for(0.0)
+            at = int(np.searchsorted(grid, kink))
+            grid, known = np.insert(grid, at, kink), np.insert(known, at, 0.0)
+        return FrictionTable(grid, np.zeros(1), known[None, :], self.speed)
 
 
 class AsymptoteLaw(FrictionLaw):

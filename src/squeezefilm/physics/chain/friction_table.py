@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -120,38 +119,3 @@ def _place(knots: si.FloatArray, values: si.FloatArray) -> tuple[si.IntArray, si
     at = np.clip(np.searchsorted(knots, values, side="right") - 1, 0, knots.size - 2)
     part = (values - knots[at]) / (knots[at + 1] - knots[at])
     return at, np.clip(part, 0.0, 1.0)
-
-
-class _Law(Protocol):
-    """A friction law as a table asks it: see `FrictionLaw`."""
-
-    @property
-    def speed(self) -> si.MetrePerSecond: ...
-
-    def curve(self, amplitude: si.MetreArray) -> si.DimensionlessArray: ...
-
-    def over_speeds(
-        self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
-    ) -> si.DimensionlessArray: ...
-
-    def amplitude_for(self, relative_friction: si.Dimensionless) -> si.Metre: ...
-
-
-def tabulated(
-    law: _Law,
-    highest_amplitude: si.Metre,
-    points: int,
-    speeds: si.MetrePerSecondArray | None = None,
-) -> FrictionTable:
-    """A law at `points` amplitudes from 0 to the highest (m), and at speeds (m/s) if it has any."""
-    # Denser at small amplitudes, where the law bends within the roughness.
-    grid = highest_amplitude * np.linspace(0.0, 1.0, points) ** 2
-    if speeds is not None:
-        return FrictionTable(grid, speeds, law.over_speeds(grid, speeds), law.speed)
-    known = law.curve(grid)
-    if known[-1] == 0:
-        # The law has a kink where the finger lifts off; a point of its own keeps it sharp.
-        kink = law.amplitude_for(0.0)
-        at = int(np.searchsorted(grid, kink))
-        grid, known = np.insert(grid, at, kink), np.insert(known, at, 0.0)
-    return FrictionTable(grid, np.zeros(1), known[None, :], law.speed)

@@ -331,7 +331,6 @@ def friction_band(
     amplitude: si.MetreArray,
     *,
     samples: int = 64,
-    seed: int = 1,
     progress: Callable[[str, float], None] | None = None,
 ) -> FrictionBand:
     """The band in which µ′/µ lies at each amplitude (m, zero-to-peak, shape (n,)).
@@ -341,7 +340,7 @@ def friction_band(
     `progress` is called with a text and a fraction. Raises `InputError` for amplitudes below 0.
     """
     bands = friction_bands(
-        display, prediction, amplitude, (LEVEL,), samples=samples, seed=seed, progress=progress
+        display, prediction, amplitude, (LEVEL,), samples=samples, progress=progress
     )
     return bands[0]
 
@@ -354,12 +353,11 @@ def friction_bands(
     levels: Sequence[si.Dimensionless],
     *,
     samples: int = 64,
-    seed: int = 1,
     progress: Callable[[str, float], None] | None = None,
 ) -> tuple[FrictionBand, ...]:
     """`friction_band` at each of several levels (1), from the same draws."""
     mixture = Mixture(display, prediction, driven=False)
-    points = sobol_points(mixture, samples, seed)
+    points = sobol_points(mixture, samples, seed=1)
     make = functools.partial(_drawn_curves, mixture, points, amplitude, progress)
     rows = _BANDS.found(mixture, points, amplitude, make)
     known = np.isnan(rows).mean(axis=0) <= MOST_REFUSED

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import GeometryError, UnreachableError
+from squeezefilm.core.errors import UnreachableError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.plate.elements.box_model import isotropic_solid, piezoceramic_solid
 from squeezefilm.physics.plate.ring.modes import (
@@ -61,8 +61,6 @@ class StatorAssumptions:
     ceramic_thickness: si.Metre = 0.5e-3
     tooth_height: si.Metre = 1.5e-3
     tooth_fill: si.Dimensionless = 0.8
-    web_thickness: si.Metre = 0.0
-    web_inner_radius: si.Metre = 0.0
     metal: ElasticMaterial = PHOSPHOR_BRONZE
     ceramic: Piezoceramic = HARD_PZT
     quality_factor: si.Dimensionless = 200.0
@@ -132,15 +130,12 @@ def stator_section(
 ) -> AnnularSection:
     """The section of a travelling-wave motor's stator: ceramic below, metal ring, teeth on top.
 
-    A thin web (with its lower face level with the ring's) reaches inwards to `web_inner_radius` if
-    `web_thickness` is not 0. `tooth_model` is one of the two bounds of the tooth layer.
-    Raises `InputError` if the outer diameter does not exceed the mean diameter, `GeometryError` for
-    a web that is not inside the ring.
+    `tooth_model` is one of the two bounds of the tooth layer. Raises `InputError` if the outer
+    diameter does not exceed the mean diameter.
     """
     a = assumptions
     si.require("outer_diameter", a.outer_diameter, _M, above=mean_diameter, below=2 * mean_diameter)
     si.require("tooth_height", a.tooth_height, _M, at_least=0)
-    si.require("web_thickness", a.web_thickness, _M, at_least=0, at_most=ring_thickness)
     radial_width, loss_factor = a.outer_diameter - mean_diameter, 1 / a.quality_factor
     inner, outer = (mean_diameter - radial_width) / 2, (mean_diameter + radial_width) / 2
     solid = isotropic_solid(a.metal, loss_factor)
@@ -153,13 +148,6 @@ def stator_section(
         low = base + ring_thickness
         teeth = (stiff_teeth if tooth_model == "stiff" else soft_teeth)(solid, a.tooth_fill)
         layers.append(RingLayer(inner, outer, low, low + a.tooth_height, teeth))
-    if a.web_thickness > 0:
-        if not 0 <= a.web_inner_radius < inner:
-            raise GeometryError(
-                f"web_inner_radius = {si.format_quantity(a.web_inner_radius, _M)} is not inside "
-                f"the ring, which begins at {si.format_quantity(inner, _M)}"
-            )
-        layers.append(RingLayer(a.web_inner_radius, inner, base, base + a.web_thickness, solid))
     return AnnularSection(tuple(layers), wave_diameter=mean_diameter)
 
 
@@ -182,10 +170,9 @@ def fit_stator(
     Raises `UnreachableError` if no thickness between `thinnest` and `thickest` has the frequency.
     """
     a = assumptions or StatorAssumptions()
-    start = max(thinnest, a.web_thickness)  # a ring is no thinner than its web
-    si.require("thickest", thickest, _M, above=start)
+    si.require("thickest", thickest, _M, above=thinnest)
     mean_diameter = waves * wavelength / math.pi
-    ring = _Ring(frequency, waves, mean_diameter, (start, thickest), degree, a)
+    ring = _Ring(frequency, waves, mean_diameter, (thinnest, thickest), degree, a)
     thickness = ring.thickness(a.tooth_model if a.tooth_height > 0 else "soft")
     return StatorFit(
         section=stator_section(mean_diameter, thickness, a, a.tooth_model),

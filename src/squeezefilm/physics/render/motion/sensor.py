@@ -122,11 +122,10 @@ def sensor_stream(
     position: Callable[[si.SecondArray], si.MetreArray],
     duration: Annotated[si.Second, si.Above(0.0)],
     seed: Annotated[int, si.AtLeast(0)],
-    start: si.Second = 0.0,
 ) -> SensorStream:
-    """Samples that a sensor reports of a motion between `start` and `start + duration`.
+    """Samples that a sensor reports of a motion.
 
-    The first sample is taken at `start`, as if the sensor had woken to the touch. Samples arrive
+    The first sample is taken at its start, as if the sensor had woken to the touch. Samples arrive
     in the order in which they were taken, as over one wire.
 
     Args:
@@ -134,7 +133,6 @@ def sensor_stream(
         position: times (s, shape (n,)) → true positions (m, the same shape).
         duration: of the motion (s); above 0.
         seed: of noise, jitter and loss.
-        start: of the motion (s).
 
     Raises:
         InputError: a duration not above 0, more than 20 million samples, or positions that are
@@ -144,7 +142,7 @@ def sensor_stream(
     require_motion(MOTION_SAMPLES, steps + 2, duration, sensor.rate)
     count = math.floor(steps) + 1
     random = np.random.default_rng(seed)
-    taken = start + np.minimum(np.arange(count) / sensor.rate, duration)
+    taken = np.minimum(np.arange(count) / sensor.rate, duration)
     true = si.returned("position", position(taken), taken, "one position per time")
     si.require("a value returned by position", true, si.Unit("m"))
     seen = true + sensor.noise * random.standard_normal(count)

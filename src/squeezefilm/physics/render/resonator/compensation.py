@@ -30,7 +30,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.physics.render.resonator import kernel
-from squeezefilm.physics.render.resonator.envelope import envelope_time_constant, one_row
+from squeezefilm.physics.render.resonator.envelope import one_row
 
 Compensation = Literal["none", "inverse", "preview"]
 COMPENSATIONS: tuple[Compensation, ...] = ("none", "inverse", "preview")
@@ -59,26 +59,6 @@ class DrivenEnvelope:
     fall_time_constant: Annotated[si.Second, si.Above(0.0)]
     amplitude_limit: Annotated[si.Metre, si.Above(0.0)]
     braking: bool = False
-
-    @classmethod
-    @si.checked_numbers
-    def of_resonator(
-        cls,
-        quality_factor: si.Dimensionless,
-        frequency: si.Hertz,
-        amplitude_per_volt: Annotated[si.MetrePerVolt, si.Above(0.0)],
-        voltage_limit: Annotated[si.Volt, si.Above(0.0)],
-        braking: bool = False,
-    ) -> DrivenEnvelope:
-        """The envelope of a linear resonator at resonance, driven with up to `voltage_limit` (V).
-
-        `amplitude_per_volt` (m/V) is zero-to-peak over zero-to-peak, in the steady state.
-
-        Raises:
-            InputError: a value that is not above 0.
-        """
-        time_constant = float(envelope_time_constant(quality_factor, frequency))
-        return cls(time_constant, time_constant, amplitude_per_volt * voltage_limit, braking)
 
     @property
     def lowest_command(self) -> si.Metre:
@@ -153,13 +133,6 @@ class CompensatedDrive:
     saturated_bottom: si.Dimensionless
     model: str
 
-    @si.checked_numbers
-    def voltage(
-        self, amplitude_per_volt: Annotated[si.MetrePerVolt, si.Above(0.0)]
-    ) -> si.FloatArray:
-        """The drive's voltage amplitude at each sample (V); negative in inverted phase."""
-        return np.asarray(self.command / amplitude_per_volt)
-
 
 @si.checked_numbers
 def compensated_drive(
@@ -168,7 +141,6 @@ def compensated_drive(
     envelope: DrivenEnvelope,
     compensation: Compensation = "inverse",
     initial: si.Metre | None = None,
-    preview: si.Second | None = None,
 ) -> CompensatedDrive:
     """The command for amplitudes wanted at samples, and the amplitude that it makes.
 
@@ -178,11 +150,10 @@ def compensated_drive(
         envelope: the resonator and its limits.
         compensation: "none" commands what is wanted from each sample on, within the limit.
         initial: amplitude at the first sample (m); without one, the first wanted (or the limit).
-        preview: how far ahead "preview" looks (s); without one, three time constants.
 
     Raises:
-        InputError: amplitudes that are empty, not finite or negative, a time step or preview not
-            above 0, an initial amplitude outside the limits, or an unknown compensation.
+        InputError: amplitudes that are empty, not finite or negative, a time step not above 0, an
+            initial amplitude outside the limits, or an unknown compensation.
     """
     goal = one_row("wanted", wanted)
     si.require("wanted", goal, si.Unit("m"), at_least=0.0)
@@ -195,7 +166,7 @@ def compensated_drive(
     elif compensation == "inverse":
         kernel.compensated_march(state, parameters, goal, command, code)
     else:
-        ahead = preview_samples(envelope, time_step, preview)
+        ahead = preview_samples(envelope, time_step)
         kernel.previewed_march(state, parameters, goal, ahead, preview_work(ahead), command, code)
     names = {"none": "no compensation", "inverse": "inverse filter", "preview": "preview"}
     return CompensatedDrive(
@@ -214,19 +185,15 @@ def compensated_drive(
 
 @si.checked_numbers
 def preview_samples(
-    envelope: DrivenEnvelope,
-    time_step: Annotated[si.Second, si.Above(0.0)],
-    preview: si.Second | None = None,
+    envelope: DrivenEnvelope, time_step: Annotated[si.Second, si.Above(0.0)]
 ) -> int:
-    """Number of samples that a preview (s; three time constants without one) looks ahead.
+    """Number of samples that a preview of three time constants looks ahead.
 
     Raises:
-        InputError: a preview or time step not above 0.
+        InputError: a time step not above 0.
     """
     slowest = max(envelope.rise_time_constant, envelope.fall_time_constant)
-    span = _PREVIEW_TIME_CONSTANTS * slowest if preview is None else preview
-    si.require("preview", span, si.Unit("s"), above=0.0)
-    return max(1, math.ceil(span / time_step - 1e-9))
+    return max(1, math.ceil(_PREVIEW_TIME_CONSTANTS * slowest / time_step - 1e-9))
 
 
 @si.checked_numbers
