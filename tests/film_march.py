@@ -16,7 +16,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.film.gas import ISOTHERMAL, FilmGas, Gas
+from squeezefilm.physics.film.gas import ISOTHERMAL, CompiledGas, FilmGas
 from squeezefilm.physics.film.mobility import mobility
 from squeezefilm.physics.film.planar.grid import edge_graded, edge_layer, refined_line
 
@@ -48,7 +48,7 @@ def step_by_newton(
     gap: Gaps,
     line: Line,
     step: float,
-    gas: Gas,
+    gas: CompiledGas,
 ) -> float:
     """Solve volume (m − held) = step · (net inflow at m) for m, by Newton with one sweep a step.
 
@@ -139,7 +139,7 @@ def march(
     gaps: Gaps,
     line: Line,
     squeeze_number: float,
-    gas: Gas,
+    gas: CompiledGas,
     pressure: si.Array,
 ) -> float:
     """March `m` in place over one period by BDF2, a step for each row of `gaps`.

@@ -48,11 +48,11 @@ from squeezefilm.physics.film.planar.gap import PlanarGap
 from squeezefilm.physics.plate.beam.modes import BeamMode
 from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
 from squeezefilm.physics.plate.circuit import DrivenResponse, EquivalentCircuit
-from squeezefilm.physics.plate.electronics import AMPLIFIERS, Amplifier
+from squeezefilm.physics.plate.electronics import AMPLIFIERS, AmplifierPart
 from squeezefilm.physics.plate.elements.box_model import Medium, isotropic_solid
 from squeezefilm.physics.plate.heat.states import HeatSource
 from squeezefilm.physics.plate.heat.thermal import Thermal
-from squeezefilm.physics.plate.laminate import Laminate, Layer, plate_laminate
+from squeezefilm.physics.plate.laminate import Laminate, LaminateLayer, plate_laminate
 from squeezefilm.physics.plate.layout import Actuator, CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.physics.plate.loaded_mode import LoadedMode
 from squeezefilm.physics.plate.ring.body import RingBody
@@ -105,7 +105,7 @@ from squeezefilm.physics.render.resonator.compensation import (
 from squeezefilm.physics.render.texture.composition import Composable, Texture
 from squeezefilm.physics.render.texture.coordinate import AlongX, AlongY, Coordinate
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.physics.render.texture.pattern import Part, Pattern
+from squeezefilm.physics.render.texture.pattern import Pattern, TexturePart
 from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 from squeezefilm.physics.texture_files.hjif import ReferenceDevice, hjif_of
 
@@ -218,7 +218,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     CeramicDisc: lambda: CeramicDisc(20e-3, 1e-3, 7700.0),
     BeamMode: lambda: beam_response(PLATE).mode,
     Laminate: lambda: plate_laminate(PLATE),
-    Layer: lambda: Layer(1e-3, 100e9, 40e9, 8500.0),
+    LaminateLayer: lambda: LaminateLayer(1e-3, 100e9, 40e9, 8500.0),
     RectangularPlate: lambda: PLATE,
     Actuator: lambda: PLATE,
     Thermal: Thermal,
@@ -228,7 +228,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     LoadedMode: lambda: LoadedMode(30e3, 60.0, 0.01 + 0.01j),
     EquivalentCircuit: lambda: EquivalentCircuit(30e3, 60.0, 1e-9, 100.0, 0.03, 1e-9),
     DrivenResponse: _capacitor,
-    Amplifier: lambda: AMPLIFIERS[0],
+    AmplifierPart: lambda: AMPLIFIERS[0],
     BeamResponse: lambda: beam_response(PLATE),
     Medium: lambda: isotropic_solid(BRASS),
     RadiatingSurface: lambda: rectangular_surface(
@@ -253,7 +253,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     FrictionInverse: lambda: FrictionInverse.from_function(falling_friction, 2e-6),
     MotionEstimator: lambda: MotionEstimator.for_sensor(LVDT_10_KHZ),
     MotionModel: MotionModel,
-    Part: lambda: SINE,
+    TexturePart: lambda: SINE,
     Pattern: lambda: SINE,
     Program: lambda: lower(Amplitude(SINE, 0.0, 1e-6), largest_amplitude=2e-6),
     Renderer: lambda: Renderer(MADE[Program]()),

@@ -56,9 +56,9 @@ NOT_CALLED = {
     actuators.motor.curves.MotorMap
     actuators.motor.closed_loop.TrackedForce actuators.motor.closed_loop.TrackedForce.mean_error
     actuators.motor.assembled.FaceMode
-    physics.plate.electronics.Amplifier
+    physics.plate.electronics.AmplifierPart
     physics.plate.electronics.ElectricalLoad physics.plate.electronics.RingAdmittance
-    physics.film.periodic.solution.Asked physics.film.periodic.solution.Found
+    physics.film.periodic.solution.FilmQuestion physics.film.periodic.solution.Found
     physics.contact.sharing.pad.PadFriction
     physics.contact.sharing.balance.LoadSharing
     physics.contact.sliding.march.Sliding
@@ -122,7 +122,7 @@ NOT_CALLED = {
     physics.plate.elements.slab_cells.MirroredElement physics.plate.elements.slab_cells.Cell
     physics.plate.elements.slab_cells.Group physics.plate.elements.slab_cells.Group.inside
     physics.plate.elements.slab_cells.Group.node physics.plate.elements.slab_cells.mirrors
-    physics.plate.elements.box_model.BoxModel physics.plate.elements.box_model.Electrode
+    physics.plate.elements.box_model.BoxModel physics.plate.elements.box_model.ModelElectrode
     physics.plate.elements.box_model.Foundation physics.plate.elements.box_model.Medium
     physics.plate.elements.box_model.Medium.gradient_matrix
     physics.plate.elements.box_model.kept_products physics.plate.elements.box_model.held_components

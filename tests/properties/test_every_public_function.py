@@ -101,7 +101,7 @@ CHECK_THEMSELVES = (
     "physics.chain.prediction.predict",
     "physics.contact.finger.fingerpad.FingerpadDynamics.pressed",
     "physics.film.gas.require_film",
-    "physics.plate.beam.pieces.Piece",
+    "physics.plate.beam.pieces.BeamPiece",
     "physics.plate.solid.resonances.Neighbour",
     "physics.render.motion.stroke.Stroke",
     "physics.render.program.renderer.",

@@ -21,13 +21,13 @@ from squeezefilm.physics.plate.beam.modes import (
     timoshenko_frequency,
 )
 from squeezefilm.physics.plate.beam.pieces import (
-    Piece,
+    BeamPiece,
     beam_pieces,
     pieced_beam_mode,
     stressed_span,
 )
 from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
-from squeezefilm.physics.plate.laminate import Laminate, Layer, laminate, plate_laminate
+from squeezefilm.physics.plate.laminate import Laminate, LaminateLayer, laminate, plate_laminate
 from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.physics.plate.working_mode import working_mode
 
@@ -71,7 +71,7 @@ def test_thin_timoshenko_tends_to_euler_bernoulli_with_second_order() -> None:
     errors = []
     thicknesses = [2e-3, 1e-3, 0.5e-3]
     for thickness in thicknesses:
-        thin = laminate([Layer(thickness, 123e9, 47e9, 8250.0)])
+        thin = laminate([LaminateLayer(thickness, 123e9, 47e9, 8250.0)])
         euler = free_beam_mode(thin, 0.1, 4, "euler_bernoulli").frequency
         errors.append(1 - free_beam_mode(thin, 0.1, 4).frequency / euler)
     assert all(error > 0 for error in errors)  # shear and rotation only soften
@@ -150,8 +150,8 @@ def test_neutral_axis_balances_the_section(section: Laminate) -> None:
         for i, layer in enumerate(section.layers)
     )
     assert abs(total) < 1e-6 * section.layers[0].modulus * section.layers[0].thickness ** 2
-    layer = Layer(1e-3, 123e9, 47e9, 8250.0)
-    twice, once = laminate([layer, layer]), laminate([Layer(2e-3, 123e9, 47e9, 8250.0)])
+    layer = LaminateLayer(1e-3, 123e9, 47e9, 8250.0)
+    twice, once = laminate([layer, layer]), laminate([LaminateLayer(2e-3, 123e9, 47e9, 8250.0)])
     assert twice.bending_stiffness == pytest.approx(once.bending_stiffness, rel=1e-12)
     assert once.bending_stiffness == pytest.approx(123e9 * (2e-3) ** 3 / 12, rel=1e-12)
     with pytest.raises(InputError, match="no layers"):
@@ -167,7 +167,7 @@ def test_covered_everywhere_the_pieces_are_the_uniform_beam(section: Laminate) -
     )
     for lines in (2, 3, 7, 8, 13):
         for stops in ([0.0, 0.083], [0.0, 0.01, 0.0101, 0.083]):
-            pieces = [Piece(a, b, *constants) for a, b in itertools.pairwise(stops)]
+            pieces = [BeamPiece(a, b, *constants) for a, b in itertools.pairwise(stops)]
             found, exact = (
                 pieced_beam_mode(pieces, lines),
                 free_beam_mode(section, 0.083, lines),
@@ -181,7 +181,7 @@ def test_covered_everywhere_the_pieces_are_the_uniform_beam(section: Laminate) -
             assert np.max(np.abs(sign * found.rotation - exact.rotation)) < 2e-3 * turning
 
 
-def _carried(one: Piece, omega2: complex, loss: complex = 1.0) -> np.ndarray:
+def _carried(one: BeamPiece, omega2: complex, loss: complex = 1.0) -> np.ndarray:
     """What carries deflection, rotation, shear force and moment from one end of a piece to the
     other: the exact solution of its equations by a matrix exponential."""
     G, S = one.bending_stiffness * loss, one.shear_stiffness * loss
@@ -194,7 +194,7 @@ def _carried(one: Piece, omega2: complex, loss: complex = 1.0) -> np.ndarray:
     return np.asarray(expm(equations * (one.end - one.begin)))
 
 
-def _free_determinant(pieces: Sequence[Piece], frequency: float) -> float:
+def _free_determinant(pieces: Sequence[BeamPiece], frequency: float) -> float:
     """Zero where free motions of the first end leave the last end free."""
     chain = np.eye(4, dtype=complex)
     for one in pieces:

@@ -7,12 +7,17 @@ import pytest
 from tests.verification.trapped_film import trapped_load
 
 from squeezefilm.core.errors import ConvergenceError
-from squeezefilm.physics.film.gas import Aim, Gas
+from squeezefilm.physics.film.gas import Aim, CompiledGas
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.kernel import newton
 from squeezefilm.physics.film.periodic.profile import flexural_profile
-from squeezefilm.physics.film.periodic.resolution import Cells, Gap, Room, collocation_times
+from squeezefilm.physics.film.periodic.resolution import (
+    Cells,
+    GridGap,
+    SolveRoom,
+    collocation_times,
+)
 
 STRIP_LOADS = {
     (0.1, 1.0): 1.000108, (0.1, 10.0): 1.005188, (0.1, 100.0): 1.010778,
@@ -185,8 +190,8 @@ def load_on_one_grid(cells, nt, sigma=30.0, eps=0.6):
     u.grid(cells, 0, sigma, 0.3, g, vol, share)
     p, work = np.zeros(cells * ntp), np.zeros(10 * (cells + 1) * ntp)
     over, _, left = newton(
-        cells, times, Cells(g, vol, share), Gap(H, H, H3, w, 0), Gas(1.0, 0.0, 0), p,
-        Room(work, np.empty(cells * nt * ntp)), Aim(1e-12, 40),
+        cells, times, Cells(g, vol, share), GridGap(H, H, H3, w, 0), CompiledGas(1.0, 0.0, 0), p,
+        SolveRoom(work, np.empty(cells * nt * ntp)), Aim(1e-12, 40),
     )  # fmt: skip
     assert left < 1e-9
     return over

@@ -10,7 +10,7 @@ from tests.film_march import settle_to_periodic, uniform_gap
 
 from squeezefilm.core.errors import ConvergenceError, GeometryError, InputError
 from squeezefilm.core.hard_limits import PLANAR_MEMORY
-from squeezefilm.physics.film.gas import FilmGas, Gas
+from squeezefilm.physics.film.gas import CompiledGas, FilmGas
 from squeezefilm.physics.film.planar.balance import Balancer, Film, derivative, resampled
 from squeezefilm.physics.film.planar.film import solve_planar
 from squeezefilm.physics.film.planar.gap import PlanarGap
@@ -124,7 +124,7 @@ def test_a_wave_over_a_long_strip_agrees_with_the_march():
 
 
 def _solved(grid, excursion=0.5, squeeze_number=10.0, count=7):
-    film = Film(PlanarGap(excursion), squeeze_number, Gas(1.0, 0.0, 0))
+    film = Film(PlanarGap(excursion), squeeze_number, CompiledGas(1.0, 0.0, 0))
     return Balancer(film, grid, count).solve(None, 1e-10)
 
 
@@ -244,7 +244,7 @@ def test_grooves_sealed_at_their_ends_are_the_line_s():
     x = np.linspace(0, 0.5, 1441)
     grid = rectangle_grid(x, np.linspace(0, 0.5, 3))
     sealed = np.where(grid.edge_Y == 0.5, 0.0, grid.edge_conductance)
-    film = Film(RIDGED, 20.418, Gas(1.0, 0.0, 0))
+    film = Film(RIDGED, 20.418, CompiledGas(1.0, 0.0, 0))
     state = Balancer(film, replace(grid, edge_conductance=sealed), 13).solve(None, 1e-9)
     assert state.over_pressure == pytest.approx(7.246e-3, rel=5e-3)
 
@@ -285,7 +285,7 @@ def test_the_error_estimate_is_honest():
 @pytest.mark.nightly
 def test_open_grooves_converge_on_grids_of_two_kinds():
     film = solve_planar("rectangle", RIDGED, 20.418, tolerance=3e-4)
-    equations = Film(RIDGED, 20.418, Gas(1.0, 0.0, 0))
+    equations = Film(RIDGED, 20.418, CompiledGas(1.0, 0.0, 0))
     uniform = []
     for k in (256, 512):
         grid = rectangle_grid(np.linspace(0, 0.5, 2 * k + 1), np.linspace(0, 0.5, k // 16 + 1))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from squeezefilm.physics.plate.elements.box_model import BoxModel, Electrode, Medium
+from squeezefilm.physics.plate.elements.box_model import BoxModel, Medium, ModelElectrode
 from squeezefilm.physics.plate.elements.krylov import modes_near
 from squeezefilm.physics.plate.elements.lobatto import LineMesh
 from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
@@ -25,7 +25,7 @@ def two_ceramics() -> BoxModel:
     piezo = pzt_5a()
     flipped = Medium("below", piezo.stiffness, piezo.density, 0, -np.array(piezo.stress_matrix),
                      piezo.permittivity)  # fmt: skip
-    return BoxModel(x, y, z, (STEEL, flipped), medium, ceramic, (Electrode(0, 2),) * 2)
+    return BoxModel(x, y, z, (STEEL, flipped), medium, ceramic, (ModelElectrode(0, 2),) * 2)
 
 
 @pytest.mark.slow

@@ -9,7 +9,12 @@ import pytest
 
 from squeezefilm.core.errors import GeometryError
 from squeezefilm.core.materials import PiezoConstants, isotropic_stiffness
-from squeezefilm.physics.plate.elements.box_model import BoxModel, Electrode, EndCondition, Medium
+from squeezefilm.physics.plate.elements.box_model import (
+    BoxModel,
+    EndCondition,
+    Medium,
+    ModelElectrode,
+)
 from squeezefilm.physics.plate.elements.krylov import modes_below, modes_near, with_open_electrodes
 from squeezefilm.physics.plate.elements.lobatto import LineMesh
 from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
@@ -187,7 +192,7 @@ def test_k31_bar_has_the_resonance_and_antiresonance_of_one_dimensional_theory()
     width = 0.3e-3
     model = solid(
         line(10e-3, 3, 5), line(width, 1, 3), line(width, 1, 3), pzt_5a(),
-        electrodes=(Electrode(3, 0),), ends=("free", "symmetric", "free", "free"),
+        electrodes=(ModelElectrode(3, 0),), ends=("free", "symmetric", "free", "free"),
     )  # fmt: skip
     short = frequencies(model, 70e3, 1)[0]
     opened = frequencies(model, 72e3, 1, np.ones((1, 1)))[0]
@@ -213,7 +218,7 @@ def test_pvdf_bimorph_cantilever_bends_as_published() -> None:
     medium = np.broadcast_to(np.array([0, 1]), shape).copy()
     model = BoxModel(
         x, y, z, tuple(layers), medium, medium.copy(),
-        (Electrode(0, 3), Electrode(6, 3)), ends=("clamped", "free", "free", "free"),
+        (ModelElectrode(0, 3), ModelElectrode(6, 3)), ends=("clamped", "free", "free", "free"),
     )  # fmt: skip
     slabs = Slabs(model)
     G, _ = slabs.electrode_columns
@@ -268,7 +273,7 @@ def monomorph_on_a_uniform_mesh(
                VACUUM * np.diag([1666.84, 1666.84, 1381.80])),
     )  # fmt: skip
     return BoxModel(
-        x, y, z, media, medium, ceramic, tuple(Electrode(0, 2) for _ in range(4)),
+        x, y, z, media, medium, ceramic, tuple(ModelElectrode(0, 2) for _ in range(4)),
         ("free", "symmetric", "free", "symmetric"),
     )  # fmt: skip
 
@@ -304,9 +309,9 @@ def test_an_electrode_needs_its_ceramic() -> None:
     with pytest.raises(GeometryError, match="not piezoelectric"):
         BoxModel(
             x, y, z, (STEEL,), np.zeros((1, 1, 1), dtype=int), np.zeros((1, 1, 1), dtype=int),
-            (Electrode(2, 0),),
+            (ModelElectrode(2, 0),),
         )  # fmt: skip
     with pytest.raises(GeometryError, match="no ceramic"):
-        solid(x, y, z, STEEL, electrodes=(Electrode(2, 0),))
+        solid(x, y, z, STEEL, electrodes=(ModelElectrode(2, 0),))
     with pytest.raises(GeometryError, match="belongs to no ceramic"):
         solid(x, y, z, pzt_5a())

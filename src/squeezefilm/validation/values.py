@@ -40,7 +40,7 @@ from squeezefilm.physics.plate.beam.modes import (
     timoshenko_frequency,
 )
 from squeezefilm.physics.plate.beam.response import beam_response
-from squeezefilm.physics.plate.laminate import Laminate, Layer, laminate, plate_laminate
+from squeezefilm.physics.plate.laminate import Laminate, LaminateLayer, laminate, plate_laminate
 from squeezefilm.physics.plate.layout import AnnularStator
 from squeezefilm.validation.explanations import MODAL_FREQUENCY, paper_plate, paper_points
 
@@ -208,7 +208,7 @@ def _bare_glass(thickness: si.Metre) -> Laminate:
     poisson_ratio = 0.22
     modulus = GLASS_MODULUS / (1 - poisson_ratio**2)
     shear_modulus = GLASS_MODULUS / (2 * (1 + poisson_ratio))
-    return laminate([Layer(thickness, modulus, shear_modulus, GLASS_DENSITY)])
+    return laminate([LaminateLayer(thickness, modulus, shear_modulus, GLASS_DENSITY)])
 
 
 @value_of("glass-half-wavelength")

@@ -22,7 +22,7 @@ from squeezefilm.core.errors import GeometryError, OutOfRangeError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.plate.elements.box_model import (
     BoxModel,
-    Electrode,
+    ModelElectrode,
     isotropic_solid,
     piezoceramic_solid,
 )
@@ -222,7 +222,7 @@ def _boxes(actuator: Bimorph, more: int) -> BoxModel:
         (piezoceramic_solid(actuator.ceramic, 0.0), isotropic_solid(actuator.shim, 0.0)),
         np.broadcast_to(np.array([1 if number < 0 else 0 for number in numbers]), shape).copy(),
         np.broadcast_to(np.array(numbers), shape).copy(),
-        (Electrode(0, inner[0]), Electrode(z.nodes.size - 1, inner[1])),
+        (ModelElectrode(0, inner[0]), ModelElectrode(z.nodes.size - 1, inner[1])),
         ("clamped", "free", "symmetric", "free"),
     )
 

@@ -47,7 +47,7 @@ from squeezefilm.instruments.twin.envelope_step import (
 )
 from squeezefilm.instruments.twin.hand import wanted
 from squeezefilm.physics.contact.sliding.kernel import Drive, Rows, Track, slide_march
-from squeezefilm.physics.contact.sliding.skin_motion import Forces, Skin, slide_by, transition
+from squeezefilm.physics.contact.sliding.skin_motion import Forces, LumpedSkin, slide_by, transition
 from squeezefilm.physics.plate.heat.kernel import Drifts, changed, warmed
 from squeezefilm.physics.plate.heat.thermal import Cooling
 
@@ -222,7 +222,7 @@ def _sense(
 def _follow(h: float, x0: float, x1: float, y0: float, y1: float, s: si.Array, c: si.Array) -> None:
     """The finger's bone after a step in which the arm's wanted place goes from 0 to 1."""
     d, k = c[C_DAMPING], c[C_STIFFNESS]
-    arm = Skin(c[C_MASS], d, k)
+    arm = LumpedSkin(c[C_MASS], d, k)
     by = transition(h, arm)
     ahead = s[PULL]
     if s[BEFORE] > 0.0:
@@ -265,7 +265,7 @@ def _drag(h: float, x0: float, v0: float, plant: PlantState) -> None:
     bone[0], bone[1], speed_in[0], speed_out[0] = x0, s[X], mean - bend, mean + bend
     track.position[0], track.speed[0] = s[SKIN_X], s[SKIN_V]
     drive = Drive(bone, speed_in, speed_out, limit, h, int(c[C_SUBSTEPS]))
-    skin = Skin(c[C_PAD_MASS], c[C_PAD_DAMPING], c[C_PAD_STIFFNESS])
+    skin = LumpedSkin(c[C_PAD_MASS], c[C_PAD_DAMPING], c[C_PAD_STIFFNESS])
     strongest = max(limit[0], limit[1])
     done = slide_march(drive, skin, Rows(speeds, rows), c[C_STATIC], strongest, track)
     s[PULL_BEFORE], s[BEFORE] = s[PULL], h

@@ -144,11 +144,11 @@ class FrictionPosterior:
 
     def shares(self) -> dict[str, dict[str, float]]:
         """Weights of the options of each choice of a law, by its path."""
-        from squeezefilm.physics.uncertainty.model_choices import Choice
+        from squeezefilm.physics.uncertainty.model_choices import LawChoice
 
         weight, after = self.weights.sum(axis=1), {}
         for k, item in enumerate(self.mixture.inputs):
-            if isinstance(item, Choice):
+            if isinstance(item, LawChoice):
                 drawn = np.array(item.drawn(self.points[:, k]))
                 shares = {o.name: float(weight[drawn == o.name].sum()) for o in item.options}
                 after[item.path] = shares

@@ -78,7 +78,7 @@ def require_film(
     si.require("knudsen_number", knudsen_number, at_least=0.0, at_most=MOST_KNUDSEN)
 
 
-class Gas(NamedTuple):
+class CompiledGas(NamedTuple):
     """Polytropic exponent, Knudsen number at ambient pressure and reference gap, law of slip."""
 
     polytropic_exponent: float
@@ -97,10 +97,10 @@ class FilmGas:
     knudsen_number: si.Dimensionless = 0.0
     slip: str = "first"
 
-    def compiled(self) -> Gas:
+    def compiled(self) -> CompiledGas:
         """Gas for compiled code. Raises `InputError` for a law of slip that is not known."""
         law = slip_law(self.slip, self.knudsen_number)
-        return Gas(float(self.polytropic_exponent), float(self.knudsen_number), law)
+        return CompiledGas(float(self.polytropic_exponent), float(self.knudsen_number), law)
 
 
 ISOTHERMAL = FilmGas()

@@ -24,7 +24,7 @@ SHORTEST_RUN: si.Metre = 4e-3
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class PathRun:
     """A straight stretch of a path.
 
     Attributes:
@@ -44,7 +44,7 @@ class Run:
         return abs(math.cos(self.heading)) >= abs(math.sin(self.heading)) - 1e-9
 
 
-def straight_runs(path: FingerPath, shortest: si.Metre = SHORTEST_RUN) -> tuple[Run, ...]:
+def straight_runs(path: FingerPath, shortest: si.Metre = SHORTEST_RUN) -> tuple[PathRun, ...]:
     """The runs of a path that are at least `shortest` (m) long, in their order.
 
     The cuts do not change where path and axes are shifted or turned together.
@@ -56,7 +56,7 @@ def straight_runs(path: FingerPath, shortest: si.Metre = SHORTEST_RUN) -> tuple[
             dx, dy = (float(one) for one in place[last] - place[first])
             length = math.hypot(dx, dy)
             if length >= shortest:
-                found.append(Run(first, last, length, math.atan2(dy, dx)))
+                found.append(PathRun(first, last, length, math.atan2(dy, dx)))
     return tuple(found)
 
 

@@ -25,7 +25,7 @@ from squeezefilm.physics.plate.working_mode import WorkingMode
 
 
 @dataclass(frozen=True)
-class Amplifier:
+class AmplifierPart:
     """A class of amplifier by one part: what its data sheet prints.
 
     `ranges` are pairs of a voltage amplitude (V) and the current amplitude (A) that goes with it,
@@ -39,8 +39,8 @@ class Amplifier:
     source: str
 
 
-AMPLIFIERS: tuple[Amplifier, ...] = (
-    Amplifier(
+AMPLIFIERS: tuple[AmplifierPart, ...] = (
+    AmplifierPart(
         "chip made for haptics",
         "TI DRV2667",
         # The sheet prints loads at 300 Hz, 680 nF at 50 V peak to peak and so on: I = π f C Vpp.
@@ -50,14 +50,14 @@ AMPLIFIERS: tuple[Amplifier, ...] = (
         "data sheet SLOS751D, features: 680 nF at 50 V, 330 nF at 100 V, 150 nF at 150 V, 100 nF "
         "at 200 V peak to peak, all at 300 Hz; the currents follow from these",
     ),
-    Amplifier(
+    AmplifierPart(
         "power operational amplifier",
         "TI OPA549",
         ((25.0, 10.0),),
         9e6,
         "data sheet SBOS093E: ±30 V supply less 4.8 V at 8 A, 10 A peak, 9 V/µs",
     ),
-    Amplifier(
+    AmplifierPart(
         "piezo amplifier for the laboratory",
         "PiezoDrive PD200X4",
         # Power bandwidths at 100 nF, 56, 27 and 13 kHz at 100, 150 and 200 V peak to peak.
@@ -270,7 +270,7 @@ def driven_ceramics(plate: RectangularPlate) -> int:
 
 @si.checked_numbers
 def amplifier_check(
-    amplifier: Amplifier, voltage: si.Volt, current: si.Ampere, slew_rate: si.VoltPerSecond
+    amplifier: AmplifierPart, voltage: si.Volt, current: si.Ampere, slew_rate: si.VoltPerSecond
 ) -> AmplifierCheck:
     """Check that an amplifier gives a voltage and a current amplitude (V, A) with a slope (V/s)."""
 

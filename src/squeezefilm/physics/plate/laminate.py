@@ -20,7 +20,7 @@ SHEAR_CORRECTION = 5 / 6
 
 @si.checked_numbers
 @dataclass(frozen=True)
-class Layer:
+class LaminateLayer:
     """A layer of a laminate: its thickness, bending modulus, shear modulus and density."""
 
     thickness: Annotated[si.Metre, si.Above(0)]
@@ -44,7 +44,7 @@ class Laminate:
     mass_per_area: si.KilogramPerSquareMetre
     rotary_inertia: si.Kilogram
     shear_stiffness: si.NewtonPerMetre
-    layers: tuple[Layer, ...]
+    layers: tuple[LaminateLayer, ...]
 
     @si.checked_numbers
     def moment_arm(self, layer: int) -> si.Metre:
@@ -54,7 +54,7 @@ class Laminate:
         return below + self.layers[layer].thickness / 2 - self.neutral_axis
 
 
-def laminate(layers: Sequence[Layer]) -> Laminate:
+def laminate(layers: Sequence[LaminateLayer]) -> Laminate:
     """The section constants of a stack of layers, the first at the free face.
 
     Valid for layers thin against the wavelength and perfectly bonded. Source: paper eq 16 and 17;
@@ -104,7 +104,7 @@ def section_with(
     substrate, ceramic = plate.substrate, plate.ceramic
     wide = cross_section == "plane_strain"
     narrow = cross_section == "plane_stress"
-    metal = Layer(
+    metal = LaminateLayer(
         plate.thickness,
         substrate.plane_strain_modulus if wide else substrate.young_modulus,
         substrate.shear_modulus,
@@ -112,7 +112,7 @@ def section_with(
     )
     upper, lower = (
         [
-            Layer(
+            LaminateLayer(
                 thickness,
                 1 / ceramic.compliance_11 if narrow else ceramic.in_plane_stiffness,
                 ceramic.shear_modulus,

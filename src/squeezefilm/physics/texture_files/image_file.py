@@ -30,7 +30,7 @@ from squeezefilm.core.hard_limits import PICTURE_BYTES
 from squeezefilm.core.isolated_reading import Read, read_isolated
 from squeezefilm.core.regular_file import read_regular
 from squeezefilm.physics.render.opcodes import Assembler
-from squeezefilm.physics.render.texture.coordinate import Finger
+from squeezefilm.physics.render.texture.coordinate import FingerSamples
 from squeezefilm.physics.render.texture.image import MOST_PIXELS, Image
 from squeezefilm.physics.render.texture.pattern import Pattern
 
@@ -174,7 +174,7 @@ class ImageFile(Pattern):
             values, self.pixel, left=self.left, bottom=self.bottom, outside=self.outside
         )
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         raise self._unread()
 
     def _lower(self, assembler: Assembler) -> None:

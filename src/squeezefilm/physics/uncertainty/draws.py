@@ -34,7 +34,7 @@ from squeezefilm.physics.uncertainty.model_choices import (
     MECHANISM,
     MOISTURE,
     SLIP,
-    Choice,
+    LawChoice,
     calibrated_inputs,
     model_choices,
     same_interface,
@@ -47,7 +47,7 @@ from squeezefilm.physics.uncertainty.parameters import (
     uncertain_parameters,
 )
 
-Input = Parameter | Choice
+Input = Parameter | LawChoice
 
 
 @contextlib.contextmanager

@@ -25,8 +25,8 @@ AMPLITUDE_SHARE, FRICTION_OFFSET = "joint.amplitude_share", "joint.friction_offs
 
 
 def calibrated_inputs(
-    inputs: tuple[Parameter | Choice, ...], joint: JointSpread | None, *, driven: bool
-) -> tuple[Parameter | Choice, ...]:
+    inputs: tuple[Parameter | LawChoice, ...], joint: JointSpread | None, *, driven: bool
+) -> tuple[Parameter | LawChoice, ...]:
     """The inputs of a display with what its calibration found; as they are without one.
 
     What the plate's own values make of the amplitude is known as a whole then, and better than they
@@ -52,7 +52,7 @@ MECHANISM = "friction_model"
 
 
 @dataclass(frozen=True)
-class Option:
+class LawOption:
     """A law of several by its name, the probability that it is given, and why."""
 
     name: str
@@ -61,14 +61,14 @@ class Option:
 
 
 @dataclass(frozen=True)
-class Choice:
+class LawChoice:
     """Laws or states of which one is drawn; `weights` are assumed.
 
     `knowledge` says whether an experiment could settle it today.
     """
 
     path: str
-    options: tuple[Option, ...]
+    options: tuple[LawOption, ...]
     source: str
     knowledge: Knowledge = "unknown"
     origin: Origin = "assumed"
@@ -86,21 +86,21 @@ class Choice:
         return tuple(f"{option.name} {si.percent(option.weight)}" for option in self.options)
 
 
-_HEIGHTS = Choice(
+_HEIGHTS = LawChoice(
     HEIGHT_LAW,
     (
-        Option(
+        LawOption(
             "persson",
             0.6,
             "its constants can be measured, it agrees with exact contact calculations and holds up "
             "to full contact",
         ),
-        Option(
+        LawOption(
             "exponential",
             0.25,
             "what every rough elastic contact becomes at small pressure; it has a finite strength",
         ),
-        Option(
+        LawOption(
             "gaussian",
             0.15,
             "heights of a skin are nearer to Gaussian, but asperities that do not feel one another "
@@ -109,20 +109,20 @@ _HEIGHTS = Choice(
     ),
     "the contact of skin on a surface was measured under no display",
 )
-_SLIP = Choice(
+_SLIP = LawChoice(
     SLIP,
     (
-        Option("fukui-kaneko", 0.5, "the linearised Boltzmann equation, full accommodation"),
-        Option("veijola", 0.25, "a fit over all Knudsen numbers, made for microsystems"),
-        Option("first", 0.25, "good where the gap is more than ten free paths"),
+        LawOption("fukui-kaneko", 0.5, "the linearised Boltzmann equation, full accommodation"),
+        LawOption("veijola", 0.25, "a fit over all Knudsen numbers, made for microsystems"),
+        LawOption("first", 0.25, "good where the gap is more than ten free paths"),
     ),
     "accommodation of air on skin is not known",
 )
-LIFTS = Choice(
+LIFTS = LawChoice(
     MECHANISM,
     (
-        Option("levitation", 0.43, "off by 0.057 from the friction at rest of published curves"),
-        Option("levitation-ridges", 0.57, "off by 0.055, and in range in near-vacuum"),
+        LawOption("levitation", 0.43, "off by 0.057 from the friction at rest of published curves"),
+        LawOption("levitation-ridges", 0.57, "off by 0.055, and in range in near-vacuum"),
     ),
     "published friction cannot refuse either; weights in proportion to the density that each puts "
     "on four fingers and papers, a mean log of 1.35 and 1.42 (decision 0018)",
@@ -136,7 +136,7 @@ _MOISTURES = {
 }
 
 
-def model_choices(display: Display) -> tuple[Choice, ...]:
+def model_choices(display: Display) -> tuple[LawChoice, ...]:
     """Choices drawn beside the parameters of a display.
 
     The moisture described gets one half, the others a quarter each. What the description gives as
@@ -144,9 +144,9 @@ def model_choices(display: Display) -> tuple[Choice, ...]:
     """
     described = display.finger.moisture
     moistures = tuple(
-        Option(name, 0.5 if name == described else 0.25, why) for name, why in _MOISTURES.items()
+        LawOption(name, 0.5 if name == described else 0.25, why) for name, why in _MOISTURES.items()
     )
-    moisture = Choice(MOISTURE, moistures, "how moist a finger is on the day", "measurable")
+    moisture = LawChoice(MOISTURE, moistures, "how moist a finger is on the day", "measurable")
     measured = {path for path, one in display.provenance.items() if one.evidence == "measured"}
     if "finger.asperities.type" in measured:
         measured.add(HEIGHT_LAW)

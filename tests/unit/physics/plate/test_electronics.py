@@ -12,7 +12,7 @@ from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.physics.plate.electronics import (
     AMPLIFIERS,
-    Amplifier,
+    AmplifierPart,
     amplifier_check,
     driven_ceramics,
     electrical_load,
@@ -94,7 +94,7 @@ def test_no_admittance_is_made_up_beyond_what_was_solved() -> None:
             electrical_load(Response(), 10.0, frequency)
 
 
-PART = Amplifier("a kind", "a part", ((50.0, 1.0), (100.0, 0.5)), 20e6, "nobody")
+PART = AmplifierPart("a kind", "a part", ((50.0, 1.0), (100.0, 0.5)), 20e6, "nobody")
 
 
 @pytest.mark.parametrize(

@@ -19,10 +19,10 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.contact.sliding.pieces import (
     STAYS,
-    Drive,
-    Interval,
-    Moving,
+    BoneDrive,
+    BoneStep,
     Rows,
+    SkinState,
     beyond,
     interval_at,
     on_law,
@@ -31,7 +31,7 @@ from squeezefilm.physics.contact.sliding.pieces import (
     slipped,
     stay,
 )
-from squeezefilm.physics.contact.sliding.skin_motion import HALVINGS, Skin
+from squeezefilm.physics.contact.sliding.skin_motion import HALVINGS, LumpedSkin
 from squeezefilm.physics.contact.sliding.skin_path import TERMS
 
 # Slip starts and ends that one sample interval may hold before the march gives up.
@@ -96,16 +96,16 @@ def next_reach(step: float, reach: float, astray: float, tolerance: float) -> fl
 
 @compiled()
 def interval_march(
-    at: Moving,
-    now: Interval,
-    drive: Drive,
-    skin: Skin,
+    at: SkinState,
+    now: BoneStep,
+    drive: BoneDrive,
+    skin: LumpedSkin,
     rows: Rows,
     bounds: Bounds,
     series: si.Array,
     work: si.Array,
     account: si.Array,
-) -> tuple[Moving, bool]:
+) -> tuple[SkinState, bool]:
     """March the skin over an interval, adding to its `work` and to `account`. False where slips
     began and ended, or speeds were passed, too often."""
     h, ratio = drive.time_step / drive.substeps, bounds.static_ratio
@@ -122,7 +122,7 @@ def interval_march(
             pull = pull_at(s, now, skin)
             if at.side == 0.0 and now.free:
                 side = math.copysign(1.0, pull.start - skin.stiffness * at.place)
-                at = Moving(at.place, at.speed, side, 0)
+                at = SkinState(at.place, at.speed, side, 0)
                 account[1] += 1.0
             if at.side != 0.0:
                 slip = slip_over(reach, s, at, pull, now, drive, skin, rows, series)
@@ -135,7 +135,7 @@ def interval_march(
                 account[0] += part
                 account[1] += abs(side) - abs(at.side)
                 events += side != 0.0
-                at = Moving(at.place, at.speed, side, 0 if side != 0.0 else at.knot)
+                at = SkinState(at.place, at.speed, side, 0 if side != 0.0 else at.knot)
                 s = goal if part == goal - s else s + part
                 trial = h
             elif slip.astray > bounds.tolerance and reach > _SHORTEST * h:
@@ -158,7 +158,7 @@ def interval_march(
 
 @compiled()
 def begun(
-    load: float, speed: float, drive: Drive, rows: Rows, static_ratio: float, account: si.Array
+    load: float, speed: float, drive: BoneDrive, rows: Rows, static_ratio: float, account: si.Array
 ) -> tuple[float, int]:
     """The way the skin slips at the start, pulled with a load (N) at a speed (m/s), and the knot
     below that speed."""
@@ -178,7 +178,7 @@ def begun(
 
 
 @compiled()
-def record(i: int, at: Moving, load: float, drive: Drive, rows: Rows, track: Track) -> None:
+def record(i: int, at: SkinState, load: float, drive: BoneDrive, rows: Rows, track: Track) -> None:
     """Write sample i of the skin, pulled with a load (N), into the track."""
     track.position[i], track.speed[i] = at.place, at.speed
     track.stuck[i] = at.side == 0.0
@@ -192,8 +192,8 @@ def record(i: int, at: Moving, load: float, drive: Drive, rows: Rows, track: Tra
 
 @compiled()
 def slide_march(
-    drive: Drive,
-    skin: Skin,
+    drive: BoneDrive,
+    skin: LumpedSkin,
     rows: Rows,
     static_ratio: float,
     strongest: float,
@@ -209,12 +209,12 @@ def slide_march(
     x, v = track.position[0], track.speed[0]
     load = k * (drive.bone[0] - x) + c * (drive.speed_in[0] - v)
     side, j = begun(load, v, drive, rows, static_ratio, track.account)
-    at = Moving(x, v, side, j)
+    at = SkinState(x, v, side, j)
     record(0, at, load, drive, rows, track)
     for i in range(drive.bone.size - 1):
         # Where the way has turned of itself.
         side = -at.side if at.side * at.speed < 0.0 else at.side
-        at, now = Moving(at.place, at.speed, side, at.knot), interval_at(i, drive, rows)
+        at, now = SkinState(at.place, at.speed, side, at.knot), interval_at(i, drive, rows)
         work[:] = 0.0
         at, done = interval_march(at, now, drive, skin, rows, bounds, series, work, track.account)
         if not done:

@@ -34,7 +34,7 @@ from squeezefilm.physics.contact.sliding.kernel import (
     slide_march,
     strongest_and_fall,
 )
-from squeezefilm.physics.contact.sliding.skin_motion import Skin
+from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin
 
 JouleArray = Annotated[si.FloatArray, si.Unit("J")]
 
@@ -208,7 +208,7 @@ def _march(
     strongest, steepest = strongest_and_fall(rows, force)
     parts = substeps(time_step, pad, steepest)
     drive = Drive(bone, speed_in, speed_out, force, time_step, parts)
-    skin = Skin(pad.mass, pad.damping, pad.stiffness)
+    skin = LumpedSkin(pad.mass, pad.damping, pad.stiffness)
     done = slide_march(drive, skin, rows, law.static_ratio, strongest, track)
     if done < bone.size:
         raise ConvergenceError(

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.contact.sliding.skin_motion import Skin, first_rise
+from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin, first_rise
 from squeezefilm.physics.contact.sliding.skin_path import (
+    BonePull,
     Friction,
-    Path,
-    Pull,
+    SkinPath,
     passes,
     path_over,
     speed_on,
@@ -30,7 +30,7 @@ _ROUNDING = 1e-13
 STAYS, _ABOVE, _BELOW = 0, 1, -1
 
 
-class Drive(NamedTuple):
+class BoneDrive(NamedTuple):
     """The bone's places (n,), its speeds at the start and the end of each interval (n−1,), the
     friction force for each unit of a row (n,), the time between samples (s), and the parts in which
     an interval is marched."""
@@ -51,7 +51,7 @@ class Rows(NamedTuple):
     coefficient: si.Array
 
 
-class Interval(NamedTuple):
+class BoneStep(NamedTuple):
     """An interval between two samples: its number, the bone's place and speed at its start and the
     rate of that speed (m, m/s, m/s²), friction at rest then and its rate (N, N/s), and whether
     nothing ever holds the skin in it."""
@@ -65,7 +65,7 @@ class Interval(NamedTuple):
     free: bool
 
 
-class Moving(NamedTuple):
+class SkinState(NamedTuple):
     """The skin's place (m) and speed (m/s), the way it slips (1 or −1; 0: it sticks), and the knot
     of the rows below its speed."""
 
@@ -79,8 +79,8 @@ class Slip(NamedTuple):
     """A piece of a slip, seen along it: the skin's path, pull and friction, the time for which they
     hold (s), what ends it, the speed then (m/s), and how far friction strays from the law (N)."""
 
-    path: Path
-    pull: Pull
+    path: SkinPath
+    pull: BonePull
     friction: Friction
     part: float
     ended: int
@@ -123,11 +123,11 @@ def slip_piece(
     reach: float,
     w: float,
     bounds: tuple[float, float],
-    pull: Pull,
+    pull: BonePull,
     friction: Friction,
-    skin: Skin,
+    skin: LumpedSkin,
     series: si.Array,
-) -> tuple[Path, float, int, float]:
+) -> tuple[SkinPath, float, int, float]:
     """The skin's path from the speed w over `reach`, how much of it stays within the bounds, and
     which one ends it, and the speed at its end."""
     low, high = bounds
@@ -149,7 +149,7 @@ def slip_piece(
 
 
 @compiled()
-def interval_at(i: int, drive: Drive, rows: Rows) -> Interval:
+def interval_at(i: int, drive: BoneDrive, rows: Rows) -> BoneStep:
     """Interval number i."""
     last = rows.coefficient.shape[0] - 1
     hold = drive.limit[i] * rows.coefficient[min(i, last), 0]
@@ -157,16 +157,16 @@ def interval_at(i: int, drive: Drive, rows: Rows) -> Interval:
     rate = (drive.speed_out[i] - drive.speed_in[i]) / drive.time_step
     hold_rate = (end - hold) / drive.time_step
     free = hold == 0.0 and hold_rate == 0.0
-    return Interval(i, drive.bone[i], drive.speed_in[i], rate, hold, hold_rate, free)
+    return BoneStep(i, drive.bone[i], drive.speed_in[i], rate, hold, hold_rate, free)
 
 
 @compiled()
-def pull_at(s: float, now: Interval, skin: Skin) -> Pull:
+def pull_at(s: float, now: BoneStep, skin: LumpedSkin) -> BonePull:
     """The pull of bone and pad a time s into an interval."""
     k, c = skin.stiffness, skin.damping
     vb = now.bone_speed + now.bone_rate * s
     xb = now.bone + s * (now.bone_speed + 0.5 * now.bone_rate * s)
-    return Pull(
+    return BonePull(
         k * xb + c * vb, k * vb + c * now.bone_rate, 0.5 * k * now.bone_rate, vb, now.bone_rate
     )
 
@@ -175,11 +175,11 @@ def pull_at(s: float, now: Interval, skin: Skin) -> Pull:
 def slip_over(
     reach: float,
     s: float,
-    at: Moving,
-    pull: Pull,
-    now: Interval,
-    drive: Drive,
-    skin: Skin,
+    at: SkinState,
+    pull: BonePull,
+    now: BoneStep,
+    drive: BoneDrive,
+    skin: LumpedSkin,
     rows: Rows,
     series: si.Array,
 ) -> Slip:
@@ -199,7 +199,7 @@ def slip_over(
     start = low + rise * above
     line = Friction(start, rise + _MEAN * steeper * reach, more + steeper * above)
     f = pull.start - skin.stiffness * at.place
-    along = Pull(
+    along = BonePull(
         side * f, side * pull.rate, side * pull.bend, side * pull.bone_speed, side * pull.bone_rate
     )
     bounds = bounds_on(speeds, j, now.free)
@@ -219,7 +219,7 @@ def slip_over(
 
 
 @compiled()
-def works_of_rest(part: float, f: float, pull: Pull, c: float) -> tuple[float, float]:
+def works_of_rest(part: float, f: float, pull: BonePull, c: float) -> tuple[float, float]:
     """Work of the bone and lost to damping (J) while the skin stays, held by f at the start (N)."""
     # The bone's speed is a line and its force a parabola: cubic, with Simpson's rule exact.
     vb, rate = pull.bone_speed, pull.bone_rate
@@ -232,14 +232,14 @@ def works_of_rest(part: float, f: float, pull: Pull, c: float) -> tuple[float, f
 
 @compiled()
 def stay(
-    at: Moving,
+    at: SkinState,
     s: float,
     goal: float,
     briefly: float,
-    pull: Pull,
-    now: Interval,
+    pull: BonePull,
+    now: BoneStep,
     static_ratio: float,
-    skin: Skin,
+    skin: LumpedSkin,
     work: si.Array,
 ) -> tuple[float, float]:
     """The time for which the skin stays, from a time s into an interval: stuck, until it is pulled
@@ -263,34 +263,36 @@ def stay(
 
 
 @compiled()
-def slipped(slip: Slip, at: Moving, skin: Skin, series: si.Array, work: si.Array) -> Moving:
+def slipped(
+    slip: Slip, at: SkinState, skin: LumpedSkin, series: si.Array, work: si.Array
+) -> SkinState:
     """The skin at the end of a slip, whose works (J) are added."""
     towed, lost, damped = works_on(slip.path, slip.part, slip.pull, slip.friction, skin, series)
     work[0] += towed
     work[1] += lost
     work[2] += damped
     place = at.place + at.side * way_on(slip.path, slip.part, series)
-    return Moving(place, at.side * slip.speed, at.side, at.knot)
+    return SkinState(place, at.side * slip.speed, at.side, at.knot)
 
 
 @compiled()
 def beyond(
     slip: Slip,
     s: float,
-    at: Moving,
-    pull: Pull,
-    now: Interval,
+    at: SkinState,
+    pull: BonePull,
+    now: BoneStep,
     static_ratio: float,
     stiffness: float,
-) -> tuple[Moving, bool]:
+) -> tuple[SkinState, bool]:
     """The skin after a slip that ended at a knot of the rows, a time s into an interval, and
     whether it came to rest there."""
     if slip.ended == _ABOVE:
-        return Moving(at.place, at.speed, at.side, at.knot + 1), False
+        return SkinState(at.place, at.speed, at.side, at.knot + 1), False
     if at.knot > 0:
-        return Moving(at.place, at.speed, at.side, at.knot - 1), False
+        return SkinState(at.place, at.speed, at.side, at.knot - 1), False
     if now.free:
-        return Moving(at.place, at.speed, -at.side, 1), False
+        return SkinState(at.place, at.speed, -at.side, 1), False
     f = pull.start + slip.part * (pull.rate + slip.part * pull.bend) - stiffness * at.place
     held = static_ratio * (now.hold + now.hold_rate * s)
-    return Moving(at.place, 0.0, math.copysign(1.0, f) if abs(f) > held else 0.0, 0), True
+    return SkinState(at.place, 0.0, math.copysign(1.0, f) if abs(f) > held else 0.0, 0), True

@@ -11,7 +11,7 @@ from squeezefilm.core.compiled import compiled
 HALVINGS = 20
 
 
-class Skin(NamedTuple):
+class LumpedSkin(NamedTuple):
     """A mass on a spring and a damper that hang on the bone."""
 
     mass: float
@@ -29,7 +29,7 @@ class Forces(NamedTuple):
 
 
 @compiled()
-def transition(s: float, skin: Skin) -> Any:
+def transition(s: float, skin: LumpedSkin) -> Any:
     """Matrix that takes (y, ẏ) of the free skin to a time s later: y ← a y + b ẏ, ẏ ← c y + d ẏ."""
     mass, damping, stiffness = skin
     decay = damping / (2.0 * mass)
@@ -74,7 +74,7 @@ def first_rise(a: float, b: float, c: float, span: float) -> float:
 
 
 @compiled()
-def slide_by(passed: Any, s: float, x: float, v: float, forces: Forces, skin: Skin) -> Any:
+def slide_by(passed: Any, s: float, x: float, v: float, forces: Forces, skin: LumpedSkin) -> Any:
     """Position, speed and acceleration a time s into sliding from x at the speed v.
 
     `passed` is the `transition` of s, which a march at a fixed step knows beforehand. The

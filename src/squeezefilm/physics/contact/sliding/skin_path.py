@@ -20,7 +20,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.contact.sliding.skin_motion import HALVINGS, Skin
+from squeezefilm.physics.contact.sliding.skin_motion import HALVINGS, LumpedSkin
 
 # Terms of the series: over a piece that is short for the skin, the next is below rounding.
 TERMS = 16
@@ -35,7 +35,7 @@ _NODES = (0.5 - _OUTER, 0.5 - _INNER, 0.5 + _INNER, 0.5 + _OUTER)
 _LIGHT, _HEAVY = 0.25 - math.sqrt(30.0) / 72.0, 0.25 + math.sqrt(30.0) / 72.0
 
 
-class Pull(NamedTuple):
+class BonePull(NamedTuple):
     """The force of bone and pad on a skin held where it is, over time: p0 + p1 t + p2 t² (N), and
     the bone's speed and its rate (m/s, m/s²), all along the way the skin slides."""
 
@@ -54,7 +54,7 @@ class Friction(NamedTuple):
     rate: float
 
 
-class Path(NamedTuple):
+class SkinPath(NamedTuple):
     """A skin's way over `span` (s): speed at the start (m/s), how many terms its series has, and
     the summand b exp(−r t) of its speed: b (m/s) and r (1/s)."""
 
@@ -67,8 +67,8 @@ class Path(NamedTuple):
 
 @compiled()
 def path_over(
-    span: float, w: float, pull: Pull, friction: Friction, skin: Skin, series: si.Array
-) -> Path:
+    span: float, w: float, pull: BonePull, friction: Friction, skin: LumpedSkin, series: si.Array
+) -> SkinPath:
     """The way over a span from the speed w (m/s); fills `series`, its speed's, in parts of span."""
     mass, damping, stiffness = skin
     braking = damping + friction.rise
@@ -89,7 +89,7 @@ def path_over(
             series[n + 2] = -each * (d * series[n + 1] + e * _PARTS[n] * series[n])
             if n == 1:
                 series[3] += forced / 6.0
-        return Path(span, w, terms, 0.0, 0.0)
+        return SkinPath(span, w, terms, 0.0, 0.0)
     half = 0.5 * braking / mass
     root = math.sqrt(half * half - stiffness / mass)
     decay = half + root
@@ -103,11 +103,11 @@ def path_over(
     series[2] = 0.5 * (bend - slow * first) * span * span
     for n in range(3, terms):
         series[n] = -series[n - 1] * slow * span * _PARTS[n - 1]
-    return Path(span, w, terms, fast, decay)
+    return SkinPath(span, w, terms, fast, decay)
 
 
 @compiled()
-def speed_on(path: Path, t: float, series: si.Array) -> tuple[float, float]:
+def speed_on(path: SkinPath, t: float, series: si.Array) -> tuple[float, float]:
     """Speed (m/s) and acceleration (m/s²) a time t into the path."""
     part = t / path.span
     w = series[path.terms - 1]
@@ -124,7 +124,7 @@ def speed_on(path: Path, t: float, series: si.Array) -> tuple[float, float]:
 
 
 @compiled()
-def way_on(path: Path, t: float, series: si.Array) -> float:
+def way_on(path: SkinPath, t: float, series: si.Array) -> float:
     """The way slid (m) a time t into the path."""
     part = t / path.span
     u = 0.0
@@ -138,7 +138,7 @@ def way_on(path: Path, t: float, series: si.Array) -> float:
 
 @compiled()
 def passes(
-    path: Path,
+    path: SkinPath,
     span: float,
     level: float,
     side: float,
@@ -215,7 +215,12 @@ def passes(
 
 @compiled()
 def works_on(
-    path: Path, part: float, pull: Pull, friction: Friction, skin: Skin, series: si.Array
+    path: SkinPath,
+    part: float,
+    pull: BonePull,
+    friction: Friction,
+    skin: LumpedSkin,
+    series: si.Array,
 ) -> tuple[float, float, float]:
     """Work of the bone, lost to friction and lost to damping over the first part of a path (J).
 

@@ -26,7 +26,7 @@ from squeezefilm.physics.film.gas import Aim, require_film, slip_law
 from squeezefilm.physics.film.periodic.resolution import (
     CELLS,
     TIMES,
-    Resolution,
+    FilmResolution,
     first_guess,
     refined,
     resolution_of,
@@ -274,7 +274,7 @@ class _Work:
             self.progress(int(np.count_nonzero(self.met)), len(self.met))
 
     def solve(
-        self, group: si.IntArray, resolution: Resolution, pool: ThreadPoolExecutor | None
+        self, group: si.IntArray, resolution: FilmResolution, pool: ThreadPoolExecutor | None
     ) -> None:
         """Solve the films of the indices `group` on one resolution, in portions."""
         u, whole = compiled(), self.films

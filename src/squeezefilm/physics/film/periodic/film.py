@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.film.gas import Aim, Gas, slip_law
+from squeezefilm.physics.film.gas import Aim, CompiledGas, slip_law
 from squeezefilm.physics.film.periodic.batch import MOST_NEWTON, check_film, compiled
 from squeezefilm.physics.film.periodic.nested import (
     NEWTON_SHARE,
@@ -34,11 +34,11 @@ from squeezefilm.physics.film.periodic.profile import (
     profile_from_function,
     sampled_grid,
 )
-from squeezefilm.physics.film.periodic.resolution import CELLS, Resolution, first_guess
+from squeezefilm.physics.film.periodic.resolution import CELLS, FilmResolution, first_guess
 from squeezefilm.physics.film.periodic.small import LARGEST, enlarged, reduced, small_film
 from squeezefilm.physics.film.periodic.solution import (
     NO_FIELD,
-    Asked,
+    FilmQuestion,
     FilmSolution,
     Found,
     assembled,
@@ -71,9 +71,9 @@ def solve_uniform(
     """
     si.require_one_of("shape", shape, ("strip", "disc"))
     sigma, n, kn = squeeze_number, polytropic_exponent, knudsen_number
-    asked = Asked(shape, sigma, excursion_ratio, n, kn, slip, tolerance, None)
+    asked = FilmQuestion(shape, sigma, excursion_ratio, n, kn, slip, tolerance, None)
     check_film(sigma, excursion_ratio, n, kn, tolerance)
-    gas = Gas(n, kn, slip_law(slip, kn))
+    gas = CompiledGas(n, kn, slip_law(slip, kn))
     small = small_film(asked, gas) if abs(excursion_ratio) < LARGEST else None
     # The closed form where it is nearer than rounding lets a solve come, or where that fails.
     if small and small[0].met and small[0].error <= compiled().rounding(sigma, n, small[0].over):
@@ -89,7 +89,7 @@ def solve_uniform(
 
 
 def _refined_uniform(
-    shape: str, sigma: float, eps: float, gas: Gas, tolerance: float
+    shape: str, sigma: float, eps: float, gas: CompiledGas, tolerance: float
 ) -> tuple[Nested, Found]:
     """A uniform gap's film: on half a strip, or on a disc's radius."""
     u, strip = compiled(), shape == "strip"
@@ -99,7 +99,7 @@ def _refined_uniform(
     films = u.Films(*np.array([[sigma], [eps], [n], [kn]]), law, u.STRIP if strip else u.DISC)
     a = u.edge_grading(wide, eps)
 
-    def solve(resolution: Resolution) -> Nested:
+    def solve(resolution: FilmResolution) -> Nested:
         cells = resolution.cells
         out = np.full((1, u.COLUMNS), np.nan)
         rows = 7 * resolution.times.row + resolution.check.row
@@ -152,9 +152,11 @@ def solve_profile(
         profile = profile_from_function(profile)
     check_film(squeeze_number, 0.0, polytropic_exponent, knudsen_number, tolerance)
     sigma = float(squeeze_number)
-    gas = Gas(float(polytropic_exponent), float(knudsen_number), slip_law(slip, knudsen_number))
+    gas = CompiledGas(
+        float(polytropic_exponent), float(knudsen_number), slip_law(slip, knudsen_number)
+    )
     n, kn, _ = gas
-    asked = Asked("profile", sigma, profile.excursion, n, kn, slip, tolerance, profile)
+    asked = FilmQuestion("profile", sigma, profile.excursion, n, kn, slip, tolerance, profile)
     solvable, factor = enlarged(profile)
     grid, found = _refined_profile(solvable, sigma, gas, tolerance, field)
     shown, mirrored = NO_FIELD, profile.symmetric
@@ -164,7 +166,7 @@ def solve_profile(
 
 
 def _refined_profile(
-    profile: GapProfile, sigma: float, gas: Gas, tolerance: float, field: bool
+    profile: GapProfile, sigma: float, gas: CompiledGas, tolerance: float, field: bool
 ) -> tuple[Nested, Found]:
     """A profile's film: on half of it where it is symmetric, otherwise from edge to edge."""
     from squeezefilm.physics.film.periodic import uniform as u
@@ -176,7 +178,7 @@ def _refined_profile(
     grading = round(float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, depth)), 2)
     aim = Aim(tolerance * (NEWTON_SHARE if field else 1.0), MOST_NEWTON)
 
-    def solve(resolution: Resolution) -> Nested:
+    def solve(resolution: FilmResolution) -> Nested:
         cells, times, check = resolution
         x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
         even, odd = np.ascontiguousarray(harmonics.real), np.ascontiguousarray(-harmonics.imag)

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.film.gas import NO_SLIP, Aim, Gas
+from squeezefilm.physics.film.gas import NO_SLIP, Aim, CompiledGas
 from squeezefilm.physics.film.mobility import slip_factor
 from squeezefilm.physics.film.periodic.lanes import (
     add,
@@ -34,7 +34,7 @@ from squeezefilm.physics.film.periodic.lanes import (
     sub,
     total,
 )
-from squeezefilm.physics.film.periodic.resolution import Cells, Gap, Room, Times
+from squeezefilm.physics.film.periodic.resolution import Cells, GridGap, PeriodTimes, SolveRoom
 
 # `reassoc` and `contract` only: NaN must stay visible, so `nnan` and `ninf` stay off.
 _FAST = {"reassoc", "contract", "arcp", "nsz"}
@@ -111,8 +111,8 @@ def _coefficients(
     m: int,
     ntp: int,
     g: si.FloatArray,
-    gap: Gap,
-    gas: Gas,
+    gap: GridGap,
+    gas: CompiledGas,
     p: si.FloatArray,
     work: si.FloatArray,
     flow: _Flow,
@@ -189,7 +189,14 @@ def _coefficients(
 
 @compiled(fastmath=_FAST, error_model="numpy")
 def newton(
-    m: int, times: Times, cells: Cells, gap: Gap, gas: Gas, p: si.FloatArray, room: Room, aim: Aim
+    m: int,
+    times: PeriodTimes,
+    cells: Cells,
+    gap: GridGap,
+    gas: CompiledGas,
+    p: si.FloatArray,
+    room: SolveRoom,
+    aim: Aim,
 ) -> tuple[float, int, float]:
     """Improve p (m rows of times) in place; return the over-pressure, iterations, last residual.
 

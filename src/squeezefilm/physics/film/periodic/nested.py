@@ -16,7 +16,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.film.periodic.batch import ROUNDS
 from squeezefilm.physics.film.periodic.profile import evaluate
-from squeezefilm.physics.film.periodic.resolution import Resolution, refined, resolution_of
+from squeezefilm.physics.film.periodic.resolution import FilmResolution, refined, resolution_of
 from squeezefilm.physics.film.periodic.solution import HARMONICS, Found
 
 NEWTON_SHARE = 0.03
@@ -36,7 +36,7 @@ class Nested(NamedTuple):
     the result row (columns in `uniform`), and the levels: the coarsest grid with the times that
     check, then the three grids; none where the load alone is asked for."""
 
-    resolution: Resolution
+    resolution: FilmResolution
     x: si.FloatArray
     harmonics: si.ComplexArray
     row: si.FloatArray
@@ -65,7 +65,7 @@ grid sees less of it."""
 
 def levels_of(
     keep: si.FloatArray,
-    resolution: Resolution,
+    resolution: FilmResolution,
     closed: bool,
     share: Callable[[int], si.FloatArray],
 ) -> list[Level]:
@@ -195,7 +195,7 @@ def steadied(error: si.FloatArray, size: si.FloatArray) -> si.FloatArray:
 
 
 def refine(
-    solve: Callable[[Resolution], Nested],
+    solve: Callable[[FilmResolution], Nested],
     kind: Kind,
     first: tuple[int, int],
     tolerance: float,

@@ -159,7 +159,7 @@ class _Flexural:
 
 
 @dataclass(frozen=True, slots=True)
-class _Given:
+class _GivenGap:
     """A function H(X, T), sampled over a period."""
 
     gap: GapFunction
@@ -217,7 +217,7 @@ def profile_from_function(gap: GapFunction, description: str = "given function")
     significant = np.flatnonzero(spectrum > _NEGLIGIBLE * spectrum.max())
     orders = int(significant.max()) + 1
     _require_smooth(orders, description)
-    return GapProfile(_Given(gap, orders), description)
+    return GapProfile(_GivenGap(gap, orders), description)
 
 
 def _require_smooth(orders: int, description: str) -> None:

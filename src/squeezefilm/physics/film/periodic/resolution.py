@@ -15,7 +15,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 
 
-class Times(NamedTuple):
+class PeriodTimes(NamedTuple):
     """The collocation times of a period: how many, the length of their padded row, the transposed
     Fourier differentiation matrix, and one minus the unit matrix, both flattened."""
 
@@ -33,7 +33,7 @@ class Cells(NamedTuple):
     share: si.FloatArray
 
 
-class Gap(NamedTuple):
+class GridGap(NamedTuple):
     """The gap at nodes and faces, its cube there, and the weights of p in the mean load; rows of
     times with `stride` from one node to the next, 0 where the gap does not depend on position."""
 
@@ -44,19 +44,19 @@ class Gap(NamedTuple):
     stride: int
 
 
-class Room(NamedTuple):
+class SolveRoom(NamedTuple):
     """Memory for a solve: rows of times, and the inverses of the diagonal blocks."""
 
     rows: si.FloatArray
     blocks: si.FloatArray
 
 
-class Resolution(NamedTuple):
+class FilmResolution(NamedTuple):
     """Cells of the finest grid, its times, and the times that check them on the coarsest grid."""
 
     cells: int
-    times: Times
-    check: Times
+    times: PeriodTimes
+    check: PeriodTimes
 
 
 CELLS = np.array([4, 8, 12, 16, 24, 32, 48, 64, 96, 128, 192, 256, 384, 512, 768])
@@ -66,7 +66,7 @@ CHECKS = np.array([7, 9, 13, 15, 19, 19, 23, 31, 31, 39, 47, 63, 79, 95, 127, 15
 
 
 @lru_cache(maxsize=64)
-def collocation_times(nt: int) -> Times:
+def collocation_times(nt: int) -> PeriodTimes:
     """Times of a period, so many, with what is computed with them.
 
     `nt` is odd: an even number leaves the highest harmonic without a derivative.
@@ -81,12 +81,12 @@ def collocation_times(nt: int) -> Times:
     DT[:, :nt] = D[:, :nt].T
     mask = np.ones((nt, ntp))
     mask[:, :nt] -= np.eye(nt)
-    return Times(nt, ntp, DT.ravel(), mask.ravel())
+    return PeriodTimes(nt, ntp, DT.ravel(), mask.ravel())
 
 
-def resolution_of(cells: int, times: int) -> Resolution:
+def resolution_of(cells: int, times: int) -> FilmResolution:
     """Cells of the finest grid, the times at an index into `TIMES`, and those that check them."""
-    return Resolution(
+    return FilmResolution(
         cells, collocation_times(int(TIMES[times])), collocation_times(int(CHECKS[times]))
     )
 

@@ -18,9 +18,9 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.film.closed import relative_damping, relative_stiffness
-from squeezefilm.physics.film.gas import Gas
+from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.periodic.profile import GapProfile, Harmonics
-from squeezefilm.physics.film.periodic.solution import HARMONICS, Asked, Field, Found
+from squeezefilm.physics.film.periodic.solution import HARMONICS, Field, FilmQuestion, Found
 
 if TYPE_CHECKING:
     from squeezefilm.physics.film.periodic.uniform import Films
@@ -122,7 +122,7 @@ _POINTS = 65
 _ORDERS = np.arange(HARMONICS + 1)
 
 
-def small_film(asked: Asked, gas: Gas) -> tuple[Found, Field]:
+def small_film(asked: FilmQuestion, gas: CompiledGas) -> tuple[Found, Field]:
     """A uniform gap's film in closed form, and its field; `met` says whether that meets the
     tolerance. Its second and higher harmonics are left out, and are their errors."""
 

@@ -18,7 +18,7 @@ HARMONICS = 8
 
 
 @dataclass(frozen=True)
-class Asked:
+class FilmQuestion:
     """Question about a film; `profile` is None where H = 1 + ε cos T."""
 
     shape: str
@@ -40,7 +40,7 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class FilmSolution(Asked):
+class FilmSolution(FilmQuestion):
     """A period of a gas film, with the inputs and the model that made it.
 
     Pressures are relative to ambient, gaps to the reference gap, T = ωt in radians. `position`
@@ -112,7 +112,7 @@ class Found:
         """The same film half a period later, which is that of −ε."""
         return replace(self, harmonics=self.harmonics * (-1.0) ** np.arange(HARMONICS + 1))
 
-    def status(self, asked: Asked) -> str:
+    def status(self, asked: FilmQuestion) -> str:
         """Words for how well it went."""
         effort = f"{self.cells} cells and {self.times} times in {self.iterations} Newton steps"
         if self.closed:
@@ -143,7 +143,7 @@ NO_FIELD = Field(np.empty(0), np.empty(0), np.empty((0, 0)), np.empty((0, 0)))
 """Empty field where the load alone is asked for."""
 
 
-def assembled(asked: Asked, found: Found, field: Field, excursion: float) -> FilmSolution:
+def assembled(asked: FilmQuestion, found: Found, field: Field, excursion: float) -> FilmSolution:
     """Assemble the result. Raises `ConvergenceError`, with it, where the tolerance was not met."""
     over, harmonics = found.over, found.harmonics.copy()
     harmonics[0] = over

@@ -14,9 +14,15 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.film.gas import Aim, Gas
+from squeezefilm.physics.film.gas import Aim, CompiledGas
 from squeezefilm.physics.film.periodic.kernel import newton, prolong
-from squeezefilm.physics.film.periodic.resolution import Cells, Gap, Resolution, Room, Times
+from squeezefilm.physics.film.periodic.resolution import (
+    Cells,
+    FilmResolution,
+    GridGap,
+    PeriodTimes,
+    SolveRoom,
+)
 
 STRIP, DISC = 0, 1
 
@@ -203,7 +209,7 @@ def solve_rows(
     start: int,
     stop: int,
     films: Films,
-    resolution: Resolution,
+    resolution: FilmResolution,
     aim: Aim,
     out: si.FloatArray,
     keep: si.FloatArray,
@@ -224,8 +230,8 @@ def solve_rows(
     g, vol, share = np.empty(rows), np.empty(rows), np.empty(rows)
     p, other = np.empty(rows * wide), np.empty(rows * wide)
     blocks = max(cells * nt * ntp, max(cells // 4, 2) * fuller.number * fuller.row)
-    room = Room(np.zeros(10 * rows * wide), np.empty(blocks))
-    nodes, gaps = Cells(g, vol, share), Gap(H, H, H3, w, 0)
+    room = SolveRoom(np.zeros(10 * rows * wide), np.empty(blocks))
+    nodes, gaps = Cells(g, vol, share), GridGap(H, H, H3, w, 0)
     close = Aim(0.03 * aim.tolerance, aim.most)
     # Over-pressure and first harmonic, of the three grids and of the check.
     level, harmonic = np.empty(4), np.empty(4, dtype=np.complex128)
@@ -237,7 +243,7 @@ def solve_rows(
         # A disc of radius R films like a strip about 1.5 R wide.
         wide_sigma = sig if shape == STRIP else 2.25 * sig
         a = edge_grading(wide_sigma, e)
-        gas = Gas(poly, rare, law)
+        gas = CompiledGas(poly, rare, law)
         gap(fuller.number, fuller.row, e, H, H3)
         load_weights(fuller.number, fuller.row, e, poly, H, w, c, s)
         grid(checked, shape, sig, a, g, vol, share)
@@ -299,7 +305,7 @@ def solve_rows(
 @compiled(error_model="numpy")
 def _first_harmonic(
     m: int,
-    times: Times,
+    times: PeriodTimes,
     share: si.FloatArray,
     c: si.FloatArray,
     s: si.FloatArray,

@@ -14,9 +14,9 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.film.gas import Aim, Gas
+from squeezefilm.physics.film.gas import Aim, CompiledGas
 from squeezefilm.physics.film.periodic.kernel import newton, prolong
-from squeezefilm.physics.film.periodic.resolution import Cells, Gap, Resolution, Room
+from squeezefilm.physics.film.periodic.resolution import Cells, FilmResolution, GridGap, SolveRoom
 from squeezefilm.physics.film.periodic.uniform import (
     CHECK,
     COARSE,
@@ -120,9 +120,9 @@ class Profile(NamedTuple):
 @compiled(error_model="numpy")
 def solve_varying(
     sigma: float,
-    gas: Gas,
+    gas: CompiledGas,
     profile: Profile,
-    resolution: Resolution,
+    resolution: FilmResolution,
     fine: tuple[int, int],
     aim: Aim,
     out: si.FloatArray,
@@ -147,7 +147,7 @@ def solve_varying(
     g, vol, share = np.zeros(rows), np.zeros(rows), np.zeros(rows)
     p, other = np.zeros(rows * wide), np.zeros(rows * wide)
     blocks = max(rows * times.number * times.row, (cells // 4 + 1) * fuller.number * fuller.row)
-    room = Room(np.zeros(10 * rows * wide), np.empty(blocks))
+    room = SolveRoom(np.zeros(10 * rows * wide), np.empty(blocks))
     close = Aim(0.03 * aim.tolerance, aim.most)
     level = np.zeros(3)
     check, left, its, kept = 0.0, 0.0, 0, 0
@@ -193,7 +193,7 @@ def solve_varying(
                 unknowns,
                 now,
                 Cells(g, vol, share),
-                Gap(H, Hf, Hf3, weight, row),
+                GridGap(H, Hf, Hf3, weight, row),
                 gas,
                 p,
                 room,

@@ -20,7 +20,7 @@ from scipy.linalg import lapack
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.film.gas import Gas
+from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.mobility import mobility
 from squeezefilm.physics.film.planar.gap import GapFunction, gap_values
 from squeezefilm.physics.film.planar.grid import PlanarGrid
@@ -63,7 +63,7 @@ class Balances(NamedTuple):
 
 @compiled()
 def assemble(
-    m: si.Array, gaps: si.Array, faces: Faces, storage: Storage, gas: Gas, balance: Balances
+    m: si.Array, gaps: si.Array, faces: Faces, storage: Storage, gas: CompiledGas, balance: Balances
 ) -> None:
     """Fill `balance` at the gas m, shape (nodes, times).
 
@@ -174,7 +174,7 @@ class Film:
 
     gap: GapFunction
     squeeze_number: float
-    gas: Gas
+    gas: CompiledGas
 
 
 @dataclass(frozen=True)

@@ -48,7 +48,7 @@ _Strip = tuple[Face, si.Metre, si.Metre, si.Metre]
 
 
 @dataclass(frozen=True)
-class Piece:
+class BeamPiece:
     """Piece of a beam from `begin` to `end`: its stiffnesses and its inertia, per unit width."""
 
     begin: si.Metre
@@ -78,7 +78,7 @@ def stressed_span(plate: RectangularPlate, patch: CeramicPatch) -> tuple[si.Metr
     return begin + inset * (not meets_before), end - inset * (not meets_after)
 
 
-def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[Piece, ...]:
+def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[BeamPiece, ...]:
     """The pieces of a plate along its length, for nodal lines across it; what lies side by side
     across the plate bends together."""
     spans = [stressed_span(plate, patch) for patch in plate.patches]
@@ -92,7 +92,7 @@ def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[P
             sections[strips] = _mean(plate, cross_section, strips)
         return sections[strips]
 
-    pieces = list[Piece]()
+    pieces = list[BeamPiece]()
     for begin, end in itertools.pairwise(stops):
         middle = (begin + end) / 2
         lying = [
@@ -102,7 +102,7 @@ def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[P
         ]
         g, s, _, j = section(one for one, is_stressed in lying if is_stressed)
         m = section(one for one, _ in lying)[2]
-        pieces.append(Piece(begin, end, float(g), float(s), float(m), float(j)))
+        pieces.append(BeamPiece(begin, end, float(g), float(s), float(m), float(j)))
     return tuple(pieces)
 
 
@@ -133,7 +133,7 @@ def _mean(
     return total / (stops[-1] - stops[0])
 
 
-def pieced_beam_mode(pieces: Sequence[Piece], nodal_lines: int) -> BeamMode:
+def pieced_beam_mode(pieces: Sequence[BeamPiece], nodal_lines: int) -> BeamMode:
     """The bending mode of a free–free Timoshenko beam of pieces with a given number of nodal lines.
 
     Its frequency to 2e-5 relative, for half wavelengths of up to a few hundred thicknesses. Raises
@@ -162,7 +162,7 @@ class _Elements:
     """The stiffness and the mass of a beam of pieces, of deflection and rotation by turns at each
     node, stored as bands."""
 
-    def __init__(self, pieces: Sequence[Piece], longest: si.Metre) -> None:
+    def __init__(self, pieces: Sequence[BeamPiece], longest: si.Metre) -> None:
         self.pieces = pieces
         shares = [math.ceil((piece.end - piece.begin) / longest) for piece in pieces]
         edges = [
@@ -261,7 +261,7 @@ class _Elements:
         return math.pi * self.pieces[-1].end / math.fsum(waves)
 
 
-def _even(pieces: Sequence[Piece]) -> Laminate:
+def _even(pieces: Sequence[BeamPiece]) -> Laminate:
     """A uniform section that yields as the pieces do one after the other, and weighs the same."""
     parts = np.array([(piece.end - piece.begin, *_constants(piece)) for piece in pieces])
     share = parts[:, 0] / np.sum(parts[:, 0])
@@ -276,7 +276,7 @@ def _even(pieces: Sequence[Piece]) -> Laminate:
     )
 
 
-def _constants(one: Piece) -> tuple[float, float, float, float]:
+def _constants(one: BeamPiece) -> tuple[float, float, float, float]:
     return one.bending_stiffness, one.mass_per_area, one.shear_stiffness, one.rotary_inertia
 
 

@@ -121,7 +121,7 @@ def piezoceramic_solid(
 
 
 @dataclass(frozen=True)
-class Electrode:
+class ModelElectrode:
     """The electrodes of one ceramic: z-node planes of the driven and of the grounded face."""
 
     driven_plane: int
@@ -199,7 +199,7 @@ class BoxModel:
     media: tuple[Medium, ...]
     medium: si.IntArray
     ceramic: si.IntArray
-    electrodes: tuple[Electrode, ...] = ()
+    electrodes: tuple[ModelElectrode, ...] = ()
     ends: tuple[EndCondition, EndCondition, EndCondition, EndCondition] = ("free",) * 4
     foundations: tuple[Foundation, ...] = field(default=())
     trunk: float = np.inf

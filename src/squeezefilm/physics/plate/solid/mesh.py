@@ -18,9 +18,9 @@ from squeezefilm.core.errors import GeometryError, OutOfRangeError
 from squeezefilm.core.hard_limits import FREQUENCY
 from squeezefilm.physics.plate.elements.box_model import (
     BoxModel,
-    Electrode,
     EndCondition,
     Foundation,
+    ModelElectrode,
     kept_products,
     require_aspect,
     require_half_wave,
@@ -264,12 +264,12 @@ class _Cells:
 
     def filled(
         self, ceramics: dict[tuple[Face, int], tuple[int, int]], electrode_of: list[int]
-    ) -> tuple[si.IntArray, si.IntArray, tuple[Electrode, ...], dict[int, int]]:
+    ) -> tuple[si.IntArray, si.IntArray, tuple[ModelElectrode, ...], dict[int, int]]:
         """The medium and the number of the ceramic of each cell, the electrodes, and which of them
         a patch has; `ceramics` as `through_thickness` gives them."""
         medium, ceramic = np.full((2, self.x.elements, self.y.elements, self.z.elements), -1)
         medium[:, :, slice(*self.layers["plate"])] = 0
-        electrodes: list[Electrode] = []
+        electrodes: list[ModelElectrode] = []
         number_of: dict[int, int] = {}
         patches = self.plate.patches
         # Ceramics are numbered across first, then along: the same order in every slice.
@@ -291,7 +291,7 @@ class _Cells:
                 glued = np.arange(*self.layers[f"glue_{patch.face}"])
                 medium[np.ix_(rows, columns, glued)] = 3
             low, high = self.z.first_node[first], self.z.first_node[last]
-            electrodes.append(Electrode(low, high) if below else Electrode(high, low))
+            electrodes.append(ModelElectrode(low, high) if below else ModelElectrode(high, low))
         return medium, ceramic, tuple(electrodes), number_of
 
     def foundations(self) -> tuple[Foundation, ...]:

@@ -37,15 +37,15 @@ from squeezefilm.physics.render.opcodes import ADD, CROSS, FADE, MULTIPLY, WEIGH
 from squeezefilm.physics.render.texture.coordinate import (
     X_AXIS,
     Coordinate,
-    Finger,
+    FingerSamples,
     Place,
     require_coordinate,
     require_fade,
 )
 from squeezefilm.physics.render.texture.pattern import (
     MOST_PARTS,
-    Part,
     Pattern,
+    TexturePart,
     part,
     require_pattern,
 )
@@ -81,7 +81,7 @@ class Texture(Protocol):
         ...
 
 
-class Composable(Part):
+class Composable(TexturePart):
     """A texture with a quantity that composes with others; the base of every texture here."""
 
     __slots__ = ()
@@ -208,7 +208,7 @@ class Sum(_Several):
     def __post_init__(self) -> None:
         _require_alike(self.textures, "sum")
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         parts = [texture._values(finger) for texture in self.textures]
         return np.asarray(np.add.reduce(parts))
 
@@ -253,7 +253,7 @@ class Product(_Shaped):
     pattern: Pattern
     type: Literal["product"] = field(default="product", repr=False)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         return self.texture._values(finger) * self.pattern._values(finger)
 
     def _lower(self, assembler: Assembler) -> None:
@@ -270,7 +270,7 @@ class Scaled(_Changed):
     factor: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1000.0)]
     type: Literal["scaled"] = field(default="scaled", repr=False)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         return self.factor * self.texture._values(finger)
 
     def _lower(self, assembler: Assembler) -> None:
@@ -289,7 +289,7 @@ class Masked(_Shaped):
     pattern: Pattern
     type: Literal["masked"] = field(default="masked", repr=False)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         share = self.pattern._values(finger)
         rest = AT_REST[self.quantity]
         return (1.0 - share) * rest + share * self.texture._values(finger)
@@ -338,7 +338,7 @@ class Sequence(_Several):
         widest = float(np.min(steps)) if steps.size else 1.0
         require_fade(self.fade, widest)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         s = self.along.at(finger.x, finger.y)
         found = self.textures[0]._values(finger)
         for edge, after in zip(self.edges, self.textures[1:], strict=True):

@@ -27,7 +27,7 @@ Length = Annotated[si.Metre, TEXTURE_LENGTH]
 """A period or a width on a display, in annotations: from 1 nm to 0.5 m."""
 
 
-class Finger(NamedTuple):
+class FingerSamples(NamedTuple):
     """Place `x`, `y` (m), velocity `v` (m/s) and time `t` (s) of a finger: arrays of one shape."""
 
     x: si.FloatArray
@@ -147,7 +147,7 @@ _MOST_ARGUMENT = 1e12
 
 def finger_arguments(
     x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike
-) -> Finger:
+) -> FingerSamples:
     """Place, velocity and time of a finger as arrays of one shape.
 
     Raises `InputError` for one that is not finite or beyond 1e12 in its SI unit, where a float no
@@ -163,7 +163,7 @@ def finger_arguments(
         si.require(name, values, si.Unit(unit), at_least=-_MOST_ARGUMENT, at_most=_MOST_ARGUMENT)
     arrays = [np.asarray(one, dtype=float) for one in (x, y, v, t)]
     try:
-        return Finger(*np.broadcast_arrays(*arrays))
+        return FingerSamples(*np.broadcast_arrays(*arrays))
     except ValueError as error:
         shapes = ", ".join(str(array.shape) for array in arrays)
         raise InputError(

@@ -16,7 +16,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render import opcodes
 from squeezefilm.physics.render.opcodes import Assembler
-from squeezefilm.physics.render.texture.coordinate import Finger
+from squeezefilm.physics.render.texture.coordinate import FingerSamples
 from squeezefilm.physics.render.texture.pattern import Pattern, part
 
 _SECOND = si.Unit("s")
@@ -56,7 +56,7 @@ class SpeedGate(Pattern):
             math.inf if self.below is None else self.below,
         )
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         low, high = self._ends
         return np.where((np.abs(finger.v) > low) & (np.abs(finger.v) < high), 1.0, 0.0)
 
@@ -99,7 +99,7 @@ class Attack(Pattern):
     start: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
     type: Literal["attack"] = field(default="attack", repr=False)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         end = self.start + self.duration
         return np.clip((finger.t - self.start) / (end - self.start), 0.0, 1.0)
 
@@ -124,7 +124,7 @@ class Decay(Pattern):
     start: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
     type: Literal["decay"] = field(default="decay", repr=False)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         passed = np.maximum(finger.t - self.start, 0.0)
         return np.asarray(np.exp(-passed / self.time_constant))
 
@@ -153,7 +153,7 @@ class Periodic(Pattern):
     phase: si.Radian = 0.0
     type: Literal["periodic"] = field(default="periodic", repr=False)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         cycles = finger.t / (1.0 / self.frequency) + self.phase / (2 * math.pi)
         if self.shape == "sine":
             return 0.5 + 0.5 * np.sin(2 * math.pi * cycles)

@@ -12,7 +12,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import PIXELS
 from squeezefilm.physics.render.opcodes import IMAGE, Assembler
-from squeezefilm.physics.render.texture.coordinate import Finger, Place
+from squeezefilm.physics.render.texture.coordinate import FingerSamples, Place
 from squeezefilm.physics.render.texture.pattern import Pattern, part
 
 LARGEST_PIXEL: si.Metre = 0.1
@@ -89,7 +89,7 @@ class Image(Pattern):
         _require_pixels(array.size)
         return cls(tuple(tuple(row) for row in array.tolist()), pixel, left, bottom, outside)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         rows, columns = self._grid.shape
         u = (finger.x - self.left) / self.pixel
         w = (finger.y - self.bottom) / self.pixel

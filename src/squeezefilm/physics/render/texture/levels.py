@@ -12,7 +12,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.opcodes import BETWEEN, Assembler
 from squeezefilm.physics.render.texture.composition import Composable, Quantity
-from squeezefilm.physics.render.texture.coordinate import METRE, X_AXIS, Finger
+from squeezefilm.physics.render.texture.coordinate import METRE, X_AXIS, FingerSamples
 from squeezefilm.physics.render.texture.pattern import Pattern, part, require_pattern
 from squeezefilm.physics.render.texture.shapes import Constant
 
@@ -55,7 +55,7 @@ class _Level(Composable):
         along_x = getattr(self.pattern, "along", None) == X_AXIS
         return getattr(self.pattern, "spatial_period", None) if along_x else None
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         share = self.pattern._values(finger)
         # Weighted so, rounding cannot carry the value past either end.
         return np.asarray((1.0 - share) * self.low + share * self.high)

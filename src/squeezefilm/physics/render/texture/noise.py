@@ -23,7 +23,7 @@ from squeezefilm.physics.render.opcodes import ADD, NOISE, NOISE_FIELD, WEIGH, A
 from squeezefilm.physics.render.texture.coordinate import (
     X_AXIS,
     Coordinate,
-    Finger,
+    FingerSamples,
     require_coordinate,
 )
 from squeezefilm.physics.render.texture.pattern import Pattern, part
@@ -99,7 +99,7 @@ class _Added(Pattern):
     octaves: Octaves
     persistence: Persistence
 
-    def _octave(self, finger: Finger, period: si.Metre, state: int) -> si.FloatArray:
+    def _octave(self, finger: FingerSamples, period: si.Metre, state: int) -> si.FloatArray:
         raise NotImplementedError
 
     def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
@@ -112,7 +112,7 @@ class _Added(Pattern):
         total = sum(weights)
         return [(finest * 2.0**k, mixed(seed + k), weights[k] / total) for k in range(count)]
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         total = np.zeros(finger.x.shape)
         for period, state, weight in self._weighed():
             total = total + weight * self._octave(finger, period, state)
@@ -152,7 +152,7 @@ class Noise(_Added):
     def __post_init__(self) -> None:
         require_coordinate(self.along)
 
-    def _octave(self, finger: Finger, period: si.Metre, state: int) -> si.FloatArray:
+    def _octave(self, finger: FingerSamples, period: si.Metre, state: int) -> si.FloatArray:
         return line_noise(self.along.at(finger.x, finger.y) / period, state)
 
     def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
@@ -173,7 +173,7 @@ class NoiseField(_Added):
     persistence: Persistence = 0.5
     type: Literal["noise_field"] = field(default="noise_field", repr=False)
 
-    def _octave(self, finger: Finger, period: si.Metre, state: int) -> si.FloatArray:
+    def _octave(self, finger: FingerSamples, period: si.Metre, state: int) -> si.FloatArray:
         return field_noise(finger.x / period, finger.y / period, state)
 
     def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:

@@ -30,7 +30,7 @@ from squeezefilm.physics.render.opcodes import (
     MULTIPLY,
     Assembler,
 )
-from squeezefilm.physics.render.texture.coordinate import Finger, finger_arguments
+from squeezefilm.physics.render.texture.coordinate import FingerSamples, finger_arguments
 
 MOST_PARTS = 64
 """Parts that one sum, product, sequence or lattice operation may have."""
@@ -46,7 +46,7 @@ def part(cls: type[_T]) -> type[_T]:
     return reads_text(si.checked_numbers(dataclass(frozen=True, slots=True)(cls)))
 
 
-class Part:
+class TexturePart:
     """Part with a value wherever a finger is: a pattern or a texture.
 
     Called with the finger's place `x`, `y` (m), its velocity `v` along its path (m/s; negative on
@@ -62,14 +62,14 @@ class Part:
         """The values at these places, velocities and times (m for an amplitude, else 1)."""
         return np.array(self._values(finger_arguments(x, y, v, t)))
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         raise NotImplementedError
 
     def _lower(self, assembler: Assembler) -> None:
         raise NotImplementedError
 
 
-class Pattern(Part):
+class Pattern(TexturePart):
     """A dimensionless shape, 0 to 1; the base of every generator and composite."""
 
     __slots__ = ()
@@ -132,7 +132,7 @@ class Complement(Pattern):
     def __post_init__(self) -> None:
         require_pattern("pattern", self.pattern)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         return 1.0 - self.pattern._values(finger)
 
     def _lower(self, assembler: Assembler) -> None:
@@ -157,7 +157,7 @@ class _Joined:
         for pattern in self.patterns:
             require_pattern("patterns", pattern)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         parts = [pattern._values(finger) for pattern in self.patterns]
         return np.asarray(self._operation.reduce(parts))
 
@@ -221,11 +221,11 @@ class SpeedScaled(Pattern):
         unit = si.Unit("m/s")
         si.require("fastest", self.fastest, unit, at_least=self.slowest, at_most=10.0)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         x, y, v, t = finger
         low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed
         factor = np.clip(np.abs(v) / self.reference_speed, low, high)
-        return self.pattern._values(Finger(x / factor, y / factor, v, t))
+        return self.pattern._values(FingerSamples(x / factor, y / factor, v, t))
 
     def _lower(self, assembler: Assembler) -> None:
         low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed

@@ -27,7 +27,7 @@ from squeezefilm.physics.render.texture.coordinate import (
     METRE,
     X_AXIS,
     Coordinate,
-    Finger,
+    FingerSamples,
     FromPoint,
     Length,
     Place,
@@ -47,7 +47,7 @@ class Constant(Pattern):
     share: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 1.0
     type: Literal["constant"] = field(default="constant", repr=False)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         return np.full(finger.x.shape, float(self.share))
 
     def _lower(self, assembler: Assembler) -> None:
@@ -63,7 +63,7 @@ class _Along(Pattern):
     def __post_init__(self) -> None:
         require_coordinate(self.along)
 
-    def _place(self, finger: Finger) -> si.FloatArray:
+    def _place(self, finger: FingerSamples) -> si.FloatArray:
         return self.along.at(finger.x, finger.y)
 
 
@@ -95,7 +95,7 @@ class SquareWave(_Along):
     along: Coordinate = X_AXIS
     type: Literal["square_wave"] = field(default="square_wave", repr=False)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         cycles = self._place(finger) / self.spatial_period + self.phase / (2 * math.pi)
         return np.where(cycles - np.floor(cycles) < self.duty, 1.0, 0.0)
 
@@ -116,7 +116,7 @@ class SineWave(_Along):
     along: Coordinate = X_AXIS
     type: Literal["sine_wave"] = field(default="sine_wave", repr=False)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         cycles = self._place(finger) / self.spatial_period + self.phase / (2 * math.pi)
         return 0.5 + 0.5 * np.sin(2 * math.pi * cycles)
 
@@ -145,7 +145,7 @@ class Pulse(_Along):
     along: Coordinate = X_AXIS
     type: Literal["pulse"] = field(default="pulse", repr=False)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         s = self._place(finger)
         if self.shape == "gaussian":
             return np.asarray(np.exp(-0.5 * ((s - self.centre) / (self.width / _FULL_WIDTH)) ** 2))
@@ -188,7 +188,7 @@ class Ramp(_Along):
                 quantity="end",
             )
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         done = np.clip((self._place(finger) - self.start) / (self.end - self.start), 0.0, 1.0)
         return done if self.profile == "linear" else done * done * (3.0 - 2.0 * done)
 
@@ -239,7 +239,7 @@ class Band(_Along):
         """1 within `radius` (m) of the point (`x`, `y`) (m)."""
         return cls(-radius, radius, fade, FromPoint(x, y))
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         s = self._place(finger)
         if self.fade == 0.0:
             return np.where((s >= self.start) & (s < self.end), 1.0, 0.0)
@@ -283,7 +283,7 @@ class Bump(_Along):
     along: Coordinate = X_AXIS
     type: Literal["bump"] = field(default="bump", repr=False)
 
-    def _values(self, finger: Finger) -> si.FloatArray:
+    def _values(self, finger: FingerSamples) -> si.FloatArray:
         d = (self._place(finger) - self.centre) / self.width
         way = np.where(finger.v < 0.0, -self._sign, self._sign)
         # Held within 0 to 1: at d = 1 rounding reaches past it.

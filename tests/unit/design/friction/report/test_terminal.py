@@ -21,7 +21,7 @@ from squeezefilm.design.friction.report.terminal import show_friction
 from squeezefilm.physics.chain.touch import Touch
 from squeezefilm.physics.uncertainty.draws import Refusals
 from squeezefilm.physics.uncertainty.influences import GroupInfluence, Influence
-from squeezefilm.physics.uncertainty.model_choices import Choice, Option
+from squeezefilm.physics.uncertainty.model_choices import LawChoice, LawOption
 from squeezefilm.physics.uncertainty.parameters import Parameter
 from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
@@ -68,9 +68,9 @@ def influence(number: int, origin: str, first: float, total: float, error: float
     return Influence(parameter, first, 0.0, total, error)
 
 
-SLIP = Choice(
+SLIP = LawChoice(
     "gas.slip",
-    (Option("first", 0.25, "slips"), Option("veijola", 0.75, "a fit")),
+    (LawOption("first", 0.25, "slips"), LawOption("veijola", 0.75, "a fit")),
     "",
 )
 SURE = UncertainFriction(

@@ -11,7 +11,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from squeezefilm.physics.contact.sliding.kernel import Drive, Rows, Track, slide_march
-from squeezefilm.physics.contact.sliding.skin_motion import Skin
+from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin
 
 MASS, STIFFNESS = 1.6e-4, 1000.0
 W = math.sqrt(STIFFNESS / MASS)
@@ -54,7 +54,7 @@ def march(
     limits = np.broadcast_to(np.asarray(limit, dtype=float), t.shape).copy()
     done = slide_march(
         Drive(bone, speeds[:-1].copy(), speeds[1:].copy(), limits, dt, substeps),
-        Skin(MASS, damping, STIFFNESS),
+        LumpedSkin(MASS, damping, STIFFNESS),
         ALIKE,
         static_ratio,
         limits.max(),

@@ -10,7 +10,7 @@ from scipy.linalg import expm
 
 from squeezefilm.physics.contact.sliding.skin_motion import (
     Forces,
-    Skin,
+    LumpedSkin,
     first_rise,
     slide_by,
     transition,
@@ -29,7 +29,7 @@ def test_the_free_skin_moves_as_its_matrix_says(ratio: float) -> None:
     scale = np.array([[1.0, W], [1 / W, 1.0]])
     for phase in (0.004, 0.1, 1.0, 4.0):
         exact = expm(matrix * phase / W)
-        moved = np.array(transition(phase / W, Skin(MASS, damping, STIFFNESS))).reshape(2, 2)
+        moved = np.array(transition(phase / W, LumpedSkin(MASS, damping, STIFFNESS))).reshape(2, 2)
         assert moved * scale == pytest.approx(exact * scale, rel=1e-11, abs=1e-13)
 
 
@@ -41,7 +41,7 @@ def test_near_critical_damping_the_series_meets_the_functions(sign: int) -> None
         fade = math.exp(-decay)
         r = math.sqrt(z)
         even, odd = (math.cosh(r), math.sinh(r) / r) if sign > 0 else (math.cos(r), math.sin(r) / r)
-        found = transition(1.0, Skin(1.0, 2 * decay, 1.0))
+        found = transition(1.0, LumpedSkin(1.0, 2 * decay, 1.0))
         expected = (even + decay * odd, odd, -odd, even - decay * odd)
         assert found == pytest.approx([fade * e for e in expected], rel=1e-12, abs=1e-12)
 
@@ -82,7 +82,7 @@ def test_like_numbers_are_not_subtracted() -> None:
 
 def test_sliding_obeys_newton_against_a_rising_friction() -> None:
     pull, force, slope, damping = np.array([0.7, 300.0, -2e4]), 0.4, 150.0, 0.3
-    law = (Forces(pull, force, slope), Skin(MASS, damping, STIFFNESS))
+    law = (Forces(pull, force, slope), LumpedSkin(MASS, damping, STIFFNESS))
     x0, v0 = 2e-4, 0.05
     start = slide_by(transition(0.0, law[1]), 0.0, x0, v0, *law)
     assert start[:2] == pytest.approx((x0, v0))

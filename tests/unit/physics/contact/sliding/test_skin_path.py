@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from squeezefilm.physics.contact.sliding.skin_motion import Skin
+from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin
 from squeezefilm.physics.contact.sliding.skin_path import (
     TERMS,
+    BonePull,
     Friction,
-    Path,
-    Pull,
+    SkinPath,
     passes,
     path_over,
     speed_on,
@@ -21,15 +21,15 @@ from squeezefilm.physics.contact.sliding.skin_path import (
     works_on,
 )
 
-SKIN = Skin(1.5e-4, 1.0, 1000.0)
-PULL = Pull(0.4, 60.0, -9e4, 0.12, 15.0)
+SKIN = LumpedSkin(1.5e-4, 1.0, 1000.0)
+PULL = BonePull(0.4, 60.0, -9e4, 0.12, 15.0)
 SPAN = 0.25 * math.sqrt(SKIN.mass / SKIN.stiffness)
 RISES = [-0.3, 0.0, 0.3, 0.6, 3.0, 1e2, 1e4]
 
 
 def along(
     rise: float, speed: float = 0.05, rate: float = -300.0
-) -> tuple[Path, Friction, np.ndarray]:
+) -> tuple[SkinPath, Friction, np.ndarray]:
     friction, series = Friction(0.3, rise, rate), np.empty(TERMS)
     return path_over(SPAN, speed, PULL, friction, SKIN, series), friction, series
 
@@ -91,7 +91,7 @@ def test_works_are_the_integrals_of_force_and_speed(rise: float, part: float) ->
     assert found == pytest.approx(expected, abs=1e-8 * max(map(abs, expected)))
 
 
-def found_pass(path: Path, series: np.ndarray, level: float, side: float) -> float:
+def found_pass(path: SkinPath, series: np.ndarray, level: float, side: float) -> float:
     ends = (speed_on(path, 0.0, series)[1], *speed_on(path, SPAN, series))
     return float(passes(path, SPAN, level, side, ends, series))
 
@@ -136,7 +136,7 @@ def test_a_slip_from_rest_goes_on_ends_or_never_begins() -> None:
         path = path_over(
             SPAN,
             0.0,
-            Pull(0.3 + excess, 0.0, 0.0, 0.0, 0.0),
+            BonePull(0.3 + excess, 0.0, 0.0, 0.0, 0.0),
             Friction(0.3, 0.0, rate),
             SKIN,
             series,

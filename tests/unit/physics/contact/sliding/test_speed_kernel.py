@@ -20,8 +20,8 @@ from squeezefilm.physics.contact.sliding.kernel import (
     works_of_rest,
 )
 from squeezefilm.physics.contact.sliding.march import slide
-from squeezefilm.physics.contact.sliding.skin_motion import Skin
-from squeezefilm.physics.contact.sliding.skin_path import Pull
+from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin
+from squeezefilm.physics.contact.sliding.skin_path import BonePull
 
 SPEED = np.array([0.0, 0.1, 0.5])
 ROWS = np.array([[0.2, 0.4, 0.3], [0.0, 0.9, 0.1]])
@@ -54,7 +54,7 @@ def test_a_line_is_followed_a_little_beyond_its_knots() -> None:
 
 
 def test_works_of_rest_are_exact_for_a_parabola_of_force() -> None:
-    f, pull, c, part = 0.3, Pull(9.0, 40.0, -300.0, 0.05, 2.0), 0.7, 0.02
+    f, pull, c, part = 0.3, BonePull(9.0, 40.0, -300.0, 0.05, 2.0), 0.7, 0.02
     t = np.polynomial.Polynomial([0, 1])
     speed = pull.bone_speed + pull.bone_rate * t
     force = f + pull.rate * t + pull.bend * t**2
@@ -63,7 +63,7 @@ def test_works_of_rest_are_exact_for_a_parabola_of_force() -> None:
 
 
 def test_too_many_slips_in_one_sample_are_given_up() -> None:
-    skin = Skin(1.6e-4, 0.0, 1000.0)
+    skin = LumpedSkin(1.6e-4, 0.0, 1000.0)
     period = 2 * math.pi * math.sqrt(skin.mass / skin.stiffness)
 
     def march(swings: float) -> int:

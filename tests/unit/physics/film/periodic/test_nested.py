@@ -16,7 +16,7 @@ from squeezefilm.physics.film.periodic.nested import (
     refine,
     steadied,
 )
-from squeezefilm.physics.film.periodic.resolution import Resolution
+from squeezefilm.physics.film.periodic.resolution import FilmResolution
 from squeezefilm.physics.film.periodic.uniform import (
     CHECK,
     COARSE,
@@ -72,7 +72,7 @@ def test_no_error_is_small_by_accident() -> None:
 KIND = Kind(10.0, 0.5, 1, 0, UNIFORM_MARGINS, 1.0, 10.0)
 
 
-def film_of(resolution: Resolution, first: float, *, levels: bool = True) -> Nested:
+def film_of(resolution: FilmResolution, first: float, *, levels: bool = True) -> Nested:
     """A film without error in its mean, of which the first harmonic is off by `first`/cells²."""
     cells, row = resolution.cells, np.zeros(COLUMNS)
     row[[OVER, COARSE, MIDDLE, FINE, CHECK]] = 0.1
@@ -95,7 +95,7 @@ def film_of(resolution: Resolution, first: float, *, levels: bool = True) -> Nes
 def test_a_harmonic_alone_is_reason_enough_to_refine() -> None:
     asked: list[int] = []
 
-    def solve(resolution: Resolution) -> Nested:
+    def solve(resolution: FilmResolution) -> Nested:
         asked.append(resolution.cells)
         return film_of(resolution, 1.0)
 
@@ -123,7 +123,7 @@ def test_what_never_converges_stops_and_says_so() -> None:
 def test_where_rounding_is_more_than_what_is_allowed_one_solve_is_enough() -> None:
     asked: list[int] = []
 
-    def solve(resolution: Resolution) -> Nested:
+    def solve(resolution: FilmResolution) -> Nested:
         asked.append(resolution.cells)
         film = film_of(resolution, 0.0)
         film.row[[OVER, COARSE, MIDDLE, FINE, CHECK]] = 1e-12

@@ -10,7 +10,7 @@ import pytest
 
 from squeezefilm.core.errors import ConvergenceError
 from squeezefilm.physics.film.closed import relative_damping, relative_stiffness
-from squeezefilm.physics.film.gas import Gas, slip_law
+from squeezefilm.physics.film.gas import CompiledGas, slip_law
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.profile import flexural_profile, profile_from_function
@@ -23,7 +23,7 @@ from squeezefilm.physics.film.periodic.small import (
     small_pressure,
     small_vibration,
 )
-from squeezefilm.physics.film.periodic.solution import NO_FIELD, Asked, Field, Found
+from squeezefilm.physics.film.periodic.solution import NO_FIELD, Field, FilmQuestion, Found
 
 
 @pytest.mark.parametrize("shape", ["strip", "disc"])
@@ -86,8 +86,8 @@ def test_the_pressure_in_closed_form_is_that_of_the_force(shape: str) -> None:
 
 @pytest.mark.parametrize("shape", ["strip", "disc"])
 def test_the_field_of_a_film_that_hardly_moves_has_its_force(shape: str) -> None:
-    asked = Asked(shape, 20.0, 1e-3, 1.2, 0.0, "first", 1e-2, None)
-    found, field = small_film(asked, Gas(1.2, 0.0, slip_law("first", 0.0)))
+    asked = FilmQuestion(shape, 20.0, 1e-3, 1.2, 0.0, "first", 1e-2, None)
+    found, field = small_film(asked, CompiledGas(1.2, 0.0, slip_law("first", 0.0)))
     assert found.met
     x, T = field.position, field.time
     assert pytest.approx(2 * np.pi * np.arange(T.size) / T.size) == T

@@ -8,7 +8,7 @@ import pytest
 from squeezefilm.core.errors import ConvergenceError
 from squeezefilm.physics.film.periodic.solution import (
     NO_FIELD,
-    Asked,
+    FilmQuestion,
     FilmSolution,
     Found,
     assembled,
@@ -38,7 +38,7 @@ def put_together(*, met: bool, later: bool = False, closed: bool = False) -> Fil
     harmonics = np.ones((2, 3), dtype=complex)
     harmonics[1] = 0.5
     eps = -0.5 if later else 0.5
-    asked = Asked("strip", 10.0, eps, 1.0, 0.0, "first", 1e-3, None)
+    asked = FilmQuestion("strip", 10.0, eps, 1.0, 0.0, "first", 1e-3, None)
     force = (0.3 + 0.1j, 1e-9) if closed else None
     found = Found(0.07, 1e-5, met, 7, 1e-9, 2, TIMES, HARMONICS, ERRORS, force)
     field = extrapolated_field(levels, x, harmonics, 1.0, mirrored=True)
@@ -75,7 +75,7 @@ def test_a_closed_form_says_so_and_gives_its_own_force() -> None:
 
 
 def test_the_load_alone_has_neither_field_nor_harmonics() -> None:
-    asked = Asked("strip", 10.0, 0.5, 1.0, 0.0, "first", 1e-3, None)
+    asked = FilmQuestion("strip", 10.0, 0.5, 1.0, 0.0, "first", 1e-3, None)
     unknown = np.full(9, np.nan)
     found = Found(0.07, 1e-5, True, 7, 1e-9, 2, TIMES, unknown.astype(complex), unknown)
     solution = assembled(asked, found, NO_FIELD, 0.5)

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.physics.film.gas import Aim, Gas
-from squeezefilm.physics.film.periodic.resolution import Resolution, collocation_times
+from squeezefilm.physics.film.gas import Aim, CompiledGas
+from squeezefilm.physics.film.periodic.resolution import FilmResolution, collocation_times
 from squeezefilm.physics.film.periodic.uniform import (
     CHECK,
     COARSE,
@@ -86,15 +86,15 @@ def solved(
     slope = 0.5 * (1 + stretch - 3 * stretch * xi**2)
     even, odd = (np.ascontiguousarray(np.array(part) + 0.0 * x) for part in gap(x))
     out = np.full(COLUMNS, np.nan)
-    resolution = Resolution(cells, *(collocation_times(one) for one in times))
+    resolution = FilmResolution(cells, *(collocation_times(one) for one in times))
     ntp = resolution.times.row
     first = cells // 4 if closed else cells // 4 - 1
     check = first * resolution.check.row
     others = sum(cells // part if closed else cells // part - 1 for part in (4, 2, 1))
     keep = np.full(check + others * ntp, np.nan)
     solve_varying.py_func(
-        sigma, Gas(n, kn, law), Profile(slope, even, odd, 0.5, closed), resolution, (60, 70),
-        Aim(tolerance, most), out, keep,
+        sigma, CompiledGas(n, kn, law), Profile(slope, even, odd, 0.5, closed), resolution,
+        (60, 70), Aim(tolerance, most), out, keep,
     )  # fmt: skip
     if most > 1 and np.isfinite(out[OVER]):
         assert np.all(np.isfinite(keep))

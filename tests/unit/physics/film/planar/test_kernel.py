@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.physics.film.gas import Gas
+from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.mobility import mobility
 from squeezefilm.physics.film.planar.balance import (
     Balances,
@@ -40,7 +40,7 @@ LAWS = [(1.0, 0.0, 0), (1.4, 0.0, 0), (1.2, 0.1, 2)]
 
 def assembled(m: np.ndarray, law: tuple[float, float, int]) -> Balances:
     out = Balances(*(np.full((size, M), np.nan) for size in (NODES, NODES, 4, 4, 6, 6)))
-    assemble(m, GAPS, FACES, STORAGE, Gas(*law), out)
+    assemble(m, GAPS, FACES, STORAGE, CompiledGas(*law), out)
     return out
 
 

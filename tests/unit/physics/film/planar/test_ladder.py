@@ -10,7 +10,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import PLANAR_MEMORY
-from squeezefilm.physics.film.gas import Gas
+from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.planar import ladder as module
 from squeezefilm.physics.film.planar.balance import Balance, Balancer, Film
 from squeezefilm.physics.film.planar.gap import GapFunction, PlanarGap
@@ -37,7 +37,7 @@ def ladder(
     quarter: bool = True,
     cells: tuple[int, int] | None = None,
 ) -> Ladder:
-    return Ladder(shape, aspect, Film(gap, sigma, Gas(1.0, 0.0, 0)), quarter, cells)
+    return Ladder(shape, aspect, Film(gap, sigma, CompiledGas(1.0, 0.0, 0)), quarter, cells)
 
 
 def sides(made: Ladder, rung: int = 2) -> tuple[int, int]:
@@ -260,7 +260,7 @@ def test_too_few_harmonics_and_a_failed_newton_end_the_climb(
 
 @pytest.fixture(scope="module")
 def state() -> Balance:
-    film = Film(HALF, 10.0, Gas(1.0, 0.0, 0))
+    film = Film(HALF, 10.0, CompiledGas(1.0, 0.0, 0))
     return Balancer(film, ladder().grid(2), 5).solve(None, 1e-9)
 
 
@@ -322,7 +322,7 @@ def test_a_line_of_cells_stretched_stays_a_line_between_its_nodes(axis: int, siz
 
 def test_gas_moves_to_another_grid_with_its_pressure(state: Balance) -> None:
     gap = PlanarGap(0.4, 2.0)
-    film = Film(gap, 10.0, Gas(1.0, 0.0, 0))
+    film = Film(gap, 10.0, CompiledGas(1.0, 0.0, 0))
     T = 2 * np.pi * np.arange(5) / 5
 
     def gas(grid: Any) -> np.ndarray:
@@ -348,7 +348,7 @@ def test_newton_that_fails_is_led_there_through_smaller_motions(
 
     monkeypatch.setattr(module, "Balancer", Watched)
     gap = PlanarGap(0.5, 2.0, 0.1, 3.0)
-    film, grid = Film(gap, 10.0, Gas(1.4, 0.05, 1)), ladder(gap).grid(2)
+    film, grid = Film(gap, 10.0, CompiledGas(1.4, 0.05, 1)), ladder(gap).grid(2)
     nothing = np.full((grid.X.size, 7), np.nan)
     found = _solve_or_continue(film, grid, 7, nothing, 1e-9)
     mean, swing = 1 + 0.1 * np.cos(0.6), 0.5 * np.cos(0.4)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import GeometryError, InputError
-from squeezefilm.physics.plate.elements.box_model import BoxModel, Electrode, Medium
+from squeezefilm.physics.plate.elements.box_model import BoxModel, Medium, ModelElectrode
 from squeezefilm.physics.plate.elements.lobatto import LineMesh
 
 STEEL = Medium("steel", np.eye(6) * 1e11, 7800.0)
@@ -35,6 +35,6 @@ def test_what_is_not_there_is_not_used() -> None:
     with pytest.raises(InputError, match="not in media"):
         BoxModel(MESH, MESH, MESH, (STEEL,), cells(1), cells(-1))
     with pytest.raises(GeometryError, match="no ceramic under it"):
-        BoxModel(MESH, MESH, MESH, (STEEL,), cells(0), cells(-1), (Electrode(2, 0),))
+        BoxModel(MESH, MESH, MESH, (STEEL,), cells(0), cells(-1), (ModelElectrode(2, 0),))
     with pytest.raises(GeometryError, match="not piezoelectric"):
-        BoxModel(MESH, MESH, MESH, (STEEL,), cells(0), cells(0), (Electrode(2, 0),))
+        BoxModel(MESH, MESH, MESH, (STEEL,), cells(0), cells(0), (ModelElectrode(2, 0),))

@@ -11,10 +11,10 @@ import pytest
 from squeezefilm.physics.plate.elements.box_model import (
     POTENTIAL_UNIT,
     BoxModel,
-    Electrode,
     EndCondition,
     Foundation,
     Medium,
+    ModelElectrode,
 )
 from squeezefilm.physics.plate.elements.cross_section import (
     CrossSection,
@@ -46,7 +46,9 @@ MEDIA = (CASE, CERAMIC)
 MEDIUM = np.array([[[0, 1], [0, 1]], [[0, -1], [-1, -1]]])
 NUMBER = np.array([[[-1, 0], [-1, 1]], [[-1, -1], [-1, -1]]])
 TOP, BOND = 5, 2
-MODEL = BoxModel(X, Y, Z, MEDIA, MEDIUM, NUMBER, (Electrode(TOP, BOND), Electrode(TOP, BOND)))
+MODEL = BoxModel(
+    X, Y, Z, MEDIA, MEDIUM, NUMBER, (ModelElectrode(TOP, BOND), ModelElectrode(TOP, BOND))
+)
 
 
 def shapes(mesh: LineMesh, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -170,7 +172,7 @@ def plain(ends: tuple[EndCondition, ...] = ("free",) * 4, **more: Any) -> BoxMod
     line = LineMesh((0.0, 1.0, 2.0), (2, 2)), LineMesh((0.0, 0.5), (2,))
     return BoxModel(
         X, *line, (CERAMIC,), np.zeros((2, 2, 1), int), np.zeros((2, 2, 1), int),
-        (Electrode(2, 0),), ends, **more,
+        (ModelElectrode(2, 0),), ends, **more,
     )  # fmt: skip
 
 
