@@ -70,8 +70,8 @@ class RunPercept:
     @property
     def clearest_period(self) -> si.Metre:
         """Period of the most evident rhythm (m); NaN where there is none."""
-        found = self.percept.candidates
-        return float(found.period[0]) if np.isfinite(found.d_prime[0]) else math.nan
+        rhythms = self.percept.candidates
+        return float(rhythms.period[0]) if np.isfinite(rhythms.d_prime[0]) else math.nan
 
     @property
     def clearest_d_prime(self) -> si.Dimensionless:
@@ -124,7 +124,7 @@ def path_percept(
         InputError: no path, a path that holds no run of 4 mm, or what `render_texture` refuses.
     """
     run = apparatus or Apparatus()
-    played, found = [], []
+    played, runs = [], []
     for path in paths:
         one = render_texture(
             with_finger(display, finger),
@@ -139,20 +139,20 @@ def path_percept(
             seed=_SEED,
         )
         played.append(one)
-        found += _runs_of(one, path)
-    if not found:
+        runs += _runs_of(one, path)
+    if not runs:
         raise InputError(
             "the path has no straight run of 4 mm or more, along which a rhythm could be felt; "
             "check its unit (x_m in metres), or give a longer one"
         )
-    along, across = ([one for one in found if one.along_x is which] for which in (True, False))
+    along, across = ([one for one in runs if one.along_x is which] for which in (True, False))
     return PathPercept(_felt(observer, along), _felt(observer, across), tuple(played))
 
 
 def _runs_of(played: RenderAnalysis, path: FingerPath) -> list[_OneRun]:
     force, motion = played.force, played.finger
     speed = np.gradient(motion.way, force.time_step)
-    found = []
+    runs = []
     for run in straight_runs(path):
         begin, end = float(path.time[run.begin]), float(path.time[run.end])
         rate = 1.0 / force.time_step
@@ -175,7 +175,7 @@ def _runs_of(played: RenderAnalysis, path: FingerPath) -> list[_OneRun]:
         ) -> si.FloatArray:
             return np.asarray(np.interp(even, here, sign * values[rows][rising]))
 
-        found.append(
+        runs.append(
             _OneRun(
                 along_x=run.along_x,
                 # The skin trails the bone.
@@ -187,7 +187,7 @@ def _runs_of(played: RenderAnalysis, path: FingerPath) -> list[_OneRun]:
                 duration=end - begin,
             )
         )
-    return found
+    return runs
 
 
 def _felt(observer: Observer, runs: list[_OneRun]) -> RunPercept | None:

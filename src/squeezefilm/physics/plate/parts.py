@@ -118,7 +118,7 @@ def assembly_mass(actuator: Actuator) -> si.Kilogram:
 def _of_plate(plate: RectangularPlate) -> tuple[Part, ...]:
     base = Rectangle(0.0, 0.0, plate.length, plate.width)
     body = plate.substrate
-    found = [Part("substrate", 0, body.name, body.density, base, 0.0, plate.thickness)]
+    bodies = [Part("substrate", 0, body.name, body.density, base, 0.0, plate.thickness)]
     for number, patch in enumerate(plate.patches, 1):
         where = Rectangle(patch.x, patch.y, patch.length, patch.width)
         up = patch.face == "top"
@@ -130,14 +130,14 @@ def _of_plate(plate: RectangularPlate) -> tuple[Part, ...]:
         for kind, material, density, thick in layers:
             far = face + thick if up else face - thick
             ends = (min(face, far), max(face, far))
-            found.append(Part(kind, number, material, density, where, *ends))  # type: ignore[arg-type] # a PartKind
+            bodies.append(Part(kind, number, material, density, where, *ends))  # type: ignore[arg-type] # a PartKind
             face = far
-    return tuple(found)
+    return tuple(bodies)
 
 
 def _of_disc(disc: DiscPlate) -> tuple[Part, ...]:
     body, half = disc.substrate, disc.inner_diameter / 2
-    found = [
+    bodies = [
         Part(
             "substrate",
             0,
@@ -152,11 +152,11 @@ def _of_disc(disc: DiscPlate) -> tuple[Part, ...]:
     low = 0.0
     if disc.glue is not None:
         low = -disc.glue.thickness
-        found.append(Part("glue", 1, disc.glue.name, disc.glue.density, under, low, 0.0))
+        bodies.append(Part("glue", 1, disc.glue.name, disc.glue.density, under, low, 0.0))
     ceramic = disc.ceramic
     bottom = low - disc.ceramic_thickness
-    found.append(Part("ceramic", 1, ceramic.name, ceramic.density, under, bottom, low))
-    return tuple(found)
+    bodies.append(Part("ceramic", 1, ceramic.name, ceramic.density, under, bottom, low))
+    return tuple(bodies)
 
 
 _FITTED = "thickness fitted to the frequency; ceramic, metal and height of the teeth are assumed"
@@ -172,11 +172,11 @@ def _of_stator(stator: AnnularStator) -> tuple[Part, ...]:
     )
     metal, ceramic = (a.metal.name, a.metal.density), (a.ceramic.name, a.ceramic.density)
     top = fit.ring_thickness
-    found = [Part("substrate", 0, *metal, ring, 0.0, top, _FITTED)]
+    bodies = [Part("substrate", 0, *metal, ring, 0.0, top, _FITTED)]
     for start, end in teeth_of(stator):
         tooth = Sector(ring.inner_radius, ring.outer_radius, start, end)
-        found.append(Part("substrate", 0, *metal, tooth, top, top + a.tooth_height, _FITTED))
-    return (*found, Part("ceramic", 1, *ceramic, ring, -a.ceramic_thickness, 0.0, _FITTED))
+        bodies.append(Part("substrate", 0, *metal, tooth, top, top + a.tooth_height, _FITTED))
+    return (*bodies, Part("ceramic", 1, *ceramic, ring, -a.ceramic_thickness, 0.0, _FITTED))
 
 
 def teeth_of(stator: AnnularStator) -> tuple[tuple[si.Radian, si.Radian], ...]:

@@ -171,11 +171,11 @@ def implausibilities(display: Display, voltage: si.Volt | None = None) -> tuple[
         if (of := f"{owner}.{path[-1]}") in known
     ]
     found = _outside(display, single)
-    if not any(one.refused for one in found.values()):
-        for key, one in _outside(display, ratios(display, voltage)).items():
-            if key not in found or (one.refused and not found[key].refused):
-                found[key] = one
-    return tuple(sorted(found.values(), key=lambda one: not one.refused))
+    if not any(doubt.refused for doubt in found.values()):
+        for key, doubt in _outside(display, ratios(display, voltage)).items():
+            if key not in found or (doubt.refused and not found[key].refused):
+                found[key] = doubt
+    return tuple(sorted(found.values(), key=lambda doubt: not doubt.refused))
 
 
 def _outside(display: Display, values: Iterable[Ratio]) -> dict[str, Implausible]:
@@ -185,9 +185,9 @@ def _outside(display: Display, values: Iterable[Ratio]) -> dict[str, Implausible
         bound = bounds()[value.of]
         if bound.is_usual(value.value):
             continue
-        one = _said(display, bound, value)
-        if one.key not in found or (one.refused and not found[one.key].refused):
-            found[one.key] = one
+        doubt = _said(display, bound, value)
+        if doubt.key not in found or (doubt.refused and not found[doubt.key].refused):
+            found[doubt.key] = doubt
     return found
 
 
@@ -214,18 +214,18 @@ def require_plausible(
     if _CHECKED.get():
         return ()
     found = implausibilities(display, voltage)
-    wrong = [one for one in found if one.refused]
+    wrong = [doubt for doubt in found if doubt.refused]
     if len(wrong) == 1:
         line = locate(text, wrong[0].path) if text else None
         raise ConfigError(wrong[0].text, file=file, line=line, key=wrong[0].key)
     if wrong:
-        lines = [f"  {one.sentence}{_line(text, one)}" for one in wrong]
+        lines = [f"  {doubt.sentence}{_line(text, doubt)}" for doubt in wrong]
         raise ConfigError(f"{len(wrong)} values cannot be right:\n" + "\n".join(lines), file=file)
-    return tuple(one.sentence for one in found)
+    return tuple(doubt.sentence for doubt in found)
 
 
-def _line(text: str, one: Implausible) -> str:
-    line = locate(text, one.path) if text else None
+def _line(text: str, doubt: Implausible) -> str:
+    line = locate(text, doubt.path) if text else None
     return "" if line is None else f" (line {line})"
 
 

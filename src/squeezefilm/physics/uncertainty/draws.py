@@ -186,7 +186,7 @@ class Mixture:
         )
         # Laws of contact are compared at what a plateau carries as described.
         self._pressure = display.finger.plateau_pressure()
-        self.paths = tuple(one.path for one in self.inputs)
+        self.paths = tuple(input_.path for input_ in self.inputs)
         self._known: dict[bytes, Outcome] = {}
         self._parts: dict[tuple[str, frozenset[tuple[str, float]]], Any] = {}
 
@@ -235,8 +235,8 @@ class Mixture:
         self, points: si.DimensionlessArray
     ) -> Iterator[tuple[dict[str, float], dict[str, str]]]:
         """Values by path and options by path of points of the unit cube, shape (n, inputs)."""
-        columns = [one.drawn(points[:, k]) for k, one in enumerate(self.inputs)]
-        numbers = [isinstance(one, Parameter) for one in self.inputs]
+        columns = [input_.drawn(points[:, k]) for k, input_ in enumerate(self.inputs)]
+        numbers = [isinstance(input_, Parameter) for input_ in self.inputs]
         for row in zip(*columns, strict=True):
             named = list(zip(self.paths, row, numbers, strict=True))
             yield (

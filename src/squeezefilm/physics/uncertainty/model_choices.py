@@ -35,7 +35,7 @@ def calibrated_inputs(
     if joint is None:
         return inputs
     known = joint.amplitude_share_deviation > 0
-    kept = tuple(one for one in inputs if not (known and one.path.startswith("actuator.")))
+    kept = tuple(input_ for input_ in inputs if not (known and input_.path.startswith("actuator.")))
     spreads = (
         (AMPLITUDE_SHARE, joint.amplitude_share, joint.amplitude_share_deviation, driven),
         (FRICTION_OFFSET, joint.friction_offset, joint.friction_offset_deviation, True),
@@ -147,10 +147,12 @@ def model_choices(display: Display) -> tuple[LawChoice, ...]:
         LawOption(name, 0.5 if name == described else 0.25, why) for name, why in _MOISTURES.items()
     )
     moisture = LawChoice(MOISTURE, moistures, "how moist a finger is on the day", "measurable")
-    measured = {path for path, one in display.provenance.items() if one.evidence == "measured"}
+    measured = {
+        path for path, origin in display.provenance.items() if origin.evidence == "measured"
+    }
     if "finger.asperities.type" in measured:
         measured.add(HEIGHT_LAW)
-    return tuple(one for one in (_HEIGHTS, moisture, _SLIP) if one.path not in measured)
+    return tuple(choice for choice in (_HEIGHTS, moisture, _SLIP) if choice.path not in measured)
 
 
 def same_interface(law: ContactLaw, name: str, pressure: si.Pascal) -> ContactLaw:

@@ -232,14 +232,14 @@ def _design(mixture: Mixture, samples: int, seed: int) -> si.FloatArray:
     inputs = mixture.inputs
     both = _sobol(2 * len(inputs), samples, seed)
     a, b = both[:, : len(inputs)], both[:, len(inputs) :]
-    measurable = np.array([one.knowledge == "measurable" for one in inputs])
+    measurable = np.array([input_.knowledge == "measurable" for input_ in inputs])
     taken = [
         np.zeros_like(measurable),
         *np.eye(len(inputs), dtype=bool),
         ~np.zeros_like(measurable),
     ]
     taken += [measurable, ~measurable]
-    design = np.stack([np.where(one, b, a) for one in taken], axis=1)
+    design = np.stack([np.where(columns, b, a) for columns in taken], axis=1)
     joint = mixture.display.joint
     if joint is None:
         return design
@@ -267,7 +267,7 @@ def _drawn(
         refused = refused.together_with(refused_too)
     whole = np.isfinite(found[:, columns]).all(axis=1)
     whole[:first] = np.isfinite(found[:first]).all(axis=1)
-    return Outcome(*(one[: len(points)] for one in drawn)), found[whole], refused
+    return Outcome(*(values[: len(points)] for values in drawn)), found[whole], refused
 
 
 def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:
@@ -386,9 +386,9 @@ def _drawn_curves(
         try:
             rows[number] = between_limits(law, draw, amplitude)
         except SqueezefilmError:
-            for column, one in enumerate(amplitude):
+            for column, at in enumerate(amplitude):
                 try:
-                    rows[number, column] = between_limits(law, draw, np.array([one]))[0]
+                    rows[number, column] = between_limits(law, draw, np.array([at]))[0]
                 except SqueezefilmError:
                     continue
     return rows

@@ -187,15 +187,15 @@ def _tied(
     """All plateaus at one mean gap, each of its amplitudes; `swings` (m) of shape (amplitudes,
     ridges)."""
     # Each balance is already the mean over all ridges.
-    tied = [share_load_tied(table, asperities, one, plateau_pressure, shares) for one in swings]
+    tied = [share_load_tied(table, asperities, row, plateau_pressure, shares) for row in swings]
     return PadFriction(
         amplitude=amplitude,
-        relative_friction=np.array([one.relative_friction for one in tied]),
-        mean_gap=np.array([one.mean_gap for one in tied]),
-        film_pressure=np.array([one.gas_pressure for one in tied]),
-        asperity_pressure=np.array([one.asperity_pressure for one in tied]),
-        relative_friction_error=np.array([one.relative_friction_error for one in tied]),
-        residual=max(float(abs(one.residual)) for one in tied),
+        relative_friction=np.array([shared.relative_friction for shared in tied]),
+        mean_gap=np.array([shared.mean_gap for shared in tied]),
+        film_pressure=np.array([shared.gas_pressure for shared in tied]),
+        asperity_pressure=np.array([shared.asperity_pressure for shared in tied]),
+        relative_friction_error=np.array([shared.relative_friction_error for shared in tied]),
+        residual=max(float(abs(shared.residual)) for shared in tied),
         limit="one-gap",
         model=tied[0].model,
     )

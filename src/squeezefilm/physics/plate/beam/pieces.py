@@ -68,13 +68,15 @@ def stressed_span(plate: RectangularPlate, patch: CeramicPatch) -> tuple[si.Metr
     inset = min(UNSTRESSED * patch.thickness, patch.length / 4)
     begin, end = patch.x, patch.x + patch.length
     beside = [
-        one
-        for one in plate.patches
-        if one.face == patch.face and one.y < patch.y + patch.width and patch.y < one.y + one.width
+        other
+        for other in plate.patches
+        if other.face == patch.face
+        and other.y < patch.y + patch.width
+        and patch.y < other.y + other.width
     ]
     near = _NEAR * plate.length
-    meets_before = any(abs(one.x + one.length - begin) < near for one in beside)
-    meets_after = any(abs(one.x - end) < near for one in beside)
+    meets_before = any(abs(other.x + other.length - begin) < near for other in beside)
+    meets_after = any(abs(other.x - end) < near for other in beside)
     return begin + inset * (not meets_before), end - inset * (not meets_after)
 
 
@@ -87,7 +89,7 @@ def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[B
     sections = dict[tuple[_Strip, ...], si.FloatArray]()
 
     def section(which: Iterable[CeramicPatch]) -> si.FloatArray:
-        strips = tuple((one.face, one.y, one.width, one.thickness) for one in which)
+        strips = tuple((patch.face, patch.y, patch.width, patch.thickness) for patch in which)
         if strips not in sections:
             sections[strips] = _mean(plate, cross_section, strips)
         return sections[strips]
@@ -100,8 +102,8 @@ def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[B
             for patch, (low, high) in zip(plate.patches, spans, strict=True)
             if patch.x < middle < patch.x + patch.length
         ]
-        g, s, _, j = section(one for one, is_stressed in lying if is_stressed)
-        m = section(one for one, _ in lying)[2]
+        g, s, _, j = section(patch for patch, is_stressed in lying if is_stressed)
+        m = section(patch for patch, _ in lying)[2]
         pieces.append(BeamPiece(begin, end, float(g), float(s), float(m), float(j)))
     return tuple(pieces)
 
@@ -126,9 +128,9 @@ def _mean(
     for low, high in itertools.pairwise(stops):
         middle = (low + high) / 2
         there = {face: thick for face, y, width, thick in strips if y < middle < y + width}
-        one = section_with(plate, cross_section, there.get("top", 0.0), there.get("bottom", 0.0))
+        part = section_with(plate, cross_section, there.get("top", 0.0), there.get("bottom", 0.0))
         total += (high - low) * np.array(
-            [one.bending_stiffness, one.shear_stiffness, one.mass_per_area, one.rotary_inertia]
+            [part.bending_stiffness, part.shear_stiffness, part.mass_per_area, part.rotary_inertia]
         )
     return total / (stops[-1] - stops[0])
 
@@ -172,7 +174,7 @@ class _Elements:
         ]
         self.mesh = LineMesh((*edges, pieces[-1].end), (_ORDER,) * len(edges))
         own = [piece for piece, share in zip(pieces, shares, strict=True) for _ in range(share)]
-        g, m, s, j = np.array([_constants(one) for one in own]).T[:, :, None, None]
+        g, m, s, j = np.array([_constants(piece) for piece in own]).T[:, :, None, None]
         h = np.diff(self.mesh.edges)[:, None, None]
         moving, sliding, bending = line_matrices(1.0, _ORDER)
         size = 2 * (_ORDER + 1)
@@ -276,8 +278,8 @@ def _even(pieces: Sequence[BeamPiece]) -> Laminate:
     )
 
 
-def _constants(one: BeamPiece) -> tuple[float, float, float, float]:
-    return one.bending_stiffness, one.mass_per_area, one.shear_stiffness, one.rotary_inertia
+def _constants(piece: BeamPiece) -> tuple[float, float, float, float]:
+    return piece.bending_stiffness, piece.mass_per_area, piece.shear_stiffness, piece.rotary_inertia
 
 
 def _times(bands: si.FloatArray, vector: si.FloatArray) -> si.FloatArray:

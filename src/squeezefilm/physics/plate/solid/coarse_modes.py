@@ -90,7 +90,7 @@ def coarse_modes(
         pairs = modes_near(slabs, solve, shift, wanted, start, tolerance=1e-6)
         values, vectors = pairs.values, pairs.vectors
     x, y, surface = surface_shapes(solved, vectors)
-    labels = [label_of(one, x, y) for one in surface]
+    labels = [label_of(top, x, y) for top in surface]
     return CoarseModes(parity, solved, values, vectors, labels, factor)
 
 
@@ -102,17 +102,17 @@ def chosen_modes(
     count: int,
 ) -> list[si.IntArray]:
     """The indices of the modes to refine, for each class."""
-    frequencies = [np.sqrt(one.values) / (2 * np.pi) for one in found]
+    frequencies = [np.sqrt(modes.values) / (2 * np.pi) for modes in found]
     if mode is not None:
         out = []
-        for one in found:
-            hits = [i for i, label in enumerate(one.labels) if label == mode]
+        for modes in found:
+            hits = [i for i, label in enumerate(modes.labels) if label == mode]
             # Of several with these nodal lines those nearest to the guess: a finer mesh, which
             # mixes neighbours otherwise, shows which of them has the lines.
-            hits.sort(key=lambda i: abs(np.sqrt(one.values[i]) / (2 * np.pi) - (near or 0.0)))
+            hits.sort(key=lambda i: abs(np.sqrt(modes.values[i]) / (2 * np.pi) - (near or 0.0)))
             out.append(np.sort(np.array(hits[:3], dtype=np.int64)))
         if not any(o.size for o in out):
-            seen = ", ".join(str(label) for one in found for label in one.labels if label)
+            seen = ", ".join(str(label) for modes in found for label in modes.labels if label)
             where = "" if near is None else f" near {near:.0f} Hz"
             raise InputError(
                 f"no mode {mode} was found{where} (there are {seen or 'none with nodal lines'}); "

@@ -190,25 +190,25 @@ def harmonic_solution(
     """Coordinates (frequencies × coordinates), electrode potentials of each class (frequencies ×
     electrodes) and the charge at the drive's terminals, per volt at angular frequencies `omega`."""
     places = class_slices(parts)
-    total, extra = places[-1].stop, sum(len(one.circuit) for one in parts)
+    total, extra = places[-1].stop, sum(len(reduced.circuit) for reduced in parts)
     A = np.zeros((omega.size, total + extra, total + extra), dtype=complex)
     b = np.zeros((omega.size, total + extra), dtype=complex)
     row, w2 = total, (omega**2)[:, None, None]
-    for one, at in zip(parts, places, strict=True):
-        A[:, at, at] = one.stiffness + 1j * one.loss - w2 * one.mass
-        b[:, at] = -(one.coupling @ one.drive)
+    for reduced, at in zip(parts, places, strict=True):
+        A[:, at, at] = reduced.stiffness + 1j * reduced.loss - w2 * reduced.mass
+        b[:, at] = -(reduced.coupling @ reduced.drive)
         # Charge = −(Gᵀx + C V); a shunt draws V = −iωR · charge, an open electrode none.
-        held = one.capacitance @ one.drive
-        for number, resistance, share in one.circuit:
-            A[:, at, row] = one.coupling[:, number]
+        held = reduced.capacitance @ reduced.drive
+        for number, resistance, share in reduced.circuit:
+            A[:, at, row] = reduced.coupling[:, number]
             # Matrices are of the whole plate; one patch carries this part of them.
-            part = share / one.solved.copies
+            part = share / reduced.solved.copies
             scale = 1.0 if np.isinf(resistance) else 1j * omega * resistance * part
             unit = np.ones(omega.size) * scale
-            A[:, row, at] = unit[:, None] * one.coupling[:, number]
-            column = row - one.circuit.index((number, resistance, share))
-            for k, (other, _, _) in enumerate(one.circuit):
-                A[:, row, column + k] += unit * one.capacitance[number, other]
+            A[:, row, at] = unit[:, None] * reduced.coupling[:, number]
+            column = row - reduced.circuit.index((number, resistance, share))
+            for k, (other, _, _) in enumerate(reduced.circuit):
+                A[:, row, column + k] += unit * reduced.capacitance[number, other]
             if not np.isinf(resistance):
                 A[:, row, row] -= 1
             b[:, row] = -unit * held[number]
@@ -218,11 +218,11 @@ def harmonic_solution(
     solution = np.linalg.solve(A / scale_rows, (b / scale_rows[:, :, 0])[:, :, None])[:, :, 0]
     potentials, charge = [], np.zeros(omega.size, dtype=complex)
     row = total
-    for one, at in zip(parts, places, strict=True):
-        V = np.broadcast_to(one.drive, (omega.size, one.drive.size)).astype(complex)
-        for number, _, _ in one.circuit:
+    for reduced, at in zip(parts, places, strict=True):
+        V = np.broadcast_to(reduced.drive, (omega.size, reduced.drive.size)).astype(complex)
+        for number, _, _ in reduced.circuit:
             V[:, number] = solution[:, row]
             row += 1
-        charge -= (solution[:, at] @ one.coupling + V @ one.capacitance) @ one.drive
+        charge -= (solution[:, at] @ reduced.coupling + V @ reduced.capacitance) @ reduced.drive
         potentials.append(V)
     return solution[:, :total], potentials, charge

@@ -71,7 +71,7 @@ class RefinedModes:
 
 def refined_modes(
     plate: RectangularPlate,
-    one: CoarseModes,
+    coarse: CoarseModes,
     index: si.IntArray,
     highest: float,
     tolerance: float,
@@ -85,11 +85,11 @@ def refined_modes(
 
     Raises `InputError` where memory does not hold the first of the finer meshes.
     """
-    solved, values, vectors = one.solved, one.values[index], one.vectors[:, index]
-    assert one.factor is not None
-    opened = open_values(solved, one.factor, values, vectors)
+    solved, values, vectors = coarse.solved, coarse.values[index], coarse.vectors[:, index]
+    assert coarse.factor is not None
+    opened = open_values(solved, coarse.factor, values, vectors)
     piece = RefinedModes(
-        found=dataclasses.replace(one, factor=None),
+        found=dataclasses.replace(coarse, factor=None),
         index=index,
         solved=solved,
         coarse_values=values,
@@ -98,12 +98,12 @@ def refined_modes(
         open_values=opened,
         vectors=vectors,
         level=UNREFINED,
-        factor=one.factor,
+        factor=coarse.factor,
         shunted=np.sqrt(values).astype(complex),
     )
     for level, resolution in enumerate(LEVELS):
         try:
-            finer = plate_model(plate, highest, resolution, one.parity)
+            finer = plate_model(plate, highest, resolution, coarse.parity)
         except InputError:
             if level == 0:
                 raise
@@ -155,7 +155,7 @@ def _finer(piece: RefinedModes, finer: PlateModel, level: int, tolerance: float)
 def with_label(piece: RefinedModes, label: Label) -> RefinedModes:
     """The refined modes that have these nodal lines."""
     x, y, surface = surface_shapes(piece.solved, piece.vectors)
-    keep = np.array([label_of(one, x, y) == label for one in surface])
+    keep = np.array([label_of(top, x, y) == label for top in surface])
     return dataclasses.replace(
         piece,
         index=piece.index[keep],
@@ -216,7 +216,7 @@ def effective_coupling(
 
 
 def extrapolated_class(
-    one: ReducedClass, band: tuple[si.Hertz, si.Hertz], known: RefinedModes | None = None
+    reduced: ReducedClass, band: tuple[si.Hertz, si.Hertz], known: RefinedModes | None = None
 ) -> ReducedClass:
     """The same class with its stiffness and loss scaled so that the most strongly driven mode near
     the band stands at its frequency extrapolated from two meshes.
@@ -225,16 +225,16 @@ def extrapolated_class(
     driven mode is near, and on meshes that have no coarser one to compare with. `known` are refined
     modes of the same mesh: one that is among them need not be solved on the coarser mesh again.
     """
-    level = next((k for k, res in enumerate(LEVELS) if res == one.resolution), None)
+    level = next((k for k, res in enumerate(LEVELS) if res == reduced.resolution), None)
     coarser = (COARSE, *LEVELS)[level] if level is not None else None
-    values, shapes = eigh(one.stiffness, one.mass)
+    values, shapes = eigh(reduced.stiffness, reduced.mass)
     f = np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi)
-    force = np.abs(shapes.T @ (one.coupling @ one.drive))
+    force = np.abs(shapes.T @ (reduced.coupling @ reduced.drive))
     # Far above the band the space holds no modes but what they add, with any force.
     driven = force > 1e-3 * np.max(force, initial=0.0, where=f < 4 * band[1])
     near = np.flatnonzero((f > 0.9 * band[0]) & (f < 1.1 * band[1]) & driven)
     if coarser is None or level is None or near.size == 0:
-        return one
+        return reduced
     # Response at the band's nearest frequency: force squared over the distance of the squares.
     distance = np.maximum(0.0, np.maximum(band[0] - f[near], f[near] - band[1])) / f[near]
     mode = int(near[np.argmax(force[near] ** 2 / (distance + 0.01))])
@@ -244,13 +244,15 @@ def extrapolated_class(
     if known is not None and same:
         wanted, _ = extrapolated(known.coarse_values[same], known.values[same], level)
     else:
-        wanted = _compared(one, coarser, level, band, (values[mode], shapes[:, mode]))
+        wanted = _compared(reduced, coarser, level, band, (values[mode], shapes[:, mode]))
     ratio = float(wanted[0] / f[mode]) ** 2
-    return dataclasses.replace(one, stiffness=ratio * one.stiffness, loss=ratio * one.loss)
+    return dataclasses.replace(
+        reduced, stiffness=ratio * reduced.stiffness, loss=ratio * reduced.loss
+    )
 
 
 def _compared(
-    one: ReducedClass,
+    reduced: ReducedClass,
     coarser: Resolution,
     level: int,
     band: tuple[si.Hertz, si.Hertz],
@@ -259,7 +261,7 @@ def _compared(
     """The extrapolated frequency (Hz) of a mode (value, coordinates) of a reduced class, compared
     with the mode of its shape on a coarser mesh."""
     value, coordinates = mode
-    solved, vector = one.solved, (one.basis @ coordinates)[:, None]
+    solved, vector = reduced.solved, (reduced.basis @ coordinates)[:, None]
     rough = plate_model(solved.plate, resolved_frequency(band), coarser, solved.parity).slabs
     shift = value * (1 + 2e-3)
     start = prolonged(solved.slabs, rough, vector)

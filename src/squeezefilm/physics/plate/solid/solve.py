@@ -200,7 +200,7 @@ def _table(piece: RefinedModes, signs: si.FloatArray) -> _Columns:
     # A product for each mode, as results were recorded: `forces @ signs` may differ in the last
     # digit. (So may a mode that is alone in its class: BLAS adds in another order along its row.)
     driven = np.array([row @ signs for row in forces])
-    turn = np.array([_turn(top, one) for top, one in zip(surface, driven, strict=True)])
+    turn = np.array([_turn(top, push) for top, push in zip(surface, driven, strict=True)])
     return _Columns(
         frequencies=frequency,
         errors=error,
@@ -216,7 +216,7 @@ def _table(piece: RefinedModes, signs: si.FloatArray) -> _Columns:
         coupling_errors=coupling_error,
         energy_shares=shares,
         quality_factors=1 / np.maximum(losses, 1e-30),
-        fields=[(solved, sign * one) for sign, one in zip(turn, vectors.T, strict=True)],
+        fields=[(solved, sign * vector) for sign, vector in zip(turn, vectors.T, strict=True)],
     )
 
 
@@ -348,13 +348,13 @@ def _solved(
                 raise
             continue
         pieces: list[RefinedModes] = []
-        for number, (one, index) in enumerate(zip(found, chosen, strict=True)):
+        for number, (coarse, index) in enumerate(zip(found, chosen, strict=True)):
             if index.size:
                 share = _COARSE + (1 - _COARSE) * number / len(found)
-                tell(f"fine mesh, {told_of(one.parity)}", share)
+                tell(f"fine mesh, {told_of(coarse.parity)}", share)
                 pieces.append(
                     refined_modes(
-                        plate, one, index, highest, tolerance, deadline, keep_factor=keep_factors
+                        plate, coarse, index, highest, tolerance, deadline, keep_factor=keep_factors
                     )
                 )
         if mode is None:
@@ -371,5 +371,5 @@ def _slowness(found: list[CoarseModes], took: si.Second) -> float:
 
     Between 1 and 4: what is compiled for the first time is no measure of the next mesh.
     """
-    expected = sum(expected_seconds(one.solved) for one in found)
+    expected = sum(expected_seconds(coarse.solved) for coarse in found)
     return min(max(1.0, took / expected), 4.0)

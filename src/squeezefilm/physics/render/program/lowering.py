@@ -82,20 +82,20 @@ class Program:
     def wanted_depends_on(self) -> frozenset[str]:
         """Names as by `depends_on`, but without the speed by which a wanted friction becomes an
         amplitude: what the texture and the wave depend on."""
-        found: set[str] = set()
+        names: set[str] = set()
         for code, operands in _instructions(self.array):
             if code == op.ALONG:
-                found |= {name for name, by in zip("xy", operands[:2], strict=True) if by != 0.0}
+                names |= {name for name, by in zip("xy", operands[:2], strict=True) if by != 0.0}
             elif code == op.IMAGE:
                 # One row that does not end is the same at every y.
                 strip = operands[1] == 1.0 and operands[6] != 2.0
-                found |= {"x"} if strip else {"x", "y"}
+                names |= {"x"} if strip else {"x", "y"}
             else:
-                found |= _INFLUENCES.get(code, frozenset())
+                names |= _INFLUENCES.get(code, frozenset())
         if self.array[at.H_WAVE_COUNT]:
             across = self.array[at.H_WAVE_P : at.H_WAVE_Q + 1]
-            found |= {name for name, by in zip("xy", across, strict=True) if by != 0.0}
-        return frozenset(found)
+            names |= {name for name, by in zip("xy", across, strict=True) if by != 0.0}
+        return frozenset(names)
 
 
 @si.checked_numbers
@@ -254,8 +254,8 @@ def checked(array: si.FloatArray) -> si.FloatArray:
     _check_header(program, inverse, wave)
     _check_code(program, tables, inverse)
     program.setflags(write=False)
-    found: si.FloatArray = program
-    return found
+    safe: si.FloatArray = program
+    return safe
 
 
 def _check_header(program: si.FloatArray, inverse: int, wave: int) -> None:
@@ -307,7 +307,7 @@ def _check_inverse(part: si.FloatArray, count: int, speeds: int) -> None:
 def _instructions(program: si.FloatArray) -> list[tuple[int, si.FloatArray]]:
     """The instructions of a program, END last."""
     place, end = int(program[at.H_CODE]), int(program[at.H_TABLES])
-    found = []
+    instructions = []
     while place < end:
         number = program[place]
         if number != int(number) or not 0 <= number < len(op.SHAPES):
@@ -316,13 +316,13 @@ def _instructions(program: si.FloatArray) -> list[tuple[int, si.FloatArray]]:
         count = op.SHAPES[code][0]
         if place + 1 + count > end:
             raise _broken(f"ends within the instruction at {place}")
-        found.append((code, program[place + 1 : place + 1 + count]))
+        instructions.append((code, program[place + 1 : place + 1 + count]))
         place += 1 + count
         if code == op.END:
             break
-    if not found or found[-1][0] != op.END or place != end:
+    if not instructions or instructions[-1][0] != op.END or place != end:
         raise _broken("does not end with its last instruction")
-    return found
+    return instructions
 
 
 # What an instruction brings in besides the stack; ALONG and IMAGE depend on their operands.
