@@ -61,13 +61,6 @@ class Track(NamedTuple):
     account: si.Array
 
 
-class Bounds(NamedTuple):
-    """Static over kinetic friction, and by how much friction may stray from the law (N)."""
-
-    static_ratio: float
-    tolerance: float
-
-
 @compiled()
 def strongest_and_fall(rows: Rows, force: si.Array) -> tuple[float, float]:
     """The strongest friction (N) of all rows at `force` (N) for each of their units, and its
@@ -87,30 +80,22 @@ def strongest_and_fall(rows: Rows, force: si.Array) -> tuple[float, float]:
 
 
 @compiled()
-def next_reach(step: float, reach: float, astray: float, tolerance: float) -> float:
-    """The time (s) that the next piece may take, after one over `reach` strayed from the law."""
-    if astray <= 0.01 * tolerance:
-        return step
-    return min(step, reach * max(1.0, 0.8 * math.sqrt(tolerance / astray)))
-
-
-@compiled()
 def interval_march(
     at: SkinState,
     now: BoneStep,
     drive: BoneDrive,
     skin: LumpedSkin,
     rows: Rows,
-    bounds: Bounds,
+    static_ratio: float,
+    tolerance: float,
     series: si.Array,
     work: si.Array,
     account: si.Array,
 ) -> tuple[SkinState, bool]:
     """March the skin over an interval, adding to its `work` and to `account`. False where slips
     began and ended, or speeds were passed, too often."""
-    h, ratio = drive.time_step / drive.substeps, bounds.static_ratio
-    events = passed = 0
-    trial, s = h, 0.0
+    h = drive.time_step / drive.substeps
+    trial, s, events, passed = h, 0.0, 0, 0
     for number in range(drive.substeps):
         goal = drive.time_step if number == drive.substeps - 1 else (number + 1) * h
         tries = 0
@@ -131,50 +116,30 @@ def interval_march(
                 # After a slip too short to be found it stays for longer each time.
                 briefly = min(reach * 0.5**HALVINGS * 4.0**tries, reach)
                 tries += at.side != 0.0
-                part, side = stay(at, s, goal, briefly, pull, now, ratio, skin, work)
+                part, side = stay(at, s, goal, briefly, pull, now, static_ratio, skin, work)
                 account[0] += part
                 account[1] += abs(side) - abs(at.side)
                 events += side != 0.0
                 at = SkinState(at.place, at.speed, side, 0 if side != 0.0 else at.knot)
                 s = goal if part == goal - s else s + part
                 trial = h
-            elif slip.astray > bounds.tolerance and reach > _SHORTEST * h:
-                trial = part * max(0.1, 0.8 * math.sqrt(bounds.tolerance / slip.astray))
+            elif slip.astray > tolerance and reach > _SHORTEST * h:
+                trial = part * max(0.1, 0.8 * math.sqrt(tolerance / slip.astray))
             else:
                 s = goal if part >= goal - s else s + part
-                trial = next_reach(h, reach, slip.astray, bounds.tolerance)
+                trial = h
+                if slip.astray > 0.01 * tolerance:
+                    trial = min(h, reach * max(1.0, 0.8 * math.sqrt(tolerance / slip.astray)))
                 if slip.astray > 0.0:
-                    part_of_law = LAW_TOLERANCE * slip.astray / bounds.tolerance
-                    account[2] = max(account[2], part_of_law)
+                    account[2] = max(account[2], LAW_TOLERANCE * slip.astray / tolerance)
                 at = slipped(slip, at, skin, series, work)
                 if slip.ended != STAYS:
-                    at, stopped = beyond(slip, s, at, pull, now, ratio, skin.stiffness)
+                    at, stopped = beyond(slip, s, at, pull, now, static_ratio, skin.stiffness)
                     account[1] += stopped and at.side != 0.0
                     passed, events = passed + 1, events + stopped
             if events > MOST_EVENTS or passed > 2 * MOST_EVENTS * rows.speed.size:
                 return at, False
     return at, True
-
-
-@compiled()
-def begun(
-    load: float, speed: float, drive: BoneDrive, rows: Rows, static_ratio: float, account: si.Array
-) -> tuple[float, int]:
-    """The way the skin slips at the start, pulled with a load (N) at a speed (m/s), and the knot
-    below that speed."""
-    side = 0.0
-    if speed != 0.0:
-        side = math.copysign(1.0, speed)
-    elif (
-        abs(load) > static_ratio * (drive.limit[0] * rows.coefficient[0, 0])
-        or rows.coefficient[:2, 0].max() == 0.0
-    ):
-        side = math.copysign(1.0, load)
-        account[1] += 1.0
-    j = 0
-    while j < rows.speed.size - 1 and rows.speed[j + 1] <= abs(speed):
-        j += 1
-    return side, j
 
 
 @compiled()
@@ -203,12 +168,18 @@ def slide_march(
 
     Returns n, or the interval in which slip started and ended, or speeds were passed, too often.
     """
-    k, c = skin.stiffness, skin.damping
-    bounds = Bounds(static_ratio, LAW_TOLERANCE * strongest)
-    series, work = np.empty(TERMS), np.empty(3)
-    x, v = track.position[0], track.speed[0]
+    k, c, account = skin.stiffness, skin.damping, track.account
+    tolerance, series, work = LAW_TOLERANCE * strongest, np.empty(TERMS), np.empty(3)
+    x, v, side, j = track.position[0], track.speed[0], 0.0, 0
     load = k * (drive.bone[0] - x) + c * (drive.speed_in[0] - v)
-    side, j = begun(load, v, drive, rows, static_ratio, track.account)
+    holds = static_ratio * (drive.limit[0] * rows.coefficient[0, 0])
+    if v != 0.0:
+        side = math.copysign(1.0, v)
+    elif abs(load) > holds or rows.coefficient[:2, 0].max() == 0.0:
+        side = math.copysign(1.0, load)
+        account[1] += 1.0
+    while j < rows.speed.size - 1 and rows.speed[j + 1] <= abs(v):
+        j += 1
     at = SkinState(x, v, side, j)
     record(0, at, load, drive, rows, track)
     for i in range(drive.bone.size - 1):
@@ -216,7 +187,9 @@ def slide_march(
         side = -at.side if at.side * at.speed < 0.0 else at.side
         at, now = SkinState(at.place, at.speed, side, at.knot), interval_at(i, drive, rows)
         work[:] = 0.0
-        at, done = interval_march(at, now, drive, skin, rows, bounds, series, work, track.account)
+        at, done = interval_march(
+            at, now, drive, skin, rows, static_ratio, tolerance, series, work, account
+        )
         if not done:
             return i
         load = k * (drive.bone[i + 1] - at.place) + c * (drive.speed_out[i] - at.speed)
