@@ -18,6 +18,7 @@ from squeezefilm.actuators.motor.force_law import ForceLaw
 from squeezefilm.core.quantities import unit_of
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
 from squeezefilm.physics.contact.sharing.pad import PadPoints
+from squeezefilm.physics.film.planar.gap import PlanarGap
 from squeezefilm.physics.plate.parts import Sector
 from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.sound import RadiatingSurface
@@ -79,10 +80,6 @@ class Later:
     """A good value that is made when the call is first tried."""
 
     make: Callable[[], Any]
-
-
-def planar_gap(X: Any, Y: Any, T: Any) -> Any:
-    return 1 + 0.2 * np.cos(T) + 0 * X + 0 * Y
 
 
 _GRID = np.linspace(0.0, 1.0, 9)
@@ -162,14 +159,15 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "physics.contact.sharing.paper.least_amplitude": {
         "friction": falling_friction,
+        "model": "by hand",
         "highest": 5e-5,
     },
     "physics.film.planar.film.solve_planar": {
         "shape": "rectangle",
-        "gap": planar_gap,
+        "gap": PlanarGap(0.5),
         "squeeze_number": 10.0,
     },
-    "physics.film.planar.gap.PlanarGap.__call__": {"X": _GRID, "Y": _GRID, "T": _GRID},
+    "physics.film.planar.gap.PlanarGap.__call__": {"X": _GRID, "T": _GRID},
     "physics.texture_files.hjif.friction_along": {"document": Later(hjif_document)},
     "physics.texture_files.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
     "core.formats.drawing.Layer": {"colour": 7},

@@ -106,7 +106,7 @@ NOT_CALLED = {
     physics.film.planar.balance.Balancer.solve physics.film.planar.balance.Film
     physics.film.planar.balance.derivative physics.film.planar.balance.resampled
     physics.film.planar.balance.times
-    physics.film.planar.gap.gap_values physics.film.planar.gap.require_periodic
+    physics.film.planar.gap.gap_values
     physics.film.planar.grid.PlanarGrid physics.film.planar.grid.disc_grid
     physics.film.planar.grid.ellipse_grid physics.film.planar.grid.graded_line
     physics.film.planar.grid.rectangle_grid physics.film.planar.ladder.Climb

@@ -46,7 +46,8 @@ from squeezefilm.instruments.twin.envelope_step import (
     voltage_given,
 )
 from squeezefilm.instruments.twin.hand import wanted
-from squeezefilm.physics.contact.sliding.kernel import Drive, Rows, Track, slide_march
+from squeezefilm.physics.contact.sliding.kernel import Track, slide_march
+from squeezefilm.physics.contact.sliding.pieces import BoneDrive, Rows
 from squeezefilm.physics.contact.sliding.skin_motion import Forces, LumpedSkin, slide_by, transition
 from squeezefilm.physics.plate.heat.kernel import Drifts, changed, warmed
 from squeezefilm.physics.plate.heat.thermal import Cooling
@@ -264,7 +265,7 @@ def _drag(h: float, x0: float, v0: float, plant: PlantState) -> None:
     mean, bend = (s[X] - x0) / h, 0.5 * (s[VX] - v0)
     bone[0], bone[1], speed_in[0], speed_out[0] = x0, s[X], mean - bend, mean + bend
     track.position[0], track.speed[0] = s[SKIN_X], s[SKIN_V]
-    drive = Drive(bone, speed_in, speed_out, limit, h, int(c[C_SUBSTEPS]))
+    drive = BoneDrive(bone, speed_in, speed_out, limit, h, int(c[C_SUBSTEPS]))
     skin = LumpedSkin(c[C_PAD_MASS], c[C_PAD_DAMPING], c[C_PAD_STIFFNESS])
     strongest = max(limit[0], limit[1])
     done = slide_march(drive, skin, Rows(speeds, rows), c[C_STATIC], strongest, track)

@@ -28,12 +28,11 @@ from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
 from squeezefilm.physics.contact.sliding.kernel import (
     MOST_EVENTS,
-    Drive,
-    Rows,
     Track,
     slide_march,
     strongest_and_fall,
 )
+from squeezefilm.physics.contact.sliding.pieces import BoneDrive, Rows
 from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin
 
 JouleArray = Annotated[si.FloatArray, si.Unit("J")]
@@ -207,7 +206,7 @@ def _march(
     force = np.ascontiguousarray(force)
     strongest, steepest = strongest_and_fall(rows, force)
     parts = substeps(time_step, pad, steepest)
-    drive = Drive(bone, speed_in, speed_out, force, time_step, parts)
+    drive = BoneDrive(bone, speed_in, speed_out, force, time_step, parts)
     skin = LumpedSkin(pad.mass, pad.damping, pad.stiffness)
     done = slide_march(drive, skin, rows, law.static_ratio, strongest, track)
     if done < bone.size:

@@ -22,7 +22,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.mobility import mobility
-from squeezefilm.physics.film.planar.gap import GapFunction, gap_values
+from squeezefilm.physics.film.planar.gap import PlanarGap, gap_values
 from squeezefilm.physics.film.planar.grid import PlanarGrid
 
 
@@ -151,7 +151,6 @@ def row_block(
     for f in range(within.shape[0]):
         g, a, b = within[f]
         for k in range(M):
-            # += because on a full ring of two columns both faces join the same nodes.
             block[a * M + k, b * M + k] += up[g, k]
             block[b * M + k, a * M + k] += down[g, k]
 
@@ -172,7 +171,7 @@ _OVERSAMPLE = 6
 class Film:
     """Film to be solved: gap, squeeze number, and the gas as compiled code knows it."""
 
-    gap: GapFunction
+    gap: PlanarGap
     squeeze_number: float
     gas: CompiledGas
 
@@ -269,8 +268,7 @@ class Balancer:
         self.film, self.grid, self.count = film, grid, count
         T = times(count)
         X = np.concatenate([grid.X, grid.row_X, grid.column_X, grid.edge_X])
-        Y = np.concatenate([grid.Y, grid.row_Y, grid.column_Y, grid.edge_Y])
-        self.gaps = gap_values(film.gap, X, Y, T)
+        self.gaps = gap_values(film.gap, X, T)
         self.storage = Storage(film.squeeze_number * grid.area, derivative(count))
         self.faces = Faces(
             grid.columns,
@@ -297,7 +295,7 @@ class Balancer:
     def starts(self) -> list[si.FloatArray]:
         """Two guesses: gas at rest (P = 1), and gas that cannot follow at all (m constant)."""
         n, H = self.film.gas.polytropic_exponent, self.gaps[: self.grid.X.size]
-        fine = gap_values(self.film.gap, self.grid.X, self.grid.Y, times(32))
+        fine = gap_values(self.film.gap, self.grid.X, times(32))
         still = (np.mean(fine**3, axis=1) / np.mean(fine ** (2 - n), axis=1)) ** (1 / (n + 1))
         return [H.copy(), np.ascontiguousarray(np.broadcast_to(still[:, None], H.shape))]
 
@@ -345,7 +343,7 @@ class Balancer:
         grid, n = self.grid, self.film.gas.polytropic_exponent
         count = max(_OVERSAMPLE * self.count, 48)
         T = times(count)
-        ratio = resampled(m, count) / gap_values(self.film.gap, grid.X, grid.Y, T)
+        ratio = resampled(m, count) / gap_values(self.film.gap, grid.X, T)
         over = np.maximum(ratio, 1e-300) ** n - 1.0
         share = grid.area / grid.area.sum()
         load = share @ over

@@ -16,8 +16,8 @@ from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.physics.film.gas import ISOTHERMAL, FilmGas, require_film
 from squeezefilm.physics.film.planar.balance import Film, row_block
-from squeezefilm.physics.film.planar.gap import GapFunction, PlanarGap, require_periodic
-from squeezefilm.physics.film.planar.ladder import RUNGS, Climb, Ladder, PlanarShape, climb_to
+from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.film.planar.ladder import Climb, Ladder, PlanarShape, climb_to
 
 
 @dataclass(frozen=True)
@@ -26,12 +26,12 @@ class FilmPlanar:
 
     `mean_load` W = ⟨P⟩ over surface and period, `over_pressure` W − 1 and its estimated absolute
     error; `stiffness_relative` fk and `damping_relative` fd: the first harmonic of the force is
-    −(fk + i fd) p0 A ε, ε being the largest first harmonic of the gap; `force_harmonics` (8,) the
+    −(fk + i fd) p0 A ε; `force_harmonics` (8,) the
     complex amplitudes F_k, k from 1, of W(T) = W + Re Σ F_k e^{ikT}, and `force_harmonics_error`
     their estimated absolute errors |ΔF_k|; `force_error` is that of fk + i fd. `mean_pressure` is
     the period's mean at the nodes `X`, `Y` of the finest grid, with their `area`, all (nodes,) =
-    rows × columns; on a `quarter` they cover X ≥ 0, Y ≥ 0 of a symmetric film. `residual` is the
-    last relative change of the gas in Newton's method.
+    rows × columns, of the quarter X ≥ 0, Y ≥ 0 of a symmetric film. `residual` is the last relative
+    change of the gas in Newton's method.
     """
 
     mean_load: si.Dimensionless
@@ -48,14 +48,13 @@ class FilmPlanar:
     mean_pressure: si.DimensionlessArray
     rows: int
     columns: int
-    quarter: bool
     time_points: int
     iterations: int
     residual: si.Dimensionless
     status: str
     shape: PlanarShape
     aspect_ratio: si.Dimensionless
-    gap: GapFunction
+    gap: PlanarGap
     squeeze_number: si.Dimensionless
     polytropic_exponent: si.Dimensionless
     knudsen_number: si.Dimensionless
@@ -66,22 +65,17 @@ class FilmPlanar:
 @si.checked_numbers
 def solve_planar(
     shape: PlanarShape,
-    gap: GapFunction,
+    gap: PlanarGap,
     squeeze_number: si.Dimensionless,
     *,
     aspect_ratio: Annotated[si.Dimensionless, si.Above(0.0)] = 1.0,
-    symmetric: bool | None = None,
-    cells: tuple[int, int] | None = None,
     gas: FilmGas = ISOTHERMAL,
     tolerance: Annotated[si.Dimensionless, si.AtLeast(1e-5), si.AtMost(0.5)] = 5e-3,
 ) -> FilmPlanar:
-    """The periodic film under any gap H(X, Y, T) of period 2π, to `tolerance` of W − 1.
+    """The periodic film under a gap, to `tolerance` of W − 1.
 
     `shape`: "rectangle" (X ∈ [−½, ½], Y ∈ [−aspect/2, aspect/2]), "disc" (R ≤ 1) or "ellipse"
-    (X² + (Y/aspect)² ≤ 1); `squeeze_number` on the length that is 1 there. `gap(X, Y, T)` takes
-    arrays (places, 1) and (1, times). `symmetric` says that the gap is even in X and in Y, so
-    that a quarter is enough (a `PlanarGap` always is). `cells` are those of the coarsest grid
-    along X and Y (radius and angle), for gaps with features that the solver cannot know of.
+    (X² + (Y/aspect)² ≤ 1); `squeeze_number` on the length that is 1 there.
 
     Raises `InputError` for values out of range, `GeometryError` where the gap closes,
     `ConvergenceError` (with the best state had) where Newton's method does not converge or the
@@ -94,10 +88,8 @@ def solve_planar(
     if shape == "disc" and aspect_ratio != 1.0:
         raise InputError(f"a disc has aspect_ratio 1, not {aspect_ratio}; ask for an ellipse")
     announce(row_block, "film solver in the plane", 3)
-    quarter = isinstance(gap, PlanarGap) if symmetric is None else symmetric
     film = Film(gap, float(squeeze_number), gas.compiled())
-    ladder = Ladder(shape, float(aspect_ratio), film, quarter, cells)
-    require_periodic(gap, ladder.grid(RUNGS[0]).X, ladder.grid(RUNGS[0]).Y)
+    ladder = Ladder(shape, float(aspect_ratio), film)
     climb = climb_to(ladder, float(tolerance))
     result = _assembled(ladder, climb, gas, tolerance)
     if not climb.reached:
@@ -113,14 +105,15 @@ def solve_planar(
 def _assembled(ladder: Ladder, climb: Climb, gas: FilmGas, tolerance: float) -> FilmPlanar:
     """The result, from where a climb of the ladder ended."""
     best, fine = climb.best, climb.fine
-    first = best.amplitudes[1] / ladder.excursion
+    gap = ladder.film.gap
+    first = best.amplitudes[1] / gap.excursion_ratio
     return FilmPlanar(
         mean_load=1.0 + best.over_pressure,
         over_pressure=best.over_pressure,
         over_pressure_error=float(best.errors[0]),
         stiffness_relative=-float(first.real),
         damping_relative=-float(first.imag),
-        force_error=float(best.errors[1]) / ladder.excursion,
+        force_error=float(best.errors[1]) / gap.excursion_ratio,
         force_harmonics=best.amplitudes[1:],
         force_harmonics_error=best.errors[1:],
         X=fine.grid.X,
@@ -129,14 +122,13 @@ def _assembled(ladder: Ladder, climb: Climb, gas: FilmGas, tolerance: float) -> 
         mean_pressure=fine.mean_pressure,
         rows=fine.grid.rows,
         columns=fine.grid.columns,
-        quarter=ladder.quarter,
         time_points=fine.gas.shape[1],
         iterations=climb.iterations,
         residual=fine.residual,
         status=climb.status,
         shape=ladder.shape,
         aspect_ratio=ladder.aspect,
-        gap=ladder.film.gap,
+        gap=gap,
         squeeze_number=ladder.film.squeeze_number,
         polytropic_exponent=gas.polytropic_exponent,
         knudsen_number=gas.knudsen_number,

@@ -4,21 +4,18 @@ Every grid is a product of two coordinates, row by row: `rows` × `columns` node
 index i · columns + j. Rows are eliminated one after the other, so the columns take the direction
 with fewer nodes. The coordinates are orthogonal (Cartesian, polar, confocal elliptic), so that a
 cell exchanges gas with its four neighbours only, and the boundary is a coordinate line: no
-staircase. On a quarter, the lines of symmetry are walls.
+staircase. The gap is even in X and in Y, so that a quarter is enough: the lines of symmetry are
+walls.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
-
-_Sides = Literal["open", "turn", "segment"]
-"""Ends of columns: at ambient gas, or in each other, with no line or one between two foci."""
 
 
 @dataclass(frozen=True)
@@ -33,21 +30,17 @@ class PlanarGrid:
 
     rows: int
     columns: int
-    quarter: bool
     X: si.FloatArray
     Y: si.FloatArray
     area: si.FloatArray
     row_X: si.FloatArray
-    row_Y: si.FloatArray
     row_conductance: si.FloatArray
     column_from: si.IntArray
     column_to: si.IntArray
     column_X: si.FloatArray
-    column_Y: si.FloatArray
     column_conductance: si.FloatArray
     edge_node: si.IntArray
     edge_X: si.FloatArray
-    edge_Y: si.FloatArray
     edge_conductance: si.FloatArray
 
 
@@ -75,84 +68,40 @@ class _Lines:
             np.ascontiguousarray(np.broadcast_to(y, shape)).ravel(),
         )
 
-    @property
-    def weight(self) -> si.FloatArray:
-        """Factor of 1/Δv in the conductance of a face, for each row."""
-        return self.across_columns(self.u[1::2]) * np.diff(self.u[::2])
 
-
-def _build(lines: _Lines, area: si.FloatArray, sides: _Sides, *, quarter: bool) -> PlanarGrid:
-    """A grid from its coordinate lines. The last row is always open; on a quarter the first row
-    and the first column are walls."""
+def _build(lines: _Lines, area: si.FloatArray, *, open_sides: bool = False) -> PlanarGrid:
+    """A grid from its coordinate lines. The first row and column are walls, the last row is open,
+    and so is the last column where there are `open_sides`."""
     u_face, u_node, v_face, v_node = lines.u[::2], lines.u[1::2], lines.v[::2], lines.v[1::2]
     rows, columns = u_node.size, v_node.size
     index = np.arange(rows * columns).reshape(rows, columns)
     X, Y = lines.at(u_node, v_node)
-    row_X, row_Y = lines.at(u_face[1:-1], v_node)
-    row_G = (lines.across_rows(u_face[1:-1]) / np.diff(u_node))[:, None] * np.diff(v_face)
-    within = _faces_within_rows(lines, index, "open" if quarter else sides)
-    edges = _edges(lines, index, sides, quarter=quarter)
+    dv = np.diff(v_face)
+    row_G = (lines.across_rows(u_face[1:-1]) / np.diff(u_node))[:, None] * dv
+    # Of 1/Δv in the conductance of a face, for each row.
+    weight = lines.across_columns(u_node) * np.diff(u_face)
+    last = lines.across_rows(u_face[-1:]) / (u_face[-1] - u_node[-1]) * dv
+    edges = [(index[-1], lines.at(u_face[-1:], v_node)[0], last)]
+    if open_sides:
+        last = weight / (v_face[-1] - v_node[-1])
+        edges.append((index[:, -1], lines.at(u_node, v_face[-1:])[0], last))
+    edge_node, edge_X, edge_G = (np.concatenate(part) for part in zip(*edges, strict=True))
     return PlanarGrid(
         rows=rows,
         columns=columns,
-        quarter=quarter,
         X=X,
         Y=Y,
         area=area.ravel(),
-        row_X=row_X,
-        row_Y=row_Y,
+        row_X=lines.at(u_face[1:-1], v_node)[0],
         row_conductance=row_G.ravel(),
-        **joined("column", ("from", "to", "X", "Y", "conductance"), within),
-        **joined("edge", ("node", "X", "Y", "conductance"), edges),
+        column_from=index[:, :-1].ravel(),
+        column_to=index[:, 1:].ravel(),
+        column_X=lines.at(u_node, v_face[1:-1])[0],
+        column_conductance=(weight[:, None] / np.diff(v_node)).ravel(),
+        edge_node=edge_node,
+        edge_X=edge_X,
+        edge_conductance=edge_G,
     )
-
-
-def joined(side: str, names: tuple[str, ...], faces: list[Any]) -> dict[str, Any]:
-    """Lists of faces, one after the other, as `PlanarGrid` names what it has of them."""
-    parts = zip(names, zip(*faces, strict=True), strict=True)
-    return {f"{side}_{name}": np.concatenate(part) for name, part in parts}
-
-
-def _faces_within_rows(
-    lines: _Lines, index: si.IntArray, sides: _Sides
-) -> list[tuple[si.IntArray, si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray]]:
-    """Nodes from and to, X, Y and conductance of the faces between columns, joins included."""
-    u_node, v_face, v_node, weight = lines.u[1::2], lines.v[::2], lines.v[1::2], lines.weight
-    col_X, col_Y = lines.at(u_node, v_face[1:-1])
-    col_G = weight[:, None] / np.diff(v_node)
-    faces = [(index[:, :-1].ravel(), index[:, 1:].ravel(), col_X, col_Y, col_G.ravel())]
-    if sides != "open":
-        # A full turn: the last column meets the first.
-        x, y = lines.at(u_node, v_face[-1:])
-        turn = v_node[0] - v_node[-1] + 2 * np.pi
-        faces.append((index[:, -1], index[:, 0], x, y, weight / turn))
-    if sides == "segment":
-        # The line between the foci: above and below it lie columns ν and −ν of the first row.
-        half = v_node.size // 2
-        x, y = lines.at(lines.u[:1], v_node[:half])
-        conductance = np.diff(v_face)[:half] / (2 * u_node[0])
-        faces.append((index[0, :half], index[0, ::-1][:half], x, y, conductance))
-    return faces
-
-
-def _edges(
-    lines: _Lines, index: si.IntArray, sides: _Sides, *, quarter: bool
-) -> list[tuple[si.IntArray, si.FloatArray, si.FloatArray, si.FloatArray]]:
-    """Node, X, Y and conductance of the faces on every side that is open."""
-    u_face, u_node, v_face, v_node = lines.u[::2], lines.u[1::2], lines.v[::2], lines.v[1::2]
-    dv, weight = np.diff(v_face), lines.weight
-    last = lines.across_rows(u_face[-1:]) / (u_face[-1] - u_node[-1]) * dv
-    edges = [(index[-1], *lines.at(u_face[-1:], v_node), last)]
-    if sides == "open":
-        if not quarter:
-            first = lines.across_rows(u_face[:1]) / (u_node[0] - u_face[0]) * dv
-            edges.append((index[0], *lines.at(u_face[:1], v_node), first))
-        last = weight / (v_face[-1] - v_node[-1])
-        edges.append((index[:, -1], *lines.at(u_node, v_face[-1:]), last))
-        if not quarter:
-            first = weight / (v_node[0] - v_face[0])
-            edges.append((index[:, 0], *lines.at(u_node, v_face[:1]), first))
-    return edges
 
 
 def edge_graded(count: int, layer: float) -> si.FloatArray:
@@ -195,43 +144,31 @@ def refined_line(
 
 
 def graded_line(
-    count: int, half: float, squeeze_number: float, *, mirror: bool, least: float = 2e-3
+    count: int, half: float, squeeze_number: float, least: float = 2e-3
 ) -> si.FloatArray:
-    """2 count + 1 points (faces and nodes in turn) from 0 or −half to half, graded to the edge.
+    """2 count + 1 points (faces and nodes in turn) from 0 to half, graded to the edge.
 
     `squeeze_number` is on the length that `half` is measured in. `least` bounds from below the
     share of the half width that takes half the cells.
     """
-    layer = edge_layer(squeeze_number * half**2, least)
-    if not mirror:
-        return half * edge_graded(2 * count, layer)
-    fine = half * edge_graded(count, layer)
-    return np.concatenate([-fine[:0:-1], fine])
+    return half * edge_graded(2 * count, edge_layer(squeeze_number * half**2, least))
 
 
-def rectangle_grid(x: si.FloatArray, y: si.FloatArray, *, quarter: bool = True) -> PlanarGrid:
-    """A rectangle with open sides; `x`, `y` give faces and nodes in turn (2 cells + 1,).
-
-    On a quarter both start at 0, which is then a line of symmetry. Rows lie along X.
-    """
+def rectangle_grid(x: si.FloatArray, y: si.FloatArray) -> PlanarGrid:
+    """A rectangle with open sides; `x`, `y` give faces and nodes in turn (2 cells + 1,) from its
+    middle on. Rows lie along X."""
     area = np.diff(x[::2])[:, None] * np.diff(y[::2])
     lines = _Lines(x, y, lambda a, b: (a, b), np.ones_like, np.ones_like)
-    return _build(lines, area, "open", quarter=quarter)
+    return _build(lines, area, open_sides=True)
 
 
-def _turn(count: int, quarter: bool) -> si.FloatArray:
-    return np.asarray(np.linspace(0.0, np.pi / 2 if quarter else 2 * np.pi, 2 * count + 1))
-
-
-def disc_grid(
-    squeeze_number: float, counts: tuple[int, int], *, quarter: bool = True, least: float = 2e-3
-) -> PlanarGrid:
+def disc_grid(squeeze_number: float, counts: tuple[int, int], *, least: float = 2e-3) -> PlanarGrid:
     """The disc R ≤ 1 in polar coordinates; `counts` cells along the radius and around.
 
     The face at the centre has no length, so nothing has to be said there.
     """
-    r = graded_line(counts[0], 1.0, squeeze_number, mirror=False, least=least)
-    angle = _turn(counts[1], quarter)
+    r = graded_line(counts[0], 1.0, squeeze_number, least)
+    angle = np.linspace(0.0, np.pi / 2, 2 * counts[1] + 1)
     area = (np.diff(r[::2] ** 2) / 2)[:, None] * np.diff(angle[::2])
     lines = _Lines(
         r,
@@ -240,7 +177,7 @@ def disc_grid(
         lambda u: u,
         lambda u: 1.0 / u,
     )
-    return _build(lines, area, "turn", quarter=quarter)
+    return _build(lines, area)
 
 
 def ellipse_grid(
@@ -248,7 +185,6 @@ def ellipse_grid(
     squeeze_number: float,
     counts: tuple[int, int],
     *,
-    quarter: bool = True,
     least: float = 2e-3,
 ) -> PlanarGrid:
     """The ellipse X² + (Y/aspect)² ≤ 1 in confocal elliptic coordinates.
@@ -260,11 +196,11 @@ def ellipse_grid(
     tall = aspect_ratio > 1.0
     major, minor = max(1.0, aspect_ratio), min(1.0, aspect_ratio)
     if major / minor - 1.0 < 1e-6:
-        return disc_grid(squeeze_number, counts, quarter=quarter, least=least)
+        return disc_grid(squeeze_number, counts, least=least)
     focus = np.sqrt(major**2 - minor**2)
-    line = graded_line(counts[0], minor, squeeze_number, mirror=False, least=least)
+    line = graded_line(counts[0], minor, squeeze_number, least)
     mu = np.arcsinh(line / focus)
-    nu = _turn(counts[1], quarter)
+    nu = np.linspace(0.0, np.pi / 2, 2 * counts[1] + 1)
     u, v = mu[::2], nu[::2]
     area = focus**2 * (
         np.diff(np.sinh(2 * u) / 4 - u / 2)[:, None] * np.diff(v)
@@ -276,4 +212,4 @@ def ellipse_grid(
         return (across, along) if tall else (along, across)
 
     lines = _Lines(mu, nu, place, np.ones_like, np.ones_like)
-    return _build(lines, area, "segment", quarter=quarter)
+    return _build(lines, area)

@@ -13,11 +13,10 @@ from typing import Literal
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import PLANAR_MEMORY, require_within
 from squeezefilm.physics.film.periodic.nested import steadied
 from squeezefilm.physics.film.planar.balance import Balance, Balancer, Film, resampled
-from squeezefilm.physics.film.planar.gap import PlanarGap, gap_values
+from squeezefilm.physics.film.planar.gap import gap_values
 from squeezefilm.physics.film.planar.grid import (
     PlanarGrid,
     disc_grid,
@@ -36,59 +35,27 @@ _LEAST_TIMES = 9  # of the two counts that a climb begins with, the larger
 class Ladder:
     """The grids of one shape, finer and finer, all images of one smooth map."""
 
-    def __init__(
-        self,
-        shape: PlanarShape,
-        aspect: float,
-        film: Film,
-        quarter: bool,
-        cells: tuple[int, int] | None,
-    ) -> None:
-        self.shape, self.aspect, self.film, self.quarter = shape, aspect, film, quarter
+    def __init__(self, shape: PlanarShape, aspect: float, film: Film) -> None:
+        self.shape, self.aspect, self.film = shape, aspect, film
         self._grids: dict[int, PlanarGrid] = {}
         gap = film.gap
-        self.varied = not (
-            isinstance(gap, PlanarGap) and gap.wave_number == 0.0 and gap.ridge_height == 0.0
-        )
-        waves = 0.0
-        if isinstance(gap, PlanarGap):
-            ridges = gap.ridge_wave_number if gap.ridge_height > 0.0 else 0.0
-            waves = max(2.0 * gap.wave_number, 1.5 * ridges) / (2 * np.pi)
-        if cells is not None:
-            si.require("cells", np.array(cells), at_least=2)
-            # Even, because the full ellipse joins opposite columns.
-            self._base = (cells[0] / 2, 2 * round(cells[1] / 4) or 1)
-        elif shape == "rectangle":
+        ridges = gap.ridge_wave_number if gap.ridge_height > 0.0 else 0.0
+        waves = max(2.0 * gap.wave_number, 1.5 * ridges) / (2 * np.pi)
+        if shape == "rectangle":
             # `waves` periods over the whole length, three cells each and rung.
-            along = max(2, int(np.ceil(waves)))
-            self._base = (along, 2) if quarter else (2 * along, 4)
+            self._base = (max(2, int(np.ceil(waves))), 2)
         else:
-            out = max(2, int(np.ceil(2 * waves)))
             around = max(1, int(np.ceil(2 * waves)))
-            self._base = (out, around) if quarter else (out, 4 * around)
+            self._base = (max(2, around), around)
         rows, columns = sorted((part * RUNGS[0] for part in self._base), reverse=True)
         require_within(
-            PLANAR_MEMORY,
-            _memory(rows, columns, _LEAST_TIMES),
-            enough="take fewer waves, ridges or cells",
+            PLANAR_MEMORY, _memory(rows, columns, _LEAST_TIMES), enough="take fewer waves or ridges"
         )
-        self.excursion = self._excursion()
-
-    def _excursion(self) -> float:
-        if isinstance(self.film.gap, PlanarGap):
-            return self.film.gap.excursion_ratio
-        grid = self.grid(RUNGS[0])
-        T = 2 * np.pi * np.arange(16) / 16
-        H = gap_values(self.film.gap, grid.X, grid.Y, T)
-        first = float(np.abs(np.fft.rfft(H, axis=1)[:, 1]).max() / 8)
-        if first < 1e-12:
-            raise InputError("the gap has no first harmonic in T, so nothing drives the film")
-        return first
 
     def relative_excursion(self) -> float:
         """The largest swing of the gap over its mean at the same place."""
         grid = self.grid(RUNGS[0])
-        H = gap_values(self.film.gap, grid.X, grid.Y, 2 * np.pi * np.arange(16) / 16)
+        H = gap_values(self.film.gap, grid.X, 2 * np.pi * np.arange(16) / 16)
         mean = H.mean(axis=1, keepdims=True)
         return float((np.abs(H - mean) / mean).max())
 
@@ -99,26 +66,19 @@ class Ladder:
         return self._grids[rung]
 
     def _make(self, rung: int) -> PlanarGrid:
-        counts = (round(self._base[0] * rung), round(self._base[1] * rung))
-        sigma = self.film.squeeze_number
+        counts = self._base[0] * rung, self._base[1] * rung
+        sigma, gap = self.film.squeeze_number, self.film.gap
         # Under a gap that varies the pressure has shape inside too, and the edge must not take
         # all the cells.
-        least = 0.15 if self.varied else 2e-3
+        least = 0.15 if gap.wave_number > 0.0 or gap.ridge_height > 0.0 else 2e-3
         if self.shape == "disc":
-            return disc_grid(sigma, counts, quarter=self.quarter, least=least)
+            return disc_grid(sigma, counts, least=least)
         if self.shape == "ellipse":
-            return ellipse_grid(self.aspect, sigma, counts, quarter=self.quarter, least=least)
-        x = graded_line(counts[0], 0.5, sigma, mirror=not self.quarter, least=least)
-        x = refined_line(x, lambda X: self._mean_gap(X, 0.0 * X))
+            return ellipse_grid(self.aspect, sigma, counts, least=least)
+        x = refined_line(graded_line(counts[0], 0.5, sigma, least), gap.mean)
         # Along a long side the share is one of the short side.
-        along = least / max(1.0, self.aspect)
-        y = graded_line(counts[1], self.aspect / 2, sigma, mirror=not self.quarter, least=along)
-        y = refined_line(y, lambda Y: self._mean_gap(0.0 * Y, Y))
-        return rectangle_grid(x, y, quarter=self.quarter)
-
-    def _mean_gap(self, X: si.FloatArray, Y: si.FloatArray) -> si.FloatArray:
-        T = 2 * np.pi * np.arange(4) / 4
-        return np.asarray(gap_values(self.film.gap, X, Y, T).mean(axis=1))
+        y = graded_line(counts[1], self.aspect / 2, sigma, least / max(1.0, self.aspect))
+        return rectangle_grid(x, y)
 
 
 @dataclass(frozen=True)
@@ -214,7 +174,7 @@ class _Climber:
         require_within(
             PLANAR_MEMORY,
             _memory(coarsest.rows, coarsest.columns, count + 4),
-            enough="take fewer waves, ridges or cells",
+            enough="take fewer waves or ridges",
         )
         low = self.solved(RUNGS[0], count, None)
         if low.converged:
@@ -291,10 +251,10 @@ def _moved(film: Film, state: Balance, grid: PlanarGrid) -> si.FloatArray:
     count = state.gas.shape[1]
     T = 2 * np.pi * np.arange(count) / count
     old = state.grid
-    ratio = state.gas / gap_values(film.gap, old.X, old.Y, T)
+    ratio = state.gas / gap_values(film.gap, old.X, T)
     field = ratio.reshape(old.rows, old.columns, count)
     field = _stretched(_stretched(field, 0, grid.rows), 1, grid.columns)
-    return field.reshape(-1, count) * gap_values(film.gap, grid.X, grid.Y, T)
+    return field.reshape(-1, count) * gap_values(film.gap, grid.X, T)
 
 
 def _stretched(field: si.FloatArray, axis: int, size: int) -> si.FloatArray:
@@ -316,17 +276,10 @@ def _solve_or_continue(
     if state.converged:
         return state
     gap = film.gap
-    T = 2 * np.pi * np.arange(16) / 16
     spent, gas = state.iterations, None
     for part in (0.25, 0.5, 0.7, 0.85, 0.95, 1.0):
-
-        def smaller(
-            X: si.FloatArray, Y: si.FloatArray, t: si.FloatArray, part: float = part
-        ) -> si.FloatArray:
-            mean = np.mean([gap(X, Y, np.full((1, 1), s)) for s in T], axis=0)
-            return np.asarray(mean + part * (gap(X, Y, t) - mean))
-
-        eased = replace(film, gap=smaller if part < 1.0 else gap)
+        smaller = replace(gap, excursion_ratio=part * gap.excursion_ratio)
+        eased = replace(film, gap=smaller)
         state = Balancer(eased, grid, count).solve(gas, accuracy if part == 1.0 else 1e-3)
         spent += state.iterations
         gas = state.gas if state.converged else None

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from squeezefilm.physics.contact.sliding.kernel import Drive, Rows, Track, slide_march
+from squeezefilm.physics.contact.sliding.kernel import Track, slide_march
+from squeezefilm.physics.contact.sliding.pieces import BoneDrive, Rows
 from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin
 
 MASS, STIFFNESS = 1.6e-4, 1000.0
@@ -53,7 +54,7 @@ def march(
     x[0], v[0] = start
     limits = np.broadcast_to(np.asarray(limit, dtype=float), t.shape).copy()
     done = slide_march(
-        Drive(bone, speeds[:-1].copy(), speeds[1:].copy(), limits, dt, substeps),
+        BoneDrive(bone, speeds[:-1].copy(), speeds[1:].copy(), limits, dt, substeps),
         LumpedSkin(MASS, damping, STIFFNESS),
         ALIKE,
         static_ratio,

@@ -9,17 +9,15 @@ import pytest
 
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
-from squeezefilm.physics.contact.sliding.kernel import (
-    Drive,
+from squeezefilm.physics.contact.sliding.kernel import Track, slide_march, strongest_and_fall
+from squeezefilm.physics.contact.sliding.march import slide
+from squeezefilm.physics.contact.sliding.pieces import (
+    BoneDrive,
     Rows,
-    Track,
     bounds_on,
     on_segment,
-    slide_march,
-    strongest_and_fall,
     works_of_rest,
 )
-from squeezefilm.physics.contact.sliding.march import slide
 from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin
 from squeezefilm.physics.contact.sliding.skin_path import BonePull
 
@@ -69,7 +67,7 @@ def test_too_many_slips_in_one_sample_are_given_up() -> None:
     def march(swings: float) -> int:
         bone, track = np.zeros(3), np.zeros((4, 3))
         track[0, 0] = 1e-3
-        drive = Drive(bone, np.zeros(2), np.zeros(2), np.full(3, 1e-5), swings * period, 2000)
+        drive = BoneDrive(bone, np.zeros(2), np.zeros(2), np.full(3, 1e-5), swings * period, 2000)
         rows = Rows(np.array([0.0, 1e-6]), np.array([[0.9, 1.0]]))
         written = Track(*track, np.zeros(3, bool), np.zeros((3, 3)), np.zeros(3))
         return int(slide_march(drive, skin, rows, 1.0, 1e-5, written))
