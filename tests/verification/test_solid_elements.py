@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.core.errors import GeometryError
 from squeezefilm.core.materials import PiezoConstants, isotropic_stiffness
 from squeezefilm.physics.plate.elements.box_model import (
     BoxModel,
@@ -302,16 +301,3 @@ def test_p_convergence_is_exponential_on_a_smooth_problem() -> None:
     assert all(error > 0 for error in errors)
     assert errors[0] / errors[1] > 8
     assert errors[1] / errors[2] > 8
-
-
-def test_an_electrode_needs_its_ceramic() -> None:
-    x, y, z = line(0.01, 1, 2), line(0.01, 1, 2), line(0.001, 1, 2)
-    with pytest.raises(GeometryError, match="not piezoelectric"):
-        BoxModel(
-            x, y, z, (STEEL,), np.zeros((1, 1, 1), dtype=int), np.zeros((1, 1, 1), dtype=int),
-            (ModelElectrode(2, 0),),
-        )  # fmt: skip
-    with pytest.raises(GeometryError, match="no ceramic"):
-        solid(x, y, z, STEEL, electrodes=(ModelElectrode(2, 0),))
-    with pytest.raises(GeometryError, match="belongs to no ceramic"):
-        solid(x, y, z, pzt_5a())

@@ -36,7 +36,6 @@ from squeezefilm.physics.plate.ring.modes import (
 from squeezefilm.physics.plate.ring.section import (
     AnnularSection,
     RingLayer,
-    SectorDrive,
     full_drive,
 )
 from squeezefilm.physics.plate.solid.guess import estimated_frequency
@@ -96,12 +95,6 @@ def harmonics(shape: tuple[int, ...], value: float = 1.0) -> Any:
         (lambda: LineMesh((0.0, 1.0, 1.0), (2, 2)), "must ascend"),
         (lambda: line_distance(np.array([1e-3])), "given are 1"),
         (lambda: line_distance(np.ones((2, 2))), "two nodal lines or more"),
-        (lambda: AnnularSection(()), "layers is empty"),
-        (lambda: SectorDrive(()), "sectors is empty"),
-        (lambda: SectorDrive(((0.0, 1.0, 2),)), "polarity"),
-        (lambda: SectorDrive(((0.0, 1.0, 0),)), "polarity"),
-        (lambda: SectorDrive(((0.0, 1.0, 1), (0.5, 2.0, 1))), "where the next starts"),
-        (lambda: SectorDrive(((0.0, 4.0, 1), (4.0, 7.0, 1))), "more than once"),
         (lambda: estimated_frequency(plate(), (0, 0)), "no elastic mode"),
         (lambda: Least(()), "0 patterns"),
         (lambda: Greatest((WAVE,) * 1000), "1000 patterns"),
@@ -118,10 +111,6 @@ def harmonics(shape: tuple[int, ...], value: float = 1.0) -> Any:
 def test_what_cannot_be_is_refused(build: Callable[[], object], word: str) -> None:
     with pytest.raises((InputError, GeometryError, OutOfRangeError), match=word):
         build()
-
-
-def test_sectors_may_end_where_the_next_begins() -> None:
-    assert SectorDrive(((1.0, 2.0, 1), (0.0, 1.0, -1))).angle == pytest.approx(2.0)
 
 
 def png(pixels: np.ndarray, columns: int, rows: int, kind: int) -> bytes:

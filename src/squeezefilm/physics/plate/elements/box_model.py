@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError
+from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic, isotropic_stiffness
 from squeezefilm.physics.plate.elements.lobatto import LineMesh
 from squeezefilm.physics.plate.layout import GlueLayer
@@ -188,6 +188,9 @@ class BoxModel:
     """A solid of boxes: three line meshes, the medium of each cell (−1: empty) and the number of
     the ceramic it belongs to (−1: none), both of shape (x, y, z elements).
 
+    Every piezoelectric cell belongs to a ceramic with electrodes: a potential held nowhere would
+    leave the matrix singular.
+
     `ends` are the conditions on the four sides x−, x+, y−, y+. `trunk` leaves out functions of
     high order along y and z at once: those with a sum of relative orders (q − 1)/(p − 1) above it
     (infinite: the full tensor product).
@@ -213,24 +216,3 @@ class BoxModel:
     def kept(self) -> NDArray[np.bool_]:
         """True for the products of y and z functions that are used, shape (y, z functions)."""
         return kept_products(self.y, self.z, self.trunk)
-
-    def __post_init__(self) -> None:
-        shape = (self.x.elements, self.y.elements, self.z.elements)
-        if self.medium.shape != shape or self.ceramic.shape != shape:
-            raise InputError(f"medium and ceramic must have the shape {shape} of the grid")
-        if self.medium.max(initial=-1) >= len(self.media):
-            raise InputError("a cell names a medium that is not in media")
-        for number in range(len(self.electrodes)):
-            cells = self.ceramic == number
-            if not cells.any():
-                raise GeometryError(
-                    f"electrode {number + 1} has no ceramic under it; give it a ceramic or drop it"
-                )
-            if not all(self.media[m].piezoelectric for m in np.unique(self.medium[cells])):
-                raise GeometryError(
-                    f"electrode {number + 1} lies on a material that is not piezoelectric"
-                )
-        piezo = np.isin(self.medium, [i for i, m in enumerate(self.media) if m.piezoelectric])
-        if np.any(piezo & ((self.ceramic < 0) | (self.ceramic >= len(self.electrodes)))):
-            # A potential held nowhere would leave the matrix singular.
-            raise GeometryError("a piezoelectric cell belongs to no ceramic with electrodes")

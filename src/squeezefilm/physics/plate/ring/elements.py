@@ -16,7 +16,6 @@ import numpy as np
 from scipy import sparse
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import GeometryError
 from squeezefilm.core.hard_limits import RING_ELEMENTS, require_within
 from squeezefilm.physics.plate.elements.box_model import require_aspect
 from squeezefilm.physics.plate.elements.lobatto import gauss_points, lagrange, lobatto_nodes
@@ -104,8 +103,6 @@ def ring_mesh(section: AnnularSection, *, graded: bool = True) -> RingMesh:
     for index, a in enumerate(layers):
         inside_r = (rm > a.inner_radius) & (rm < a.outer_radius)
         fill[np.ix_(inside_r, (zm > a.bottom) & (zm < a.top))] = index
-    if np.all(fill < 0):
-        raise GeometryError("the section is empty")
     return RingMesh(r_edges, z_edges, fill)
 
 
@@ -185,8 +182,8 @@ def harmonic_system(
         whole = np.kron(np.eye(3), inertia) * np.outer(signs[: 3 * nodes], signs[: 3 * nodes])
         masses.append(entries(rows[: 3 * nodes], whole))
         if layer.solid.piezoelectric:
-            # One volt between the faces: E_z = ∓1/h, uniform, so that no charge is left inside.
-            field = (1.0 if layer.driven_face == "lower" else -1.0) / layer.thickness
+            # One volt between the faces: E_z = 1/h, uniform, so that no charge is left inside.
+            field = 1.0 / layer.thickness
             # law[:6, 6:] is −eᵀ: T = c S − eᵀ E.
             pull = (law[:6, 8] * field) @ np.tensordot(area, B[:, :6], axes=1) * signs
             np.add.at(force, np.where(rows < count, rows, total), -pull)

@@ -6,52 +6,15 @@ engineering shear strains.
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated
 
 import numpy as np
-from scipy.sparse import csgraph
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import GeometryError, InputError
 from squeezefilm.physics.plate.elements.box_model import Medium, isotropic_solid, piezoceramic_solid
 from squeezefilm.physics.plate.layout import DiscPlate
-
-
-def require_decoupled(solid: Medium) -> None:
-    """Refuse a medium that is no solid, or whose Fourier harmonics would not decouple.
-
-    Raises `InputError` for a stiffness that is not symmetric and non-negative, or that couples the
-    even components (rr, θθ, zz, rz) to the odd ones (θz, rθ).
-    """
-    c, e = solid.stiffness, solid.stress_matrix
-    si.require("stiffness", c, si.Unit("Pa"))
-    si.require("density", solid.density, si.Unit("kg/m3"), above=0)
-    if solid.loss is not None:
-        si.require("loss", solid.loss, at_least=0, below=2)
-    if c.shape != (6, 6) or not np.allclose(c, c.T, rtol=1e-9, atol=1e-9 * np.abs(c).max()):
-        raise InputError(f"the stiffness of {solid.name} must be a symmetric 6 × 6 array")
-    if np.linalg.eigvalsh(c)[0] < -1e-9 * np.abs(c).max():
-        raise InputError(f"the stiffness of {solid.name} is not that of a stable solid")
-    odd, even = [3, 5], [0, 1, 2, 4]
-    if np.any(c[np.ix_(odd, even)]):
-        raise InputError(
-            f"the stiffness of {solid.name} couples θz or rθ shear to the other strains; only "
-            "materials with a mirror plane normal to θ can be computed by Fourier harmonics"
-        )
-    if e is None:
-        return
-    si.require("piezoelectric", e, si.Unit("C/m2"))
-    if solid.permittivity is None:
-        raise InputError(f"{solid.name} is piezoelectric; give its clamped permittivity too")
-    si.require("permittivity", np.diag(solid.permittivity), si.Unit("F/m"), above=0)
-    if np.any(e[np.ix_([0, 2], odd)]) or np.any(e[np.ix_([1], even)]):
-        raise InputError(
-            f"{solid.name} must be poled along z (or r): its couplings to θz and rθ shear "
-            "would mix Fourier harmonics"
-        )
 
 
 @si.checked_numbers
@@ -110,8 +73,9 @@ _SAME = 5e-10
 class RingLayer:
     """A rectangle of the (r, z) section, revolved: radii and heights in metres.
 
-    A piezoelectric layer has electrodes on the whole of its lower and upper face, and is bonded,
-    earthed, at its upper face unless `driven_face` is "upper".
+    Its solid has a mirror plane normal to θ, as metals and ceramics poled along z do: others would
+    mix Fourier harmonics. A piezoelectric layer has electrodes on the whole of its lower and upper
+    face, and is bonded, earthed, at its upper face.
     """
 
     inner_radius: Annotated[si.Metre, si.AtLeast(0)]
@@ -119,12 +83,10 @@ class RingLayer:
     bottom: si.Metre
     top: si.Metre
     solid: Medium
-    driven_face: Literal["lower", "upper"] = "lower"
 
     def __post_init__(self) -> None:
         si.require("outer_radius", self.outer_radius, _M, above=self.inner_radius)
         si.require("top", self.top, _M, above=self.bottom)
-        require_decoupled(self.solid)
 
     @property
     def thickness(self) -> si.Metre:
@@ -135,37 +97,14 @@ class RingLayer:
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class AnnularSection:
-    """Layers that together make a ring or a disc, free everywhere.
+    """Layers that share faces and together make a ring or a disc, free everywhere.
 
     `wave_diameter` is where wavelengths are measured: by default twice the mean radius of the
-    surface. Raises `GeometryError` for layers that overlap or do not hang together.
+    surface.
     """
 
     layers: tuple[RingLayer, ...]
     wave_diameter: Annotated[si.Metre, si.Above(0)] | None = None
-
-    def __post_init__(self) -> None:
-        if not self.layers:
-            raise GeometryError("layers is empty; a ring needs at least one")
-        count = len(self.layers)
-        touching = np.eye(count, dtype=bool)
-        for i, j in itertools.combinations(range(count), 2):
-            a, b = self.layers[i], self.layers[j]
-            wide = min(a.outer_radius, b.outer_radius) - max(a.inner_radius, b.inner_radius)
-            high = min(a.top, b.top) - max(a.bottom, b.bottom)
-            if wide > _SAME and high > _SAME:
-                raise GeometryError(
-                    f"ring layers {i + 1} and {j + 1} overlap by "
-                    f"{si.format_quantity(wide, _M)} × {si.format_quantity(high, _M)}; move one of "
-                    "them"
-                )
-            touching[i, j] = min(wide, high) > -_SAME and max(wide, high) > _SAME
-        _, piece = csgraph.connected_components(touching, directed=False)
-        if np.any(piece != piece[0]):
-            loose = int(np.argmax(piece != piece[0]))
-            raise GeometryError(
-                f"ring layer {loose + 1} does not touch the others; let them share a face"
-            )
 
     @property
     def thickness(self) -> si.Metre:
@@ -214,28 +153,11 @@ class AnnularSection:
 class SectorDrive:
     """Sectors of the ceramic ring that one channel drives: (start, end, polarity) in radians.
 
-    Polarity is the direction of poling (+1 or −1) under one common electrode, or the sign of its
-    voltage. Raises `GeometryError` for sectors that overlap.
+    They do not overlap. Polarity is the direction of poling (+1 or −1) under one common electrode,
+    or the sign of its voltage.
     """
 
     sectors: tuple[tuple[si.Radian, si.Radian, int], ...]
-
-    def __post_init__(self) -> None:
-        if not self.sectors:
-            raise GeometryError("sectors is empty; a channel needs at least one")
-        for start, end, polarity in self.sectors:
-            si.require("sector start", start, si.Unit("rad"))
-            si.require(
-                "sector end", end, si.Unit("rad"), above=start, at_most=start + 2 * math.pi + 1e-9
-            )
-            if polarity not in (1, -1):
-                raise InputError("polarity must be 1 or -1", quantity="polarity")
-        ordered = sorted(self.sectors)
-        for (_, end, _), (start, _, _) in itertools.pairwise(ordered):
-            if end > start + 1e-9:
-                raise GeometryError("sectors overlap; let each end where the next starts")
-        if ordered[-1][1] - ordered[0][0] > 2 * math.pi + 1e-9:
-            raise GeometryError("sectors overlap: together they go round more than once")
 
     @property
     def angle(self) -> si.Radian:
@@ -259,9 +181,7 @@ class SectorDrive:
 
 @si.checked_numbers
 def alternate_sectors(
-    count: Annotated[int, si.AtLeast(1)],
-    width: Annotated[si.Radian, si.Above(0.0)],
-    start: si.Radian = 0.0,
+    count: Annotated[int, si.AtLeast(1)], width: Annotated[si.Radian, si.Above(0.0)]
 ) -> SectorDrive:
     """`count` neighbouring sectors of one width, of alternate poling: the channel of a motor.
 
@@ -269,10 +189,7 @@ def alternate_sectors(
     other channel and the gaps between the two take the rest.
     """
     return SectorDrive(
-        tuple(
-            (start + k * width, start + (k + 1) * width, 1 if k % 2 == 0 else -1)
-            for k in range(count)
-        )
+        tuple((k * width, (k + 1) * width, 1 if k % 2 == 0 else -1) for k in range(count))
     )
 
 
