@@ -169,10 +169,10 @@ class JointSpread:
         columns, table = self._common(paths, points)
         if not columns:
             return points
-        found = np.array(points, dtype=float)
-        row = np.minimum((found[:, columns[0]] * len(table)).astype(int), len(table) - 1)
-        found[:, columns] = table[row]
-        return found
+        drawn = np.array(points, dtype=float)
+        row = np.minimum((drawn[:, columns[0]] * len(table)).astype(int), len(table) - 1)
+        drawn[:, columns] = table[row]
+        return drawn
 
     @si.checked_numbers
     def moved(self, paths: tuple[str, ...], points: si.DimensionlessArray) -> si.FloatArray:

@@ -79,11 +79,11 @@ def _used(function: Callable[..., Any]) -> Iterator[Any]:
     """The things that a function finds by name, also in modules that it names (``layout.STEP``)."""
     names = function.__code__.co_names
     for name in names:
-        found = function.__globals__.get(name)
-        if isinstance(found, ModuleType):
-            yield from (vars(found).get(other) for other in names)
+        value = function.__globals__.get(name)
+        if isinstance(value, ModuleType):
+            yield from (vars(value).get(other) for other in names)
         else:
-            yield found
+            yield value
 
 
 def _told(one: Any) -> Any:

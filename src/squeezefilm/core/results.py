@@ -130,8 +130,8 @@ class Result:
         for path in self._shown.split():
             *owners, name = path.split(".")
             owner: Any = self
-            for one in owners:
-                owner = getattr(owner, one, None)
+            for part in owners:
+                owner = getattr(owner, part, None)
             value = getattr(owner, name, None)
             if value is not None and not (isinstance(value, str | tuple) and not value):
                 yield path, _in_words(value, _unit_of_attribute(type(owner), name))
@@ -139,8 +139,8 @@ class Result:
 
 def _unit_of_attribute(owner: type, name: str) -> si.Unit | None:
     """The unit in the annotation of a field, or of what a property returns."""
-    found = inspect.getattr_static(owner, name, None)
-    function = found.fget if isinstance(found, property) else getattr(found, "func", None)
+    member = inspect.getattr_static(owner, name, None)
+    function = member.fget if isinstance(member, property) else getattr(member, "func", None)
     if function is not None:
         return si.unit_of(typing.get_type_hints(function, include_extras=True).get("return"))
     return si.unit_of(si.hints_of(owner).get(name))
@@ -151,7 +151,7 @@ def _in_words(value: Any, unit: si.Unit | None) -> str:
         texts = all(isinstance(item, str) for item in value)
         return ("; " if texts else " to ").join(_in_words(item, unit) for item in value)
     if isinstance(value, typing.Mapping):
-        return ", ".join(f"{key} {_in_words(one, unit)}" for key, one in value.items())
+        return ", ".join(f"{key} {_in_words(entry, unit)}" for key, entry in value.items())
     if isinstance(value, float | np.floating):
         return si.format_quantity(float(value), unit or si.Unit("1"))
     return str(value)

@@ -106,8 +106,8 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
     built = _build(cls, model, (), source)
     if any(field.name == "provenance" for field in dataclasses.fields(cls)):  # type: ignore[arg-type]
         for key, spread in split.spreads.items():
-            found = _distribution(built, key, spread, source)
-            split.sources[key] = dataclasses.replace(split.sources[key], distribution=found)
+            distribution = _distribution(built, key, spread, source)
+            split.sources[key] = dataclasses.replace(split.sources[key], distribution=distribution)
         sources = split.sources if references is None else stated_sources(built, split, original)
         built = dataclasses.replace(built, provenance=read_only(sources))
     return typing.cast(T, built)

@@ -118,7 +118,7 @@ def distribution_of(value: float, unit: si.Unit, spread: Spread) -> Distribution
     cannot be."""
     if isinstance(spread, tuple):
         low, high = (si.parse_quantity(text, unit) for text in spread)
-        found: Distribution = Uniform(low, high)
+        distribution: Distribution = Uniform(low, high)
         if not low <= value <= high:
             raise InputError(
                 f"range = [{spread[0]}, {spread[1]}] leaves out the value "
@@ -126,15 +126,15 @@ def distribution_of(value: float, unit: si.Unit, spread: Spread) -> Distribution
             )
     elif spread.strip().endswith("%"):
         share = si.parse_quantity(spread.strip().removesuffix("%").strip(), si.Unit("1")) / 100
-        found = Normal(value, share * abs(value))
+        distribution = Normal(value, share * abs(value))
     else:
-        found = Normal(value, si.parse_quantity(spread, unit))
-    if value > 0 and found.support[0] <= 0:
+        distribution = Normal(value, si.parse_quantity(spread, unit))
+    if value > 0 and distribution.support[0] <= 0:
         raise InputError(
             f"uncertainty = {spread!r} lets {si.format_quantity(value, unit)} become negative "
             "within three standard deviations; give a range instead"
         )
-    return found
+    return distribution
 
 
 def _provenance(node: Mapping[str, Any], path: str) -> Provenance:
@@ -163,7 +163,7 @@ def stated_sources(built: Any, split: Split, original: Any = None) -> dict[str, 
             sources[path] = split.tables.get(table, Provenance("", UNSTATED))
     if original is None:
         return sources
-    return {path: _if_unchanged(built, original, path, one) for path, one in sources.items()}
+    return {path: _if_unchanged(built, original, path, source) for path, source in sources.items()}
 
 
 def described(cls: type[Any], tree: Mapping[str, Any]) -> dict[str, Any]:
@@ -224,7 +224,7 @@ def changed_from(was: str, source: str) -> str:
 
 def unstated(provenance: Mapping[str, Provenance]) -> tuple[str, ...]:
     """The dotted paths of the numbers of a description that have no source."""
-    return tuple(path for path, one in provenance.items() if one.evidence == UNSTATED)
+    return tuple(path for path, source in provenance.items() if source.evidence == UNSTATED)
 
 
 def source_doubt(provenance: Mapping[str, Provenance]) -> str | None:

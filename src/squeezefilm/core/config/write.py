@@ -67,9 +67,9 @@ def _table(
     for name, item in tables:
         here = (*path, name)
         if isinstance(item, tuple):
-            for number, one in enumerate(item):
+            for number, entry in enumerate(item):
                 lines.extend(["", f"[[{'.'.join(here)}]]"])
-                _table(one, here, lines, sources, f"{at}{name}.{number}.")
+                _table(entry, here, lines, sources, f"{at}{name}.{number}.")
         else:
             lines.extend(["", f"[{'.'.join(here)}]"])
             _table(item, here, lines, sources, f"{at}{name}.")
@@ -136,7 +136,7 @@ def _inline(item: Any, hint: Any) -> str:
         inner = typing.get_args(hint)[0]
         return "[" + ", ".join(_inline(value, inner) for value in item) + "]"
     if dataclasses.is_dataclass(item):
-        pairs = [f"{name} = {_inline(one, hint)}" for name, one, hint in _written(item)]
+        pairs = [f"{name} = {_inline(part, hint)}" for name, part, hint in _written(item)]
         return "{ " + ", ".join(pairs) + " }"
     if isinstance(item, bool):
         return "true" if item else "false"

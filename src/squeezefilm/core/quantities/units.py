@@ -357,8 +357,8 @@ def unit_of(annotation: Any) -> Unit | None:
             if isinstance(item, Unit):
                 return item
     for part in typing.get_args(annotation):
-        if typing.get_origin(part) is Annotated and (found := unit_of(part)) is not None:
-            return found
+        if typing.get_origin(part) is Annotated and (unit := unit_of(part)) is not None:
+            return unit
     return None
 
 

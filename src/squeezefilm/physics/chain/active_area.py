@@ -116,10 +116,10 @@ class ActiveArea:
             return ()
         near = np.round(self.relative_friction, 9), self.lobe_amplitude.ravel()
         wanted = (self.best, self.median, self.worst)
-        found = [
+        places = [
             int(np.nanargmin(np.abs(near[0] - value))) for value in wanted if value is not None
         ]
-        return tuple((self._place(at), float(near[1][at])) for at in found)
+        return tuple((self._place(at), float(near[1][at])) for at in places)
 
     @property
     def amplitude_range(self) -> tuple[si.Metre, si.Metre]:
@@ -141,7 +141,7 @@ class ActiveArea:
         """The range, its places and the share, for people."""
         head = f"Over the active area{self._size_said} ({self.rule})"
         if self.best_place is None or self.worst_place is None:
-            low, high = (1e6 * one for one in self.amplitude_range)
+            low, high = (1e6 * amplitude for amplitude in self.amplitude_range)
             return (
                 f"{head} the amplitude under the pad is {low:.3g} µm to {high:.3g} µm (root mean "
                 f"square); the friction there is not known: {self.why_not}."

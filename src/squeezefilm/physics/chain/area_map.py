@@ -50,11 +50,11 @@ def at_best_place(display: Display, mode: WorkingMode, law: FrictionLaw) -> Fric
     if not mode.has_shape or not law.kind.shares_load:
         return law
     own = free_vibration(display, mode, law.frequency, display.drive.voltage or 1.0, None)
-    found = active_area(display, mode, law, own)
-    if found is None or found.best_place is None:
+    area = active_area(display, mode, law, own)
+    if area is None or area.best_place is None:
         return law
     shape = surface_shape(display.actuator, mode, own.frequency)
-    place = PadPlace(shape, *found.best_place, is_best_of_area=True)
+    place = PadPlace(shape, *area.best_place, is_best_of_area=True)
     return dataclasses.replace(law, position=0.0, place=place)
 
 
@@ -136,7 +136,7 @@ def _met(
     along, by_y = np.unique(dy, return_index=True)
     if at.shape[0] == x.size * y.size and across.size * along.size == dx.size:
         # Ridges along an axis, under every place of a grid: their points are a grid too.
-        found, covered = (
+        values_there, covered = (
             values.reshape(x.size, across.size, y.size, along.size)
             .transpose(0, 2, 1, 3)
             .reshape(at.shape[0], -1)
@@ -149,7 +149,7 @@ def _met(
         )
         order = np.lexsort((dy, dx))
         weights = points.shares[order] * covered
-        return found, weights / np.sum(weights, axis=1, keepdims=True)
+        return values_there, weights / np.sum(weights, axis=1, keepdims=True)
     parts = np.array_split(at, -(-at.shape[0] * dx.size // _AT_A_TIME))
     met = [met_by_pads(shape, x[part[:, 0]], y[part[:, 1]], points) for part in parts]
     return (

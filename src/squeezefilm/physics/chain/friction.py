@@ -207,11 +207,11 @@ class AsymptoteLaw(FrictionLaw):
     def friction_in(self, limit: Limit, amplitude: si.MetreArray) -> si.DimensionlessArray:
         """Relative friction µ′/µ at amplitudes (m), shape (n,), whichever the limit: this gap does
         not yield."""
-        found = paper.relative_friction(
+        share = paper.relative_friction(
             self.gap(amplitude), self.normal_force, self.gas.ambient_pressure, self._closed_form
         )
         # As printed, the mean pressure of small vibrations is a hair below the ambient one.
-        return np.minimum(found, 1.0)
+        return np.minimum(share, 1.0)
 
     @si.checked_numbers
     def amplitude_for(

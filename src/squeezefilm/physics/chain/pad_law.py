@@ -106,7 +106,7 @@ class PadLaw:
         require_tabulated(amplitude, met)
         rows, table = np.zeros((met.size, kernel.COLUMNS)), self._films
         while True:
-            _, found, lacking = kernel.felt_stiffness(amplitude, known, table.compiled, rows)
+            _, stiffness, lacking = kernel.felt_stiffness(amplitude, known, table.compiled, rows)
             if lacking < 0:
                 break
             table.build(lacking)
@@ -114,7 +114,7 @@ class PadLaw:
             swings, alike = amplitude * met, np.full(met.size, known.pressure)
             with self._named_force():
                 require_balanced(rows, self.asperities, swings, alike)
-        return complex(found)
+        return complex(stiffness)
 
     def __getstate__(self) -> dict[str, object]:
         """State to be pickled, without the form for compiled code, whose tables are made anew."""
@@ -213,7 +213,7 @@ def require_tabulated(amplitude: si.MetreLike, met: si.DimensionlessArray) -> No
     most = float(np.max(amplitude)) * float(np.max(met))
     if most > HIGHEST_AMPLITUDE * (1 + 1e-9):
         shown, highest = (
-            si.format_quantity(one, si.Unit("m")) for one in (most, HIGHEST_AMPLITUDE)
+            si.format_quantity(length, si.Unit("m")) for length in (most, HIGHEST_AMPLITUDE)
         )
         raise OutOfRangeError(
             f"a ridge would meet an amplitude of {shown}; friction is known up to {highest}. "

@@ -187,8 +187,8 @@ def _images(value: Any) -> Iterator[Image]:
     if isinstance(value, Image):
         yield value
     elif isinstance(value, tuple):
-        for one in value:
-            yield from _images(one)
+        for item in value:
+            yield from _images(item)
     elif dataclasses.is_dataclass(value) and not isinstance(value, type):
         for field in dataclasses.fields(value):
             if not field.name.startswith("_"):

@@ -55,12 +55,12 @@ def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
     half, law = p.mode.half_wavelength, p.law
     if not MODEL_KINDS[p.model].shares_load:
         return WaveCompensation.over_contact(half, law.finger.contact_length, along=along)
-    found = law.ripple(p.vibration_amplitude)
+    ripple = law.ripple(p.vibration_amplitude)
     # Off the antinode friction may be less than the display makes centred on it.
     wide = _BETTER * p.vibration_amplitude
     inverse = FrictionInverse.from_function(law.table(wide), wide)
-    reached = np.clip(found.relative_friction, inverse.least_friction, 1.0)
-    return WaveCompensation.from_ripple(found.position, reached, inverse, half, along=along)
+    reached = np.clip(ripple.relative_friction, inverse.least_friction, 1.0)
+    return WaveCompensation.from_ripple(ripple.position, reached, inverse, half, along=along)
 
 
 def factor_of_law(p: Prediction, factors: WaveCompensation) -> si.Dimensionless:
@@ -126,8 +126,8 @@ class UnderPad:
         taken = np.unique(np.linspace(0, table.speed.size - 1, count).round().astype(int))
         rows = np.empty((amplitude.size, taken.size))
         for column, at in zip(rows.T, taken, strict=True):
-            found = np.interp(amplitude, table.amplitude, table.relative_friction[at])
-            column[:] = friction_coefficient * found
+            relative = np.interp(amplitude, table.amplitude, table.relative_friction[at])
+            column[:] = friction_coefficient * relative
         return SpeedFriction(table.speed[taken], rows)
 
     def factor(self, finger: FingerMotion) -> si.DimensionlessArray:

@@ -172,10 +172,10 @@ def _settled(made: Callable[[float], _Left], free: float, tolerance: float) -> _
     """The vibration that makes itself, by secants from the free one; None if it takes too long."""
     amplitude, slope, before = free, 0.0, None
     for _ in range(_MOST_STEPS):
-        found = made(amplitude)
-        new = found.amplitude
+        touch = made(amplitude)
+        new = touch.amplitude
         if abs(new - amplitude) <= tolerance * free:
-            return found
+            return touch
         # Where the finger takes much the two chase each other for long: the secant cuts that short.
         if before is not None:
             slope = (new - before[1]) / (amplitude - before[0])
@@ -203,10 +203,10 @@ def _searched(made: Callable[[float], _Left], free: float, most: float, toleranc
         at_far = gain(far)
         if at_near * at_far <= 0:
             amplitude = float(brentq(gain, near, far, xtol=1e-12 * free, rtol=1e-14))
-            found = made(amplitude)
-            at_near = found.amplitude - amplitude
+            touch = made(amplitude)
+            at_near = touch.amplitude - amplitude
             if abs(at_near) <= tolerance * free:
-                return found
+                return touch
             break
         near, at_near = far, at_far
     raise ConvergenceError(
@@ -231,13 +231,13 @@ def kept_at(mode: WorkingMode, law: FrictionLaw, amplitude: si.Metre) -> si.Dime
 def load_ratios(mode: WorkingMode, law: FrictionLaw, amplitude: si.MetreArray) -> si.ComplexArray:
     """The finger's modal stiffness over the mode's own, δ (complex), at amplitudes with the finger
     on (m), shape (n,). Zero where the modal mass is not known: the finger is left out."""
-    found: si.ComplexArray = np.zeros(np.shape(amplitude), dtype=complex)
+    ratio: si.ComplexArray = np.zeros(np.shape(amplitude), dtype=complex)
     if mode.modal_mass is None:
-        return found
+        return ratio
     pad = _Pad.of(law)
-    for i, one in enumerate(np.ravel(amplitude).tolist()):
-        found.flat[i] = _loaded(mode, mode.modal_mass, _carried(pad, one)).load_ratio
-    return found
+    for i, each in enumerate(np.ravel(amplitude).tolist()):
+        ratio.flat[i] = _loaded(mode, mode.modal_mass, _carried(pad, each)).load_ratio
+    return ratio
 
 
 def _carried(pad: _Pad, amplitude: si.Metre) -> _Felt:

@@ -173,8 +173,8 @@ class RoughContact:
     def __post_init__(self) -> None:
         if not 1.5 <= self.longest_wavelength / self.shortest_wavelength <= 1e5:
             longest, shortest = (
-                si.format_quantity(one, si.Unit("m"))
-                for one in (self.longest_wavelength, self.shortest_wavelength)
+                si.format_quantity(length, si.Unit("m"))
+                for length in (self.longest_wavelength, self.shortest_wavelength)
             )
             raise InputError(
                 f"shortest_wavelength = {shortest} beside a longest_wavelength of {longest} cannot "
@@ -235,8 +235,8 @@ class RoughContact:
         t = np.asarray(gap, dtype=float) / self.roughness
         if np.any(t < LEAST_GAP * (1 - 1e-9)):
             least, rough = (
-                si.format_quantity(one, si.Unit("m"))
-                for one in (float(np.min(gap)), self.roughness)
+                si.format_quantity(length, si.Unit("m"))
+                for length in (float(np.min(gap)), self.roughness)
             )
             raise OutOfRangeError(
                 f"a gap of {least} is less than {LEAST_GAP} of the roughness of {rough}: the faces "

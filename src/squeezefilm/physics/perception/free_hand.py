@@ -40,7 +40,7 @@ def free_exploration(
     It keeps to x and y from 0 to the stroke's length, or to the face's own where that is shorter.
     Raises `InputError` for a face outside of 1 cm to 10 m.
     """
-    width, height = (min(observer.stroke_length, one) for one in face)
+    width, height = (min(observer.stroke_length, side) for side in face)
     spread = (np.arange(observer.passes) + 0.5) / observer.passes
     corners = [(0.0, height * spread[0])]
     for place in height * spread:

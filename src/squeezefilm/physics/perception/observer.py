@@ -171,10 +171,10 @@ class Observer:
     ) -> FingerClass:
         """The finger of a person in the middle of all, pressing with a force (N) of its own if
         given. Raises `InputError` for a force out of range."""
-        found = dataclasses.replace(self, finger_classes=1).fingers()[0]
+        finger = dataclasses.replace(self, finger_classes=1).fingers()[0]
         if normal_force is None:
-            return found
-        return dataclasses.replace(found, normal_force=normal_force)
+            return finger
+        return dataclasses.replace(finger, normal_force=normal_force)
 
     def fingers(self) -> tuple[FingerClass, ...]:
         """The finger classes: a Latin hypercube over what people differ in, always the same.

@@ -126,7 +126,7 @@ def path_percept(
     run = apparatus or Apparatus()
     played, runs = [], []
     for path in paths:
-        one = render_texture(
+        rendered = render_texture(
             with_finger(display, finger),
             surface,
             path,
@@ -138,14 +138,14 @@ def path_percept(
             control_rate=CONTROL_RATE,
             seed=_SEED,
         )
-        played.append(one)
-        runs += _runs_of(one, path)
+        played.append(rendered)
+        runs += _runs_of(rendered, path)
     if not runs:
         raise InputError(
             "the path has no straight run of 4 mm or more, along which a rhythm could be felt; "
             "check its unit (x_m in metres), or give a longer one"
         )
-    along, across = ([one for one in runs if one.along_x is which] for which in (True, False))
+    along, across = ([run for run in runs if run.along_x is which] for which in (True, False))
     return PathPercept(_felt(observer, along), _felt(observer, across), tuple(played))
 
 
@@ -207,11 +207,11 @@ def _felt(observer: Observer, runs: list[_OneRun]) -> RunPercept | None:
         for name in ("stretch", "speed", "asked", "felt")
     )
     mean = abs(float(np.mean(way)))
-    found = evidence(observer, amplitude, channel_gains(observer, speed), mean)
+    heard = evidence(observer, amplitude, channel_gains(observer, speed), mean)
     lengths = np.array([run.length for run in runs])
-    rhythms = candidates(observer, found, float(share @ lengths / share.sum()))
+    rhythms = candidates(observer, heard, float(share @ lengths / share.sum()))
     return RunPercept(
-        percept=Percept(found, rhythms, mean),
+        percept=Percept(heard, rhythms, mean),
         runs=len(runs),
         way=float(lengths.sum()),
         mean_speed=float(lengths.sum() / sum(run.duration for run in runs)),

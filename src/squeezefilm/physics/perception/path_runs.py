@@ -50,19 +50,19 @@ def straight_runs(path: FingerPath, shortest: si.Metre = SHORTEST_RUN) -> tuple[
     The cuts do not change where path and axes are shifted or turned together.
     """
     place = np.stack([path.x, path.y], axis=1)
-    found = []
+    runs = []
     for begin, end in _one_way(place):
         for first, last in _straight(place, begin, end):
             dx, dy = (float(one) for one in place[last] - place[first])
             length = math.hypot(dx, dy)
             if length >= shortest:
-                found.append(PathRun(first, last, length, math.atan2(dy, dx)))
-    return tuple(found)
+                runs.append(PathRun(first, last, length, math.atan2(dy, dx)))
+    return tuple(runs)
 
 
 def _one_way(place: si.FloatArray) -> list[tuple[int, int]]:
     """Stretches on which the finger does not come back towards where it began."""
-    found, begin, end = [], 0, place.shape[0] - 1
+    stretches, begin, end = [], 0, place.shape[0] - 1
     while begin < end:
         away = np.hypot(*(place[begin:] - place[begin]).T)
         farthest = np.maximum.accumulate(away)
@@ -73,15 +73,15 @@ def _one_way(place: si.FloatArray) -> list[tuple[int, int]]:
             last = begin + int(np.argmax(away[: back[0] + 1]))
         if last == begin:
             break
-        found.append((begin, last))
+        stretches.append((begin, last))
         begin = last
-    return found
+    return stretches
 
 
 def _straight(place: si.FloatArray, begin: int, end: int) -> list[tuple[int, int]]:
     """Parts of a stretch that keep to the straight line between their ends (Douglas and Peucker
     1973, 10.3138/FM57-6770-U75U-7727)."""
-    todo, found = [(begin, end)], []
+    todo, pieces = [(begin, end)], []
     while todo:
         first, last = todo.pop()
         along = place[last] - place[first]
@@ -92,5 +92,5 @@ def _straight(place: si.FloatArray, begin: int, end: int) -> list[tuple[int, int
         if aside[widest] > TURN and 0 < widest < last - first:
             todo += [(first + widest, last), (first, first + widest)]
         else:
-            found.append((first, last))
-    return found
+            pieces.append((first, last))
+    return pieces

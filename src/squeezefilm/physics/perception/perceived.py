@@ -53,8 +53,8 @@ def perceived(
     heard = surface.d_prime + skill[..., None] * noise
     best = np.argmax(heard, axis=-1)[..., None]
     strength, period, d_prime = (
-        np.take_along_axis(one, best, -1)[..., 0]
-        for one in (heard, surface.period, surface.d_prime)
+        np.take_along_axis(of_rhythms, best, -1)[..., 0]
+        for of_rhythms in (heard, surface.period, surface.d_prime)
     )
     felt = strength > observer.detection_criterion
     clear = np.where(felt, np.maximum(d_prime, _FAINTEST), np.inf)

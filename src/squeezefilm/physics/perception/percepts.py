@@ -106,8 +106,8 @@ def percept(
     speeds = along_way(force.bone_position, speed, observer, (1.0, -1.0))
     mean = abs(float(np.mean(passes)))
     gains = channel_gains(observer, np.maximum(speeds, 0.0))
-    found = evidence(observer, line_amplitudes(passes), gains, mean)
-    return Percept(found, candidates(observer, found), mean), played
+    heard = evidence(observer, line_amplitudes(passes), gains, mean)
+    return Percept(heard, candidates(observer, heard), mean), played
 
 
 def grating_percept(grating: Grating, observer: Observer, finger: FingerClass) -> Percept:
@@ -120,7 +120,7 @@ def grating_percept(grating: Grating, observer: Observer, finger: FingerClass) -
     fine = np.linspace(0.0, stroke.pass_duration, 4001)
     place = stroke.position(np.minimum(fine, stroke.pass_duration))
     speed = np.interp(way, place, np.gradient(place, fine))
-    found = evidence(
+    heard = evidence(
         observer,
         line_amplitudes(profile[None, :]),
         channel_gains(observer, speed),
@@ -128,7 +128,7 @@ def grating_percept(grating: Grating, observer: Observer, finger: FingerClass) -
         grating.period,
         grating.groove_width,
     )
-    return Percept(found, candidates(observer, found), 0.5 * depth)
+    return Percept(heard, candidates(observer, heard), 0.5 * depth)
 
 
 def indentation(grating: Grating, pressure: si.Pascal, modulus: si.Pascal) -> si.Metre:
@@ -197,11 +197,11 @@ def along_way(
         raise InputError(
             f"a pass of {per_pass:.0f} control steps shows no texture; move more slowly"
         )
-    found = []
+    passes = []
     for number in range(observer.passes):
         rows = slice(math.ceil(number * per_pass), math.floor((number + 1) * per_pass) + 1)
         back = number % 2
         here = observer.stroke_length - way[rows] if back else way[rows]
         rising = np.concatenate([[True], np.diff(np.maximum.accumulate(here)) > 0.0])
-        found.append(np.interp(even, here[rising], forth[back] * values[rows][rising]))
-    return np.array(found)
+        passes.append(np.interp(even, here[rising], forth[back] * values[rows][rising]))
+    return np.array(passes)

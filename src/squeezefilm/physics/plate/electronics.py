@@ -259,8 +259,8 @@ def ring_admittance(actuator: AnnularStator | DiscPlate) -> RingAdmittance:
 
 def _driven_harmonics(body: RingBody, own: int) -> list[int]:
     """A mode's harmonic, and those up to three times it that hold a twentieth of its charge."""
-    shares = [abs(body.drive.coefficient(one)) ** 2 for one in range(3 * own + 3)]
-    return [one for one, share in enumerate(shares) if one == own or share > 0.05 * shares[own]]
+    shares = [abs(body.drive.coefficient(m)) ** 2 for m in range(3 * own + 3)]
+    return [m for m, share in enumerate(shares) if m == own or share > 0.05 * shares[own]]
 
 
 def driven_ceramics(plate: RectangularPlate) -> int:

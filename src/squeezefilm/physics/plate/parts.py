@@ -112,7 +112,7 @@ def parts_of(actuator: Actuator) -> tuple[Part, ...]:
 
 def assembly_mass(actuator: Actuator) -> si.Kilogram:
     """Mass of an actuator with its ceramics and their glue (kg). Raises as `parts_of`."""
-    return math.fsum(one.mass for one in parts_of(actuator))
+    return math.fsum(part.mass for part in parts_of(actuator))
 
 
 def _of_plate(plate: RectangularPlate) -> tuple[Part, ...]:

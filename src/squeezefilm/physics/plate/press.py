@@ -77,8 +77,8 @@ def _middle(half: si.FloatArray, nu: float) -> si.FloatArray:
         axis=1,
     )
     push = np.array([0.0, 0.5, 0.0, 0.0])
-    found = np.linalg.solve(rows, np.broadcast_to(push[:, None], (half.size, 4, 1)))[..., 0]
-    at_middle: si.FloatArray = found[:, 0] + e * found[:, 2] + half * e * found[:, 3]
+    motion = np.linalg.solve(rows, np.broadcast_to(push[:, None], (half.size, 4, 1)))[..., 0]
+    at_middle: si.FloatArray = motion[:, 0] + e * motion[:, 2] + half * e * motion[:, 3]
     return at_middle
 
 

@@ -242,17 +242,17 @@ def loudest(surface: RadiatingSurface, distance: si.Metre) -> Loudest:
 
     level = at(*np.meshgrid(polar, azimuth, indexing="ij"))
     i, j = np.unravel_index(int(np.argmax(level)), level.shape)
-    found = (float(level[i, j]), float(polar[i]), float(azimuth[j]))
+    loudest = (float(level[i, j]), float(polar[i]), float(azimuth[j]))
     wide = (float(polar[1]), float(azimuth[1]))
     for _ in range(3):
-        near_t = np.clip(found[1] + wide[0] * np.linspace(-1, 1, 9), 0, math.pi / 2)
-        near_p = found[2] + wide[1] * np.linspace(-1, 1, 9)
+        near_t = np.clip(loudest[1] + wide[0] * np.linspace(-1, 1, 9), 0, math.pi / 2)
+        near_p = loudest[2] + wide[1] * np.linspace(-1, 1, 9)
         t, p = np.meshgrid(near_t, near_p, indexing="ij")
         fine = at(t, p)
         i, j = np.unravel_index(int(np.argmax(fine)), fine.shape)
-        found = max(found, (float(fine[i, j]), float(t[i, j]), float(p[i, j])))
+        loudest = max(loudest, (float(fine[i, j]), float(t[i, j]), float(p[i, j])))
         wide = (wide[0] / 4, wide[1] / 4)
-    return Loudest(found[0], found[1], found[2] % (2 * math.pi))
+    return Loudest(loudest[0], loudest[1], loudest[2] % (2 * math.pi))
 
 
 def _directions(surface: RadiatingSurface) -> tuple[si.FloatArray, si.FloatArray]:

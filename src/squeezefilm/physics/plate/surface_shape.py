@@ -165,9 +165,9 @@ class SolvedSurface(SurfaceShape):
         # Splines ask for places in order.
         row, column = np.argsort(x), np.argsort(y)
         real, imaginary = (spline(x[row], y[column]) for spline in self._splines)
-        found = np.empty((x.size, y.size))
-        found[np.ix_(row, column)] = np.hypot(real, imaginary)
-        return found
+        amplitude = np.empty((x.size, y.size))
+        amplitude[np.ix_(row, column)] = np.hypot(real, imaginary)
+        return amplitude
 
     def __getstate__(self) -> dict[str, object]:
         """State without the splines, which are made anew where they are asked for."""
@@ -186,8 +186,8 @@ class BeamSurface(SurfaceShape):
     def _line(self, along: si.MetreArray) -> si.DimensionlessArray:
         mode = self.beam.mode
         at_lobe = mode.deflection_at(np.array([self.lobe[0 if self.along == "x" else 1]]))
-        found: si.DimensionlessArray = np.abs(mode.deflection_at(along) / at_lobe)
-        return found
+        shape: si.DimensionlessArray = np.abs(mode.deflection_at(along) / at_lobe)
+        return shape
 
     def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
         return self._line(x if self.along == "x" else y)

@@ -170,25 +170,25 @@ def implausibilities(display: Display, voltage: si.Volt | None = None) -> tuple[
         for owner, path, value in described_numbers(display)
         if (of := f"{owner}.{path[-1]}") in known
     ]
-    found = _outside(display, single)
-    if not any(doubt.refused for doubt in found.values()):
+    doubts = _outside(display, single)
+    if not any(doubt.refused for doubt in doubts.values()):
         for key, doubt in _outside(display, ratios(display, voltage)).items():
-            if key not in found or (doubt.refused and not found[key].refused):
-                found[key] = doubt
-    return tuple(sorted(found.values(), key=lambda doubt: not doubt.refused))
+            if key not in doubts or (doubt.refused and not doubts[key].refused):
+                doubts[key] = doubt
+    return tuple(sorted(doubts.values(), key=lambda doubt: not doubt.refused))
 
 
 def _outside(display: Display, values: Iterable[Ratio]) -> dict[str, Implausible]:
     """Values that are not usual, by key."""
-    found: dict[str, Implausible] = {}
+    doubts: dict[str, Implausible] = {}
     for value in values:
         bound = bounds()[value.of]
         if bound.is_usual(value.value):
             continue
         doubt = _said(display, bound, value)
-        if doubt.key not in found or (doubt.refused and not found[doubt.key].refused):
-            found[doubt.key] = doubt
-    return found
+        if doubt.key not in doubts or (doubt.refused and not doubts[doubt.key].refused):
+            doubts[doubt.key] = doubt
+    return doubts
 
 
 @contextmanager
@@ -213,15 +213,15 @@ def require_plausible(
     """
     if _CHECKED.get():
         return ()
-    found = implausibilities(display, voltage)
-    wrong = [doubt for doubt in found if doubt.refused]
+    doubts = implausibilities(display, voltage)
+    wrong = [doubt for doubt in doubts if doubt.refused]
     if len(wrong) == 1:
         line = locate(text, wrong[0].path) if text else None
         raise ConfigError(wrong[0].text, file=file, line=line, key=wrong[0].key)
     if wrong:
         lines = [f"  {doubt.sentence}{_line(text, doubt)}" for doubt in wrong]
         raise ConfigError(f"{len(wrong)} values cannot be right:\n" + "\n".join(lines), file=file)
-    return tuple(doubt.sentence for doubt in found)
+    return tuple(doubt.sentence for doubt in doubts)
 
 
 def _line(text: str, doubt: Implausible) -> str:

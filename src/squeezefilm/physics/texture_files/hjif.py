@@ -166,7 +166,7 @@ def _lost(
     x = np.linspace(start, end, 2001)
     here = friction(x)
     si.require("relative friction", here, at_least=0.0, at_most=1.0)
-    found = [f"the texture goes on outside of {start:.6g} to {end:.6g} m"]
+    losses = [f"the texture goes on outside of {start:.6g} to {end:.6g} m"]
     for what, others in (
         ("across the line (y)", [friction(x, y=y) for y in _ELSEWHERE_Y]),
         ("with the finger's velocity", [friction(x, v=v) for v in _ELSEWHERE_V]),
@@ -174,13 +174,13 @@ def _lost(
     ):
         change = max(float(np.max(np.abs(other - here))) for other in others)
         if change > 1e-9:
-            found.append(f"the friction changes {what}, by up to {change:.3g}; the file does not")
+            losses.append(f"the friction changes {what}, by up to {change:.3g}; the file does not")
     if texture.quantity != "relative_friction":
-        found.append(
+        losses.append(
             f"the texture is of {texture.quantity}; the file holds the friction it makes on this "
             "display"
         )
-    return found
+    return losses
 
 
 def _wave(texture: Composable, start: si.Metre, end: si.Metre) -> list[dict[str, Any]] | None:

@@ -64,16 +64,16 @@ def picture_from(data: bytes, name: str = "the picture") -> si.DimensionlessArra
             "together: make its pixels larger"
         )
     try:
-        _, (found,) = read_isolated(_brightness, data=data, file=name)
+        _, (pixels,) = read_isolated(_brightness, data=data, file=name)
     except ConfigError as error:
         raise InputError(f"{name} {error.message}") from error
     # A camera that was held upright says so, and the picture is turned.
-    if sorted(found.shape) != sorted((rows, columns)):
+    if sorted(pixels.shape) != sorted((rows, columns)):
         raise InputError(f"{name} is damaged: its header does not belong to its pixels")
     if colours:
         text = f"{name} is in colour: of each pixel the brightness is used, from black to white"
         warnings.warn(text, SqueezefilmWarning, stacklevel=2)
-    return np.asarray(found)
+    return np.asarray(pixels)
 
 
 def _header(data: bytes, name: str) -> tuple[int, int, bool]:
@@ -201,16 +201,16 @@ def with_images(value: Any, folder: Path | None) -> Any:
             )
         return value.image(folder)
     if isinstance(value, tuple):
-        found = tuple(with_images(one, folder) for one in value)
-        return found if any(a is not b for a, b in zip(found, value, strict=True)) else value
+        items = tuple(with_images(item, folder) for item in value)
+        return items if any(a is not b for a, b in zip(items, value, strict=True)) else value
     if not dataclasses.is_dataclass(value) or isinstance(value, type | Image):
         return value
     changed = {}
-    for one in dataclasses.fields(value):
-        if not one.init:
+    for part in dataclasses.fields(value):
+        if not part.init:
             continue
-        before = getattr(value, one.name)
+        before = getattr(value, part.name)
         after = with_images(before, folder)
         if after is not before:
-            changed[one.name] = after
+            changed[part.name] = after
     return dataclasses.replace(value, **changed) if changed else value

@@ -73,9 +73,9 @@ NamedTexture = Annotated[TextureFile | Composable, ReadBy(load_texture)]
 """A texture, or in its place the name of a preset or the path of a file (see `reads_text`)."""
 
 
-def _with_images(found: TextureFile, path: Path | None, folder: Path | None = None) -> TextureFile:
+def _with_images(given: TextureFile, path: Path | None, folder: Path | None = None) -> TextureFile:
     try:
-        whole = image_file.with_images(found, folder if path is None else path.parent)
+        whole = image_file.with_images(given, folder if path is None else path.parent)
     except InputError as error:
         raise ConfigError(str(error), file=path, key=error.quantity or "file") from error
     assert isinstance(whole, TextureFile)

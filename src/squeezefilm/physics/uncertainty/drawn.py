@@ -63,14 +63,14 @@ def evaluate(
 ) -> tuple[Outcome, Refusals]:
     """Outcome of draws at points of the unit cube, shape (n, inputs): arrays of shape (n,), NaN
     where refused; and what was refused. `tell` is told some twenty times."""
-    found = mixture.known(points)
-    new = np.flatnonzero(np.isnan(found[:, 0]))
+    outcomes = mixture.known(points)
+    new = np.flatnonzero(np.isnan(outcomes[:, 0]))
     make = functools.partial(_drawn_now, mixture, points, new, tell, what)
     worth_keeping = new.size >= _WORTH_KEEPING
     made = _KEPT.found(mixture, points[new], None, make) if worth_keeping else make()
-    found[new], tally = made
-    mixture.learn(points[new], found[new])
-    return Outcome(*found.T), tally.found(len(points))
+    outcomes[new], tally = made
+    mixture.learn(points[new], outcomes[new])
+    return Outcome(*outcomes.T), tally.found(len(points))
 
 
 def description_of(display: Display, prediction: Prediction, more: object = None) -> str:
@@ -118,17 +118,17 @@ def _drawn_now(
     what: str,
 ) -> tuple[si.FloatArray, Tally]:
     """Outcome of the points numbered `new`, shape (n, 3), and what was refused."""
-    found, tally = np.full((new.size, 3), np.nan), Tally()
+    outcomes, tally = np.full((new.size, 3), np.nan), Tally()
     every = max(new.size // _TOLD, 1)
     draws = mixture.draws(points[new]) if new.size else iter(())
     for number, (point, draw) in enumerate(zip(points[new], draws, strict=True)):
         if number % every == 0:
             tell(f"{what} {number + 1} of {len(points)}")
         try:
-            found[number] = mixture.outcome(point, draw)
+            outcomes[number] = mixture.outcome(point, draw)
         except SqueezefilmError as error:
             tally.refuse(draw.heights, error)
-    return found, tally
+    return outcomes, tally
 
 
 def require_samples(samples: int) -> None:

@@ -382,12 +382,12 @@ def between_limits(law: FrictionLaw, draw: Draw, amplitude: si.MetreArray) -> si
     a pad at one mean gap through, and so refuse draws for what no real skin is. What a calibration
     found the laws to be off by is added where a finger still feels something.
     """
-    found, soft = law.friction_in("own", amplitude), draw.skin_compliance
+    friction, soft = law.friction_in("own", amplitude), draw.skin_compliance
     if soft < 1:
         even = law.on_even_wave
-        alike = found if even is law else even.friction_in("own", amplitude)
+        alike = friction if even is law else even.friction_in("own", amplitude)
         tied = even.friction_in("one-gap", amplitude)
-        found = np.clip(found + (1 - soft) * (tied - alike), 0.0, 1.0)
+        friction = np.clip(friction + (1 - soft) * (tied - alike), 0.0, 1.0)
     if draw.friction_offset:
-        found = np.clip(found + draw.friction_offset, 0.0, np.maximum(found, 1.0))
-    return found
+        friction = np.clip(friction + draw.friction_offset, 0.0, np.maximum(friction, 1.0))
+    return friction

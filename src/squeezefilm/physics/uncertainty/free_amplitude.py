@@ -70,7 +70,7 @@ class FreeAmplitude:
         values = _values(here, nominal, self._paths)
         share = math.prod(self._moved(path, value) for path, value in values)
         if isinstance(here, RectangularPlate):
-            as_made: dict[str, Any] = {one: getattr(nominal, one) for one in _MADE_OF}
+            as_made: dict[str, Any] = {name: getattr(nominal, name) for name in _MADE_OF}
             laid_out = dataclasses.replace(here, **as_made)
             if laid_out != nominal:
                 share *= self._per_volt(laid_out) / self.reference
@@ -132,7 +132,7 @@ def _values(
     stiffness or its d31 counts with these, and what of a disc went along with its diameter."""
     with_it = {"compliance": 1.0, "charge": 1.0}
     if any(path.startswith(_CONSTANTS) for path in paths):
-        now, then = (attrgetter("ceramic")(one) for one in (here, nominal))
+        now, then = (attrgetter("ceramic")(plate) for plate in (here, nominal))
         with_it["compliance"] = then.in_plane_stiffness / now.in_plane_stiffness
         with_it["charge"] = now.charge_coefficient / then.charge_coefficient
     if isinstance(here, DiscPlate) and isinstance(nominal, DiscPlate):

@@ -52,7 +52,7 @@ def influences_of(
     important first. An input that was not `followed` to the end has NaN in the last rows."""
     a, b = friction[:, 0], friction[:, -3]
     scale = float(np.mean((a - b) ** 2)) or 1.0
-    found = []
+    influences = []
     for k, item in enumerate(inputs):
         with_b = friction[:, k + 1]
         there = np.isfinite(with_b)
@@ -60,8 +60,8 @@ def influences_of(
         whole = (of_a - of_b) ** 2
         total, total_error = _ratio((of_a - with_b) ** 2, whole, scale)
         first = _ratio(_shared((of_a, of_b), with_b), whole)
-        found.append(Influence(item, *first, total, total_error))
-    return tuple(sorted(found, key=lambda item: -item.total))
+        influences.append(Influence(item, *first, total, total_error))
+    return tuple(sorted(influences, key=lambda item: -item.total))
 
 
 def followed(friction: si.DimensionlessArray) -> si.IntArray:

@@ -83,7 +83,7 @@ class Parameter:
         """The values (in its unit) that are not exceeded with probabilities `share` (0 to 1)."""
         if self.steps is not None:
             share = (np.minimum(np.floor(share * self.steps), self.steps - 1) + 0.5) / self.steps
-        return [float(one) for one in self.distribution.quantile(share)]
+        return [float(quantile) for quantile in self.distribution.quantile(share)]
 
     @property
     def spread(self) -> tuple[str, ...]:
@@ -103,7 +103,7 @@ class _Assumed(NamedTuple):
     log_deviation: float | None = None
 
 
-_CHARGE, _STRESS = (f"actuator.ceramic.{one}_coefficient" for one in ("charge", "stress"))
+_CHARGE, _STRESS = (f"actuator.ceramic.{kind}_coefficient" for kind in ("charge", "stress"))
 _MAKERS = "APC International, Piezo Technologies"
 _GRANT = "makers grant ±20 % on d33 (APC International) or ±10 % (Piezo Technologies)"
 
@@ -168,7 +168,7 @@ def uncertain_parameters(
     at = [item.name for item in display.surfaces].index(display.surface(surface).name)
     own = display.finger.normal_force
     force = own if normal_force is None else normal_force
-    found: dict[str, Parameter] = {}
+    parameters: dict[str, Parameter] = {}
     for path, origin in display.provenance.items():
         if origin.distribution is None or not _matters(path, at, driven):
             continue
@@ -176,12 +176,12 @@ def uncertain_parameters(
             continue
         nominal, unit = value_at(display, path)
         path = _of_batch(display, path)
-        found[path] = Parameter(
+        parameters[path] = Parameter(
             path, nominal, unit, origin.distribution, "given", origin.source, steps=_STEPS.get(path)
         )
     for name, known in _ASSUMED.items():
         path = name.replace("surface.", f"surfaces.{at}.")
-        if path in found or not _matters(path, at, driven) or not _has(display, path):
+        if path in parameters or not _matters(path, at, driven) or not _has(display, path):
             continue
         nominal, unit = value_at(display, path)
         if nominal == 0 and not known.absolute:
@@ -194,10 +194,10 @@ def uncertain_parameters(
             if known.log_deviation is None
             else LogNormal(nominal, known.log_deviation)
         )
-        found[path] = Parameter(
+        parameters[path] = Parameter(
             path, nominal, unit, spread, "assumed", known.why, steps=_STEPS.get(path)
         )
-    found[SKIN_COMPLIANCE] = Parameter(
+    parameters[SKIN_COMPLIANCE] = Parameter(
         SKIN_COMPLIANCE,
         1.0,
         si.Unit("1"),
@@ -206,7 +206,7 @@ def uncertain_parameters(
         "between all ridges at one mean gap (0) and each at its own balance (1)",
         "unknown",
     )
-    return tuple(found.values())
+    return tuple(parameters.values())
 
 
 def _of_batch(display: Display, path: str) -> str:
@@ -283,9 +283,9 @@ def _place(whole: Any, path: str) -> tuple[Any, str]:
     *heads, name = path.split(".")
     for part in heads:
         owner = _inside(owner, part, path)
-    found = _inside(owner, name, path)
+    value = _inside(owner, name, path)
     # An optional number that the description leaves out may be given.
-    if isinstance(found, bool | str | tuple) or dataclasses.is_dataclass(found):
+    if isinstance(value, bool | str | tuple) or dataclasses.is_dataclass(value):
         raise InputError(f"'{path}' of a display is no number; write the path of one")
     return owner, name
 

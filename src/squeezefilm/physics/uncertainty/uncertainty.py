@@ -253,21 +253,21 @@ def _drawn(
     the rows with a refused draw, NaN where an input explained too little to be followed; and what
     was refused."""
     points, design = sobol_points(mixture, POINTS * samples, seed), _design(mixture, samples, seed)
-    found = np.full(design.shape[:2], np.nan)
+    rows = np.full(design.shape[:2], np.nan)
     first, inputs = max(samples // 4, _FIRST_ROWS), design.shape[-1]
     at_once = np.concatenate([points, design[:first].reshape(-1, inputs)])
     drawn, refused = evaluate(mixture, at_once, tell)
-    found[:first] = drawn.friction[len(points) :].reshape(first, -1)
+    rows[:first] = drawn.friction[len(points) :].reshape(first, -1)
     columns = np.arange(design.shape[1])
     if samples > first:
-        columns = followed(found[:first])
+        columns = followed(rows[:first])
         rest = design[first:, columns]
         more, refused_too = evaluate(mixture, rest.reshape(-1, inputs), tell, _WHICH)
-        found[first:, columns] = more.friction.reshape(rest.shape[:2])
+        rows[first:, columns] = more.friction.reshape(rest.shape[:2])
         refused = refused.together_with(refused_too)
-    whole = np.isfinite(found[:, columns]).all(axis=1)
-    whole[:first] = np.isfinite(found[:first]).all(axis=1)
-    return Outcome(*(values[: len(points)] for values in drawn)), found[whole], refused
+    whole = np.isfinite(rows[:, columns]).all(axis=1)
+    whole[:first] = np.isfinite(rows[:first]).all(axis=1)
+    return Outcome(*(values[: len(points)] for values in drawn)), rows[whole], refused
 
 
 def sobol_points(mixture: Mixture, count: int, seed: int) -> si.FloatArray:

@@ -272,7 +272,7 @@ def _require_ridges(side: si.Metre, period: si.Metre) -> None:
     """Refuse a contact with more ridges than can be worked on."""
     if side // period <= RIDGES.most:
         return  # as nearly always, without the words below
-    shown, finest = (si.format_quantity(one, si.Unit("m")) for one in (side, side / RIDGES.most))
+    shown, finest = (si.format_quantity(size, si.Unit("m")) for size in (side, side / RIDGES.most))
     enough = f"a contact of {shown} may have a ridge_period of {finest} or more"
     require_within(RIDGES, side // period, enough=enough)
 

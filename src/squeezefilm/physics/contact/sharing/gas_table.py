@@ -150,11 +150,11 @@ class FilmTable:
         nx, nt = self._nodes
         slip_length = float(self.gas.mean_free_path / self.length)
         which = Panel(self.slip, self.tolerance, self._nodes, panel)
-        found = which.at(slip_length)
+        coefficients = which.at(slip_length)
         self.solved += nx * nt + len(which.between()[0])
-        self._panels.reshape(-1, 3, nx, nt)[panel] = found[:-1].reshape(3, nx, nt)
+        self._panels.reshape(-1, 3, nx, nt)[panel] = coefficients[:-1].reshape(3, nx, nt)
         self._built.flat[panel] = 1
-        error = float(found[-1])
+        error = float(coefficients[-1])
         self.error = max(self.relative_error, error)
         return error
 

@@ -116,8 +116,8 @@ def _refined_uniform(
         gap = np.repeat(np.array([[1.0], [eps]], dtype=complex), cells + 1, axis=1)
         return Nested(resolution, x, gap, out[0], levels_of(keep, resolution, True, share))
 
-    one = (np.array([wide]), np.array([eps]), np.array([kn]))
-    c, t = first_guess(*one, tolerance, least_cells=16, least_times=11)
+    row = (np.array([wide]), np.array([eps]), np.array([kn]))
+    c, t = first_guess(*row, tolerance, least_cells=16, least_times=11)
     kind = Kind(wide / (n * (1.0 + 6.0 * kn)), eps, 1, films.shape, UNIFORM_MARGINS, n, sigma)
     return refine(solve, kind, (int(CELLS[c[0]]), int(t[0])), tolerance, int(CELLS[-1]))
 

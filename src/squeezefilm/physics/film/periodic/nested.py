@@ -70,7 +70,7 @@ def levels_of(
     share: Callable[[int], si.FloatArray],
 ) -> list[Level]:
     """The levels that a compiled solve left in `keep`; `share(m)` of the nodes of m cells."""
-    cells, found, start = resolution.cells, [], 0
+    cells, levels, start = resolution.cells, [], 0
     quarter = cells // 4
     times = resolution.times
     for m, now in (
@@ -83,8 +83,8 @@ def levels_of(
         p = keep[start : start + unknowns * now.row].reshape(unknowns, now.row)[:, : now.number]
         start += unknowns * now.row
         edge = np.zeros((1, now.number))
-        found.append(Level(np.vstack([p, edge] if closed else [edge, p, edge]), share(m)))
-    return found
+        levels.append(Level(np.vstack([p, edge] if closed else [edge, p, edge]), share(m)))
+    return levels
 
 
 def force_harmonics(
@@ -102,7 +102,7 @@ def force_harmonics(
     # Only the first harmonics of the force are wanted: sums, and no transform of every node.
     wave = np.exp(-1j * np.outer(fine, np.arange(HARMONICS + 1))) / count
     wave[:, 1:] *= 2.0
-    found = []
+    fields = []
     for level in levels:
         times = level.pressure.shape[1]
         every = (len(inverse) - 1) // (len(level.share) - 1)
@@ -110,8 +110,8 @@ def force_harmonics(
         stored = level.pressure * evaluate(gap_harmonics[:, ::every], nodes) ** n
         # The force at a fine time is Σ_j (share · stored_j / Hⁿ) × the interpolant's weight.
         held = (stored * level.share[:, None]).T @ inverse[::every]
-        found.append(np.asarray((held * _interpolant(times, count)).sum(axis=0) @ wave))
-    return found
+        fields.append(np.asarray((held * _interpolant(times, count)).sum(axis=0) @ wave))
+    return fields
 
 
 @lru_cache(maxsize=64)

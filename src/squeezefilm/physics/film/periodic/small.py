@@ -145,8 +145,8 @@ def small_film(asked: FilmQuestion, gas: CompiledGas) -> tuple[Found, Field]:
     swing, mean = small_pressure(x, asked.squeeze_number, eps, shape, n, kn, law)
     gap = np.broadcast_to(1.0 + eps * np.cos(T), (len(x), len(T))).copy()
     pressure = (swing[:, None] * np.exp(1j * T)).real + mean[:, None]
-    found = Found(over, error, met, 0, 0.0, 0, 0, harmonics, errors, (force, force_error))
-    return found, Field(x, T, gap, pressure)
+    force_over = Found(over, error, met, 0, 0.0, 0, 0, harmonics, errors, (force, force_error))
+    return force_over, Field(x, T, gap, pressure)
 
 
 def fill_small(

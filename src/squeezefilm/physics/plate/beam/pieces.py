@@ -110,11 +110,11 @@ def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[B
 
 def _apart(places: Iterable[float], least: float) -> list[float]:
     """Places in their order, of those that are as good as one the first."""
-    found = list[float]()
+    kept = list[float]()
     for place in sorted(places):
-        if not found or place - found[-1] > least:
-            found.append(place)
-    return found
+        if not kept or place - kept[-1] > least:
+            kept.append(place)
+    return kept
 
 
 def _mean(
@@ -206,9 +206,9 @@ class _Elements:
         that wave's frequency; each of unit modal mass."""
         wave = (nodal_lines - 0.5) * math.pi / self.pieces[-1].end
         guess = 2 * math.pi * float(timoshenko_frequency(math.pi / wave, _even(self.pieces)))
-        found = self._nearest(wave, guess, nodal_lines % 2 == 0)
-        if found is not None:
-            yield found
+        nearest = self._nearest(wave, guess, nodal_lines % 2 == 0)
+        if nearest is not None:
+            yield nearest
         yield from self._around(guess, nodal_lines)
 
     def _nearest(self, wave: float, guess: float, even: bool) -> tuple[float, si.FloatArray] | None:

@@ -33,5 +33,5 @@ class SolvedAgain:
             with _SOLVING:
                 if name not in vars(self):
                     whole = again()
-                    vars(self).update({one: getattr(whole, one) for one in self._bulk})
+                    vars(self).update({bulky: getattr(whole, bulky) for bulky in self._bulk})
             return vars(self)[name]

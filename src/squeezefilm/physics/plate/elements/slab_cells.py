@@ -83,17 +83,17 @@ class MirroredElement:
         n, order = self.signs.size, self.order
         first, image = outside[:n], self.signs[:, None] * outside[n:]
         pairs = (order - 1) // 2
-        found = [
+        solutions = [
             half.backward(y, (first + sign * image) * np.sqrt(0.5))
             for sign, half, y in zip((1, -1), self.halves, reduced, strict=True)
         ]
-        out = np.empty((order - 1, n, first.shape[1]), dtype=found[0].dtype)
+        out = np.empty((order - 1, n, first.shape[1]), dtype=solutions[0].dtype)
         size = (pairs, n, first.shape[1])
-        even, odd = (part[: pairs * n].reshape(size) * np.sqrt(0.5) for part in found)
+        even, odd = (part[: pairs * n].reshape(size) * np.sqrt(0.5) for part in solutions)
         out[:pairs] = even + odd
         out[order - 1 - pairs :] = ((even - odd) * self.signs[:, None])[::-1]
         if order % 2 == 0:
-            for part, kept in zip(found, self.kept, strict=True):
+            for part, kept in zip(solutions, self.kept, strict=True):
                 out[pairs][kept] = part[pairs * n :]
         return out.reshape((order - 1) * n, first.shape[1])
 

@@ -50,7 +50,7 @@ class Slabs:
     def _sliced(self) -> tuple[list[CrossSection], list[bytes]]:
         model = self.model
         patterns: list[bytes] = []
-        found: list[CrossSection] = []
+        in_order: list[CrossSection] = []
         sections: dict[bytes, CrossSection] = {}
         # Slices that differ only in the numbers of their ceramics share their matrices.
         shapes: dict[bytes, CrossSection] = {}
@@ -62,9 +62,9 @@ class Slabs:
                     codes = _renumbered(model, shapes[shape], e)
                 sections[exact] = codes or cross_section(model, e)
                 shapes.setdefault(shape, sections[exact])
-            found.append(sections[exact])
+            in_order.append(sections[exact])
             patterns.append(shape)
-        return found, patterns
+        return in_order, patterns
 
     def __getstate__(self) -> dict[str, Any]:
         # Megabytes that are made anew in milliseconds, where anybody multiplies by them.
@@ -182,12 +182,12 @@ class Slabs:
         groups: dict[tuple[int, int], list[int]] = {}
         for e, section in enumerate(self.sections):
             groups.setdefault((id(section), self.model.x.orders[e]), []).append(e)
-        found: list[tuple[list[int], si.IntArray, tuple[si.FloatArray, ...]]] = []
+        joined: list[tuple[list[int], si.IntArray, tuple[si.FloatArray, ...]]] = []
         for elements in groups.values():
             places = np.stack([np.stack(self._element_places[e]) for e in elements])
             M, D, S = (np.stack(some) for some in zip(*map(self._lines, elements), strict=True))
-            found.append((elements, places, (M, D, S)))
-        return found
+            joined.append((elements, places, (M, D, S)))
+        return joined
 
     def _group_times(
         self,

@@ -154,12 +154,12 @@ class WarmCase:
             return None
         warm = (float(frequency), self.driven, self.drifts, self.capacity, self.cooling)
         steps = 20 * _STEPS_OF_A_TIME_CONSTANT
-        found = time_until(_FALLEN * cold, time / _STEPS_OF_A_TIME_CONSTANT, steps, warm)
-        return None if found < 0 else float(found)
+        time_taken = time_until(_FALLEN * cold, time / _STEPS_OF_A_TIME_CONSTANT, steps, warm)
+        return None if time_taken < 0 else float(time_taken)
 
     def _surplus(self, frequency: float, rise: float) -> float:
-        one = np.array([rise])
-        return float(surpluses(one, frequency, self.driven, self.drifts, self.cooling)[0])
+        rises = np.array([rise])
+        return float(surpluses(rises, frequency, self.driven, self.drifts, self.cooling)[0])
 
     def _state(self, frequency: float, rise: si.Kelvin) -> WarmState:
         moved, power = lost(frequency, rise, self.driven, self.drifts)

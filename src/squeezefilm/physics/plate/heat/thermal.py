@@ -121,7 +121,7 @@ def thermal_body(actuator: Actuator) -> ThermalBody:
     bonded = sum(ceramics_of(actuator))
     through = actuator.thickness / GLASS_CONDUCTIVITY + bonded / CERAMIC_CONDUCTIVITY
     said = tuple(
-        f"specific heat of {one.name}" for one in (metal, piezo) if one.specific_heat is None
+        f"specific heat of {part.name}" for part in (metal, piezo) if part.specific_heat is None
     )
     return ThermalBody(area, perimeter, capacity, through, said)
 

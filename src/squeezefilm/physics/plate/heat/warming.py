@@ -135,7 +135,7 @@ def warming(
     resistance = 1 / given
     time = case.capacity * resistance if resistance else 0.0
     cold, power = lost(fixed, 0.0, case.driven, case.drifts)
-    found = Warming(
+    warming = Warming(
         frequency=fixed,
         half_bandwidth=source.frequency / (2 * source.quality_factor),
         cold_amplitude=cold,
@@ -155,8 +155,8 @@ def warming(
     )
     rises, drifts = warmth_ranges(source, thermal, body)
     return replace(
-        found,
-        doubts=tuple(_doubts(found, source, thermal)),
+        warming,
+        doubts=tuple(_doubts(warming, source, thermal)),
         rise_range=rises,
         drift_range=drifts,
     )
@@ -205,10 +205,10 @@ def _assumed(thermal: Thermal, body: ThermalBody) -> tuple[str, ...]:
     return tuple(said)
 
 
-def too_hot(found: Warming) -> str | None:
+def too_hot(warming: Warming) -> str | None:
     """Sentence that the plate gets warmer than the model knows; None where it does not."""
-    rise = max(found.tracked.temperature_rise, found.fixed.temperature_rise)
-    if found.tracked.temperature_rise >= HOTTEST:
+    rise = max(warming.tracked.temperature_rise, warming.fixed.temperature_rise)
+    if warming.tracked.temperature_rise >= HOTTEST:
         return (
             f"There is no temperature below {HOTTEST:g} K at which the plate gives off the heat "
             "that it generates: driven for long it would be destroyed. Ask for a lower voltage."
@@ -222,39 +222,39 @@ def too_hot(found: Warming) -> str | None:
     return None
 
 
-def _doubts(found: Warming, source: HeatSource, thermal: Thermal) -> list[str]:
+def _doubts(warm: Warming, source: HeatSource, thermal: Thermal) -> list[str]:
     """Sentences on what speaks against the cold, linear amplitude."""
     said = []
-    rise, drift = found.tracked.temperature_rise, found.tracked.resonance_drift
-    if abs(drift) > 0.5 * found.half_bandwidth:
-        kept = found.fixed.amplitude / found.cold_amplitude if found.cold_amplitude > 0 else 1.0
+    rise, drift = warm.tracked.temperature_rise, warm.tracked.resonance_drift
+    if abs(drift) > 0.5 * warm.half_bandwidth:
+        kept = warm.fixed.amplitude / warm.cold_amplitude if warm.cold_amplitude > 0 else 1.0
         said.append(
             f"the plate warms by {rise:.0f} K where the drive follows its resonance, which then "
-            f"drifts by {drift:+.0f} Hz; its half-bandwidth is {found.half_bandwidth:.0f} Hz. A "
+            f"drifts by {drift:+.0f} Hz; its half-bandwidth is {warm.half_bandwidth:.0f} Hz. A "
             f"drive that stays at its frequency is left with {si.percent(kept)} of the amplitude, "
-            f"{found.fixed.temperature_rise:.0f} K warm. Track the resonance, or drive in bursts. "
+            f"{warm.fixed.temperature_rise:.0f} K warm. Track the resonance, or drive in bursts. "
             "Thermal resistance and temperature coefficient are computed or assumed"
         )
-    if found.other_fixed:
-        others = ", ".join(f"{1e6 * one.amplitude:.3g} µm" for one in found.other_fixed)
+    if warm.other_fixed:
+        others = ", ".join(f"{1e6 * state.amplitude:.3g} µm" for state in warm.other_fixed)
         said.append(
-            f"at a fixed {found.frequency:.0f} Hz the warm plate has several states: "
-            f"{1e6 * found.fixed.amplitude:.3g} µm is reached from cold, {others} by coming down "
+            f"at a fixed {warm.frequency:.0f} Hz the warm plate has several states: "
+            f"{1e6 * warm.fixed.amplitude:.3g} µm is reached from cold, {others} by coming down "
             "from a higher frequency or a warmer plate"
         )
-    if (sentence := too_hot(found)) is not None:
+    if (sentence := too_hot(warm)) is not None:
         said.append(sentence)
     hard = source.quality_of_ceramic is None or source.quality_of_ceramic >= HARD_QUALITY
     most = thermal.highest_speed or (HARD_SPEED if hard else SOFT_SPEED)
-    if found.speed > most and thermal.rayleigh_softening == 0:
+    if warm.speed > most and thermal.rayleigh_softening == 0:
         said.append(
-            f"the surface moves at {found.speed:.2g} m/s (r.m.s.), more than the {most:g} m/s at "
+            f"the surface moves at {warm.speed:.2g} m/s (r.m.s.), more than the {most:g} m/s at "
             f"which {'hard' if hard else 'soft'} ceramics begin to lose more and level off; the "
             "amplitude is linear in the voltage here, since nothing else was measured"
         )
-    if found.field is not None and found.field > FIELD_SHARE * thermal.coercive_field:
+    if warm.field is not None and warm.field > FIELD_SHARE * thermal.coercive_field:
         said.append(
-            f"the field in the ceramic is {found.field * 1e-6:.2g} kV/mm, more than a third of its "
+            f"the field in the ceramic is {warm.field * 1e-6:.2g} kV/mm, more than a third of its "
             f"coercive field of {thermal.coercive_field * 1e-6:.2g} kV/mm; it may lose its poling"
         )
     return said

@@ -91,9 +91,9 @@ def ring_mesh(section: AnnularSection, *, graded: bool = True) -> RingMesh:
     longest = max(3 * section.thickness, (r_breaks[-1] - r_breaks[0]) / 6)
     # Only where two layers meet is there a singular corner worth grading for; the free corners of
     # one homogeneous layer have smooth enough fields.
-    one = len(layers) == 1
-    singular_r = [] if one or not graded else [x for x in r_breaks if x > 0]
-    singular_z = [] if one or not graded else z_breaks[1:-1]
+    single = len(layers) == 1
+    singular_r = [] if single or not graded else [x for x in r_breaks if x > 0]
+    singular_z = [] if single or not graded else z_breaks[1:-1]
     shortest = 0.02 * section.thickness
     r_edges = graded_edges(r_breaks, longest, singular_r, shortest=shortest)
     z_edges = graded_edges(z_breaks, np.inf, singular_z, shortest=shortest)

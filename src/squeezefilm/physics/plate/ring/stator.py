@@ -221,7 +221,7 @@ class _Ring:
         except UnreachableError:
             # At the ends the two degrees may differ.
             return self._crossing(teeth, self.degree, _NEAR)
-        found = root_scalar(
+        root = root_scalar(
             lambda t: self.frequency_of(t, teeth) - self.frequency,
             method="secant",
             x0=first,
@@ -230,9 +230,9 @@ class _Ring:
             xtol=_NEAR,
             maxiter=8,
         )
-        inside = self.ends[0] <= found.root <= self.ends[1]
-        if found.converged and inside:
-            return float(found.root)
+        inside = self.ends[0] <= root.root <= self.ends[1]
+        if root.converged and inside:
+            return float(root.root)
         return self._crossing(teeth, self.degree, _NEAR)
 
     def _crossing(self, teeth: ToothModel, degree: int, near: float) -> float:

@@ -97,11 +97,11 @@ def shunted_frequencies(
     static answers to the electrodes. Raises `ConvergenceError` where that does not settle.
     """
     omega = np.sqrt(values).astype(complex)
-    circuit = [one for one in plate_circuit(solved) if np.isfinite(one[1])]
+    circuit = [resistor for resistor in plate_circuit(solved) if np.isfinite(resistor[1])]
     if not circuit or values.size == 0:
         return omega
     slabs = solved.slabs
-    number = [one[0] for one in circuit]
+    number = [resistor[0] for resistor in circuit]
     weight = np.array([resistance * share for _, resistance, share in circuit])
     G, C = slabs.electrode_columns
     G, C = G[:, number], C[np.ix_(number, number)]

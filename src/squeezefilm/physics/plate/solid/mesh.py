@@ -297,12 +297,12 @@ class _Cells:
     def foundations(self) -> tuple[Foundation, ...]:
         """The supports that the model holds a part of."""
         bottom, top = (self.z.first_node[k] for k in self.layers["plate"])
-        found = []
+        foundations = []
         for support in self.plate.supports:
             rows, columns = self.over(support)
             if rows.size and columns.size:
                 kx, ky, kz = support.stiffness_per_area
-                found.append(
+                foundations.append(
                     Foundation(
                         (int(rows[0]), int(rows[-1]) + 1),
                         (int(columns[0]), int(columns[-1]) + 1),
@@ -311,7 +311,7 @@ class _Cells:
                         1 / support.quality_factor,
                     )
                 )
-        return tuple(found)
+        return tuple(foundations)
 
 
 def _ends(

@@ -112,14 +112,14 @@ class PlateModes(SolvedAgain):
         it, and where there is none, of all that are driven. Raises `InputError` where there is
         none.
         """
-        found = [i for i, own in enumerate(self.labels) if own == tuple(label)]
+        numbers = [i for i, own in enumerate(self.labels) if own == tuple(label)]
         wanted = self.plate.working_frequency
         if wanted is not None and tuple(label) == self.plate.working_label:
             away = np.abs(self.frequencies / wanted - 1)
-            near = [i for i in found if away[i] < _NEAR_WANTED]
+            near = [i for i in numbers if away[i] < _NEAR_WANTED]
             driven = self.drive_forces > 1e-6 * np.max(self.drive_forces)
             return min(near or np.flatnonzero(driven).tolist(), key=away.__getitem__)
-        if not found:
+        if not numbers:
             known = [str(own) for own in self.labels if own is not None]
             raise InputError(
                 f"no mode {label} is among those solved ({', '.join(known)})."
@@ -127,7 +127,7 @@ class PlateModes(SolvedAgain):
                 "band; squeezefilm modes lists what is driven",
                 quantity="label",
             )
-        return max(found, key=self.drive_forces.__getitem__)
+        return max(numbers, key=self.drive_forces.__getitem__)
 
     @si.checked_numbers
     def field(self, mode: int, x: si.FloatArray, y: si.FloatArray, z: si.Metre) -> si.FloatArray:

@@ -84,15 +84,15 @@ def strongest_neighbour(own: Moving, others: Iterable[Moving]) -> Neighbour | No
 
     A mode of amplitude A' and half-bandwidth b' adds A'/√(1 + n²) at a distance of n b'.
     """
-    found: Neighbour | None = None
+    neighbour: Neighbour | None = None
     if own.amplitude_per_volt == 0:
         return None
     for other in others:
         distance = abs(other.frequency - own.frequency) / other.half_bandwidth
         share = other.amplitude_per_volt / (1 + distance**2) ** 0.5 / own.amplitude_per_volt
-        if found is None or share > found.share:
-            found = Neighbour(other.name, other.frequency, distance, share)
-    return found
+        if neighbour is None or share > neighbour.share:
+            neighbour = Neighbour(other.name, other.frequency, distance, share)
+    return neighbour
 
 
 def driven_modes(part: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> list[DrivenMode]:
@@ -117,13 +117,13 @@ def driven_modes(part: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> list[Dr
         forces = turn.T @ (part.coupling @ part.drive)
         losses = np.einsum("ij,ik,kj->j", turn, part.loss, turn) / squares
         x, y, surface = surface_shapes(part.solved, part.basis @ turn)
-    found = []
+    modes = []
     for square, force, loss, top in zip(squares, forces, losses, surface, strict=True):
         w = top[:, :, 2]
         largest = float(np.max(np.abs(w)))
         per_volt = float(abs(force) / (max(loss, 1e-30) * square))
         label = label_of(top, x, y)
-        found.append(
+        modes.append(
             DrivenMode(
                 frequency=float(np.sqrt(square) / (2 * np.pi)),
                 quality_factor=float(1 / max(loss, 1e-30)),
@@ -134,7 +134,7 @@ def driven_modes(part: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> list[Dr
                 shape=w / max(largest, 1e-300),
             )
         )
-    return found
+    return modes
 
 
 def antinode(w: si.FloatArray, label: Label | None = None) -> float:

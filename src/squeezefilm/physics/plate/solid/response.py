@@ -129,17 +129,17 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         Raises `InputError` for a band that is none.
         """
         check_band(band)
-        found: list[DrivenMode] = []
+        modes: list[DrivenMode] = []
         for part in self._parts:
             shorter = _shortened(part)
             squares = eigh(shorter.stiffness, shorter.mass, eigvals_only=True)
             before = np.sqrt(np.maximum(squares, 0.0)) / (2 * np.pi)
-            found += [
+            modes += [
                 mode
                 for mode in driven_modes(part, band)
                 if np.min(np.abs(before / mode.frequency - 1)) < _SETTLED
             ]
-        return sorted(found, key=lambda mode: mode.frequency)
+        return sorted(modes, key=lambda mode: mode.frequency)
 
     def _face(self) -> si.FloatArray:
         """w of each coordinate on a grid over the upper face, shape (coordinates, points)."""
@@ -278,14 +278,14 @@ def _truncation(
     return float(np.max(change / np.max(np.abs(admittance))))
 
 
-def _shortened(one: ReducedClass) -> ReducedClass:
+def _shortened(reduced: ReducedClass) -> ReducedClass:
     """A class without the last quarter of its space."""
-    n = max(1, (3 * one.basis.shape[1]) // 4)
+    n = max(1, (3 * reduced.basis.shape[1]) // 4)
     return dataclasses.replace(
-        one,
-        basis=one.basis[:, :n],
-        mass=one.mass[:n, :n],
-        stiffness=one.stiffness[:n, :n],
-        loss=one.loss[:n, :n],
-        coupling=one.coupling[:n],
+        reduced,
+        basis=reduced.basis[:, :n],
+        mass=reduced.mass[:n, :n],
+        stiffness=reduced.stiffness[:n, :n],
+        loss=reduced.loss[:n, :n],
+        coupling=reduced.coupling[:n],
     )

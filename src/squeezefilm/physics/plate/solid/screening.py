@@ -61,13 +61,13 @@ def screened_modes(
     wide = band[0], band[1] * (1 + SCREENING_ERROR)
     require_thin(plate, wide[1])
     steps, loads = _space(plate, wide)
-    found: list[DrivenMode] = []
+    modes: list[DrivenMode] = []
     with one_blas_thread():
         for parity in drive_classes(plate):
             part = reduced_class(plate, parity, wide, steps, loads, SCREENING)
             if part.basis.shape[1]:
-                found += driven_modes(part, wide)
-    return tuple(sorted(found, key=lambda mode: mode.frequency))
+                modes += driven_modes(part, wide)
+    return tuple(sorted(modes, key=lambda mode: mode.frequency))
 
 
 def _space(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> tuple[int, list[Load]]:

@@ -348,7 +348,7 @@ def _answer_change(
         return float(abs((G @ class_drive(solved)) @ vector * w) / value)
 
     wanted = (2 * np.pi * frequency) ** 2
-    piece = min(pieces, key=lambda one: float(np.min(np.abs(one.values - wanted))))
+    piece = min(pieces, key=lambda other: float(np.min(np.abs(other.values - wanted))))
     at = int(np.argmin(np.abs(piece.values - wanted)))
     rough, number = piece.found, piece.index[at]
     fine = answer(piece.solved, piece.values[at], piece.vectors[:, at])

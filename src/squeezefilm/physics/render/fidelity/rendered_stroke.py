@@ -207,7 +207,7 @@ def _previewed(
         kernel.previewed_windows(
             state, parameters, np.ascontiguousarray(windows), work, command[rows], code[rows]
         )
-    top, bottom = (float(np.mean(code == one)) for one in (kernel.TOPPED, kernel.BOTTOMED))
+    top, bottom = (float(np.mean(code == end)) for end in (kernel.TOPPED, kernel.BOTTOMED))
     return command, top, bottom
 
 

@@ -191,21 +191,21 @@ def _rms(values: si.FloatArray) -> float:
 def _passes(stroke: RenderedStroke, judged: _Mask) -> _Passes:
     """Way (m, rising), wanted and rendered friction of each pass in one direction."""
     direction = np.sign(np.diff(stroke.position))
-    found = []
+    passes = []
     edges = np.flatnonzero(np.diff(direction)) + 1
     for part in np.split(np.arange(direction.size), edges):
         if direction[part[0]] == 0:
             continue
         inside = part[judged[part]]
         if inside.size >= 2:
-            found.append(
+            passes.append(
                 (
                     direction[part[0]] * stroke.position[inside],
                     stroke.relative_friction_wanted[inside],
                     stroke.relative_friction_rendered[inside],
                 )
             )
-    return found
+    return passes
 
 
 def _frequencies(
@@ -288,8 +288,8 @@ def _lag(passes: _Passes, period: float | None, highest_frequency: float) -> flo
         mean, square = _sliding(w, weight, most), _sliding(w**2, weight, most)
         spread = np.sqrt(np.maximum(square - mean**2, 0.0) * float(inner @ (inner / weight)))
         there = spread > 1e-9 * max(float(np.ptp(w)) * float(np.ptp(r)), 1e-300)
-        found = _sliding(w, inner, most)[there] / spread[there]
-        score[there] += grid.size * found
+        height = _sliding(w, inner, most)[there] / spread[there]
+        score[there] += grid.size * height
     best = int(np.argmax(score))
     if not 0 < best < shifts.size - 1:
         return float(shifts[best] * step) if np.any(score) else math.nan

@@ -97,7 +97,7 @@ class FingerPath:
         """x and y once `way` of the path is done (m); straight on before its start and past its
         end, as one who has only heard of the motion so far would have it."""
         s = np.asarray(way, dtype=float)
-        found = []
+        axes = []
         for places in (self.x, self.y):
             inside = np.interp(s, self._way, places)
             moving = np.flatnonzero(np.diff(self._way) > 0.0)
@@ -107,8 +107,8 @@ class FingerPath:
             ):
                 slope = (places[k + 1] - places[k]) / (self._way[k + 1] - self._way[k])
                 inside = inside + slope * beyond
-            found.append(np.asarray(inside))
-        return found[0], found[1]
+            axes.append(np.asarray(inside))
+        return axes[0], axes[1]
 
     def _within(self, t: si.SecondLike) -> si.FloatArray:
         si.require("t", t, si.Unit("s"), at_least=0.0, at_most=self.duration * (1 + _ROUNDING))

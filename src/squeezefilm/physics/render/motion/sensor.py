@@ -162,7 +162,7 @@ def sensor_named(name: str) -> SensorModel:
 
     Raises `InputError` for a name that is not known.
     """
-    known = {_slug(one): sensor for one, sensor in SENSORS.items()}
+    known = {_slug(label): sensor for label, sensor in SENSORS.items()}
     if _slug(name) not in known:
         raise InputError(
             f"the sensor '{name}' is not known.{si.did_you_mean(_slug(name), known)} Sensors: "

@@ -378,7 +378,7 @@ def _check_code(program: si.FloatArray, tables: int, inverse: int) -> None:
 
 def _check_image(operands: si.FloatArray, available: int) -> None:
     start, rows, columns, outside = (operands[place] for place in (0, 1, 2, 6))
-    whole = all(one == int(one) for one in (start, rows, columns, outside))
+    whole = all(number == int(number) for number in (start, rows, columns, outside))
     if not whole or start < 0 or rows < 1 or columns < 1 or outside not in (0, 1, 2):
         raise _broken("has an image without a shape")
     if start + rows * columns > available:

@@ -55,7 +55,7 @@ def new_state(program: Program) -> si.FloatArray:
 
 def counters_of(state: si.FloatArray) -> Counters:
     """The counters that stand in a state."""
-    return Counters(*(int(one) for one in state[at.S_TICKS : at.S_SATURATED + 1]))
+    return Counters(*(int(count) for count in state[at.S_TICKS : at.S_SATURATED + 1]))
 
 
 class Renderer:
@@ -149,7 +149,7 @@ def _rows(arrays: Iterable[si.FloatArray]) -> tuple[si.FloatArray, ...]:
 
 
 def _series(*arguments: Any) -> tuple[si.FloatArray, ...]:
-    arrays = [si.real_numbers(*one) for one in zip("xyvt", arguments, strict=True)]
+    arrays = [si.real_numbers(*argument) for argument in zip("xyvt", arguments, strict=True)]
     try:
         joint = np.broadcast_arrays(*arrays)
     except ValueError as error:

@@ -98,8 +98,8 @@ class WaveCompensation:
             InputError: a value outside its range.
         """
         places = np.arange(count) / count * half_wavelength
-        found = wave_factor(places, half_wavelength, contact_length)
-        factors = np.clip(found / np.max(found), least, 1.0)
+        raw = wave_factor(places, half_wavelength, contact_length)
+        factors = np.clip(raw / np.max(raw), least, 1.0)
         return cls(half_wavelength, tuple(factors.tolist()), along)
 
     @classmethod

@@ -177,10 +177,10 @@ def _require_alike(textures: SequenceOf[Composable], what: str) -> None:
         )
     for texture in textures:
         require_texture("textures", texture)
-    found = list(dict.fromkeys(texture.quantity for texture in textures))
-    if len(found) > 1:
+    quantities = list(dict.fromkeys(texture.quantity for texture in textures))
+    if len(quantities) > 1:
         raise InputError(
-            f"a {what} cannot mix {' and '.join(found)}: all its textures must be of one "
+            f"a {what} cannot mix {' and '.join(quantities)}: all its textures must be of one "
             "quantity; write them all in one",
             quantity="textures",
         )
@@ -340,14 +340,14 @@ class Sequence(_Several):
 
     def _values(self, finger: FingerSamples) -> si.FloatArray:
         s = self.along.at(finger.x, finger.y)
-        found = self.textures[0]._values(finger)
+        blended = self.textures[0]._values(finger)
         for edge, after in zip(self.edges, self.textures[1:], strict=True):
             if self.fade == 0.0:
                 share = np.where(s < edge, 0.0, 1.0)
             else:
                 share = np.clip((s - edge) / self.fade + 0.5, 0.0, 1.0)
-            found = (1.0 - share) * found + share * after._values(finger)
-        return found
+            blended = (1.0 - share) * blended + share * after._values(finger)
+        return blended
 
     def _lower(self, assembler: Assembler) -> None:
         self.textures[0]._lower(assembler)

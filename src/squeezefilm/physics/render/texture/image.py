@@ -102,8 +102,8 @@ class Image(Pattern):
         grid, top = self._grid, rows - 1
         low = (1.0 - fu) * grid[top - j, i] + fu * grid[top - j, i1]
         high = (1.0 - fu) * grid[top - j1, i] + fu * grid[top - j1, i1]
-        found = (1.0 - fw) * low + fw * high
-        return np.where(inside, found, 0.0) if self.outside == "zero" else np.asarray(found)
+        value = (1.0 - fw) * low + fw * high
+        return np.where(inside, value, 0.0) if self.outside == "zero" else np.asarray(value)
 
     def _lower(self, assembler: Assembler) -> None:
         rows, columns = self._grid.shape

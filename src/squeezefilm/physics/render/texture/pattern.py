@@ -106,10 +106,10 @@ class Pattern(TexturePart):
 
 def _parts(kind: type[_Joined], *operands: Pattern) -> tuple[Pattern, ...]:
     """Operands with nested ones of the same kind flattened, so that brackets make no difference."""
-    found: list[Pattern] = []
+    patterns: list[Pattern] = []
     for operand in operands:
-        found += operand.patterns if isinstance(operand, kind) else [operand]
-    return tuple(found)
+        patterns += operand.patterns if isinstance(operand, kind) else [operand]
+    return tuple(patterns)
 
 
 def require_pattern(name: str, value: object) -> None:
