@@ -57,11 +57,6 @@ class Program:
         return int(self.array[at.H_STACK])
 
     @property
-    def instructions(self) -> int:
-        """Number of instructions that one sample takes."""
-        return len(_instructions(self.array))
-
-    @property
     def depends_on(self) -> frozenset[str]:
         """Names of what its amplitude may depend on, of "x", "y", "speed", "direction" and "time".
 
