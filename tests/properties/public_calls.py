@@ -72,7 +72,7 @@ NOT_CALLED = {
     physics.plate.heat.warming.Warming physics.plate.heat.states.WarmState
     physics.plate.solid.volume.PlateVolume physics.plate.beam.response.BeamResponse
     physics.plate.ring.body.RingBody physics.plate.ring.response.RingResponse
-    physics.plate.solid.working.SolidMode physics.plate.exposure.ExposureGuidance
+    physics.plate.solid.working.SolidMode physics.plate.sound.ExposureGuidance
     physics.plate.sound.SoundField physics.plate.working_mode.ModeLine
     physics.plate.working_mode.WorkingMode physics.plate.surface_shape.BeamSurface
     physics.plate.surface_shape.DiscSurface physics.plate.surface_shape.SolvedSurface

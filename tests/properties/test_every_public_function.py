@@ -59,7 +59,7 @@ QUICK = (
     "physics.plate.layout",
     "physics.plate.loaded_mode",
     "design.plate.ring_pair",
-    "physics.plate.exposure.exposure_guidance",
+    "physics.plate.sound.exposure_guidance",
     "physics.plate.working_mode.resonance_factor",
     "physics.render.resonator.envelope.e",
     "physics.render.resonator.envelope.f",

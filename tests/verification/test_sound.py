@@ -7,8 +7,9 @@ import pytest
 from scipy import special
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.plate.exposure import GUIDANCE, exposure_guidance
 from squeezefilm.physics.plate.sound import (
+    GUIDANCE,
+    exposure_guidance,
     loudest,
     pressure_level,
     rectangular_surface,

@@ -15,11 +15,13 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.exposure import EAR_DISTANCE, ExposureGuidance, exposure_guidance
 from squeezefilm.physics.plate.layout import DiscPlate
 from squeezefilm.physics.plate.ring.body import ring_body
 from squeezefilm.physics.plate.sound import (
+    EAR_DISTANCE,
+    ExposureGuidance,
     RadiatingSurface,
+    exposure_guidance,
     loudest,
     ring_surface,
     smooth_surface,

@@ -22,8 +22,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import to_json
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.exposure import EAR_DISTANCE
-from squeezefilm.physics.plate.sound import SoundField
+from squeezefilm.physics.plate.sound import EAR_DISTANCE, SoundField
 from squeezefilm.study.conduct.again import COUNTED, restart_block
 from squeezefilm.study.conduct.study_device import DeviceVerification, StudyDevice
 from squeezefilm.study.record.store import Row, StudyStore, insert, utc_now

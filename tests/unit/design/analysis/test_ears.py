@@ -20,8 +20,7 @@ from squeezefilm.design.analysis.ears import (
 from squeezefilm.design.analysis.verdict import ears_finding
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.physics.plate.exposure import GUIDANCE, exposure_guidance
-from squeezefilm.physics.plate.sound import Loudest
+from squeezefilm.physics.plate.sound import GUIDANCE, Loudest, exposure_guidance
 
 
 @pytest.fixture(scope="module")

@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.plate.exposure import GUIDANCE, exposure_guidance
 from squeezefilm.physics.plate.sound import (
+    GUIDANCE,
     REFERENCE_PRESSURE,
     RadiatingSurface,
+    exposure_guidance,
     loudest,
     pressure_level,
     rectangular_surface,

@@ -11,8 +11,7 @@ import pytest
 
 from squeezefilm.core import config
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.physics.plate.exposure import exposure_guidance
-from squeezefilm.physics.plate.sound import SoundField
+from squeezefilm.physics.plate.sound import SoundField, exposure_guidance
 from squeezefilm.study.conduct.sessions import (
     SessionConditions,
     begin_session,

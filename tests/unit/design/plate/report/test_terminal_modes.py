@@ -12,7 +12,7 @@ from tests.unit.printed import printed
 from squeezefilm.core.kit.terminal import plain_console
 from squeezefilm.design.plate.report.terminal import show_guidance, show_modes, sound_rows
 from squeezefilm.design.plate.solved import ModeRow
-from squeezefilm.physics.plate.exposure import GUIDANCE
+from squeezefilm.physics.plate.sound import GUIDANCE
 
 
 def sound(guidance: Any = GUIDANCE[1]) -> Any:
