@@ -29,9 +29,7 @@ steps = st.floats(1e-5, 1e-2)
 def test_neither_command_nor_envelope_ever_leaves_the_limits(
     wanted: FloatArray, envelope: DrivenEnvelope, step: float, compensation: str
 ) -> None:
-    drive = compensated_drive(
-        wanted, step, envelope, compensation, preview=8 * step  # type: ignore[arg-type]
-    )  # fmt: skip
+    drive = compensated_drive(wanted, step, envelope, compensation)  # type: ignore[arg-type]
     assert np.all(drive.command <= 1e-6)
     assert np.all(drive.command >= envelope.lowest_command)
     # The amplitude itself never inverts either: it is braked to rest, no further.

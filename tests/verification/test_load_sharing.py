@@ -433,8 +433,8 @@ def test_a_display_has_the_law() -> None:
     fast = law.table(5e-6)
     between = np.linspace(0, 5e-6, 37)
     np.testing.assert_allclose(fast(between), law.curve(between), atol=1e-3)
-    limits = law.limits(a)
-    spread = np.abs(limits.own - limits.one_gap)
+    own = law.friction_in("own", a)
+    spread = np.abs(own - law.friction_in("one-gap", a))
     assert np.all(spread[1:] > 0)
     assert spread[0] < 1e-9
-    np.testing.assert_allclose(limits.own, curve, rtol=1e-9)
+    np.testing.assert_allclose(own, curve, rtol=1e-9)

@@ -42,6 +42,9 @@ class Law:
     def kind(self) -> ModelKind:
         return MODEL_KINDS[self.model]
 
+    def by(self, model: str) -> Law:
+        return dataclasses.replace(self, model=model)
+
     def at(self, amplitude: float) -> float:
         if self.normal_force > 1.99 and amplitude > 2.01e-6:
             raise OutOfRangeError("pressed through")

@@ -17,6 +17,7 @@ from squeezefilm.core.kit.style import BLUE
 from squeezefilm.design.film.command import FilmMap, FilmRequest
 from squeezefilm.design.film.report.film_map import film_map, film_pressure, write_film_map
 from squeezefilm.physics.film.planar.film import FilmPlanar
+from squeezefilm.physics.film.planar.gap import PlanarGap
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 
@@ -121,8 +122,8 @@ def test_a_film_in_the_plane_is_cut_along_its_middle() -> None:
         force_harmonics_error=np.zeros(8), X=along.ravel(),
         Y=across.ravel(), area=np.ones(count),
         mean_pressure=1 + along.ravel() ** 2 + 10 * across.ravel(), rows=3, columns=4,
-        quarter=False, time_points=8, iterations=1, residual=0.0, status="converged",
-        shape="rectangle", aspect_ratio=1.0, gap=lambda x, t: x, squeeze_number=1.0,
+        time_points=8, iterations=1, residual=0.0, status="converged",
+        shape="rectangle", aspect_ratio=1.0, gap=PlanarGap(0.5), squeeze_number=1.0,
         polytropic_exponent=1.0, knudsen_number=0.0, slip="first", tolerance=1e-3,
     )  # fmt: skip
     (axes,) = film_pressure(answer(film)).axes
