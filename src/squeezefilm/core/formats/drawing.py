@@ -119,13 +119,11 @@ class Dimension:
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Ordinate:
-    """The distance of a place from an origin along x (or, `upright`, along y), at the end of a
+    """The distance of a place from the origin along x (or, `upright`, along y), at the end of a
     leader that runs square to that direction to `end` (a y, or where it is upright an x) (m)."""
 
     x: si.Metre
     y: si.Metre
-    origin_x: si.Metre
-    origin_y: si.Metre
     end: si.Metre
     height: Annotated[si.Metre, si.Above(0.0)] = 1.5e-3
     upright: bool = False
@@ -134,7 +132,7 @@ class Ordinate:
     @property
     def measured(self) -> si.Metre:
         """The distance that it shows (m)."""
-        return abs(self.y - self.origin_y if self.upright else self.x - self.origin_x)
+        return abs(self.y if self.upright else self.x)
 
     @property
     def said(self) -> str:

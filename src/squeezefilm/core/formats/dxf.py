@@ -147,7 +147,6 @@ def _ordinate(space: Any, ordinate: Ordinate) -> None:
     style = add(
         (1e3 * ordinate.x, 1e3 * ordinate.y),
         (reach, 0) if ordinate.upright else (0, reach),
-        origin=(1e3 * ordinate.origin_x, 1e3 * ordinate.origin_y),
         dimstyle="EZDXF",
         override=_look(1e3 * ordinate.height) | {"dimtad": 0},
         dxfattribs={"layer": "DIMENSIONS"},

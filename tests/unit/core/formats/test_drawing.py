@@ -71,11 +71,11 @@ def test_a_dimension_measures_what_lies_between_its_places() -> None:
     assert second.dxf.text == "<> glue"
 
 
-def test_an_ordinate_measures_from_its_origin_whichever_way_it_lies() -> None:
-    down = Ordinate(3e-3, -7e-3, 0.0, 0.0, 9e-3, upright=True, value_of="actuator.patches.1.y")
+def test_an_ordinate_measures_from_the_origin_whichever_way_it_lies() -> None:
+    down = Ordinate(3e-3, -7e-3, 9e-3, upright=True, value_of="actuator.patches.1.y")
     assert down.measured == pytest.approx(7e-3)
     assert down.said == "7"
-    along = Ordinate(3e-3, 0.0, 1e-3, 0.0, -5e-3)
+    along = Ordinate(2e-3, 0.0, -5e-3)
     assert along.measured == pytest.approx(2e-3)
     found, other = opened(down, along).modelspace().query("DIMENSION")
     assert abs(found.get_measurement().y) == pytest.approx(7.0)

@@ -29,8 +29,8 @@ ITEMS = (
     Arc("LINES", 10e-3, 10e-3, 5e-3, 0.0, math.pi / 2),
     Dimension(0.0, 0.0, 83e-3, 0.0, -5e-3, 41e-3, -4e-3),
     Dimension(0.0, 0.0, 0.0, 1e-3, -5e-3, -7e-3, 1e-3, upright=True),
-    Ordinate(12e-3, 0.0, 0.0, 0.0, -8e-3),
-    Ordinate(0.0, 12e-3, 0.0, 0.0, 90e-3, upright=True),
+    Ordinate(12e-3, 0.0, -8e-3),
+    Ordinate(0.0, 12e-3, 90e-3, upright=True),
     Text("words and $dollars$", 1e-3, 60e-3),
 )
 DRAWING = Drawing(LAYERS, ITEMS, 2.0, corner=(-20e-3, -20e-3), views=(0.0, 0.1, 0.2, 0.29))

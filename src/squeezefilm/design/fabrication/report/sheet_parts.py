@@ -234,7 +234,7 @@ class Sheet:
             last = coordinate
             end = edge + away * self.unit
             x, y = (edge, drawn) if upright else (drawn, edge)
-            self.add(Ordinate(x, y, 0.0, 0.0, end, size, upright, key))
+            self.add(Ordinate(x, y, end, size, upright, key))
         return whole
 
     def drawing(self) -> Drawing:
