@@ -14,8 +14,7 @@ from tests.unit.study.scripted import gratings, run_through
 
 from squeezefilm.core import presets
 from squeezefilm.core.formats.traces import Table, csv_text, table_from_csv
-from squeezefilm.core.kept.store import CACHE_VARIABLE
-from squeezefilm.core.kept.store import KeptAnswers as KeptResults
+from squeezefilm.core.kept.store import CACHE_VARIABLE, Kept
 from squeezefilm.design.search.evolution import Proposals
 from squeezefilm.design.search.store import FILE as DESIGNS
 from squeezefilm.design.search.store import DesignStore
@@ -148,7 +147,7 @@ def _cache(folder: Path) -> None:
     before = os.environ.get(CACHE_VARIABLE)
     os.environ[CACHE_VARIABLE] = str(folder)
     try:
-        kept = KeptResults[np.ndarray]("lines", np.ndarray)
+        kept = Kept[np.ndarray]("lines", np.ndarray)
         if (there := kept.get("a")) is not None:
             assert there.tolist() == [0, 1, 2, 3]
         kept.put("a", np.arange(4.0))

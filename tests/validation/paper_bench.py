@@ -10,18 +10,18 @@ import dataclasses
 
 from squeezefilm.core.distributions import Distribution, Uniform
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.design.plate.changed_plates import (
-    DRIVE_VOLTAGE,
-    MEASURED_AMPLITUDE,
-    MEASURED_FREQUENCY,
-    paper_plate,
-    with_glue,
-)
+from squeezefilm.design.plate.changed_plates import with_glue
 from squeezefilm.measure.calibration.calibrate import USUAL_EFFORT, Effort, calibrate
 from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.priors import calibration_parameters
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.display import Display, load_display
+from squeezefilm.validation.explanations import (
+    DRIVE_VOLTAGE,
+    MEASURED_AMPLITUDE,
+    MEASURED_FREQUENCY,
+    paper_plate,
+)
 
 # The paper states no errors: half of the last digit of the frequency, 5 % for a vibrometer.
 _FREQUENCY_ERROR, _AMPLITUDE_SHARE = 50.0, 0.05
