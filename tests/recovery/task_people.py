@@ -29,10 +29,13 @@ D_PRIME = 0.9538725524
 DESIGNS = {
     "constant": dataclasses.replace(load_design("friction-jnd"), practice=0, catch=()),
     "adaptive": dataclasses.replace(load_design("period-jnd"), practice=0),
-    "same-different": dataclasses.replace(load_design("period-same-different"), practice=0),
+    "same-different": dataclasses.replace(
+        load_design("period-same-different"), practice=0, catch=()
+    ),
     "same-different, adaptive": dataclasses.replace(
         load_design("period-same-different"),
         practice=0,
+        catch=(),
         stimuli=load_design("period-same-different").stimuli[:1],
         adaptive=(AdaptiveCondition("bayes", "bayesian", lowest=0.02, highest=1.0, count=160),),
     ),

@@ -27,7 +27,9 @@ from squeezefilm.study.simulated.participants import simulate_matches
 
 PEOPLE = dataclasses.replace(load_observer(), finger_classes=1, candidates=1)
 WHY = Causes(*(1.0,) * 10)
-_ALIKE = dataclasses.replace(load_design("period-same-different"), practice=0, repetitions=3)
+_ALIKE = dataclasses.replace(
+    load_design("period-same-different"), practice=0, repetitions=3, catch=()
+)
 PAIRS: dict[str, tuple[StudyDesign, str, str]] = {
     "match-to-sample": (
         dataclasses.replace(load_design("biet2008-gratings"), displays=("biet2008-plate",)),

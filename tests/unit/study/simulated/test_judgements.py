@@ -39,9 +39,11 @@ EXACT = dataclasses.replace(
 SIGMA = math.log1p(EXACT.period_weber_fraction) / D_PRIME_OF_75
 WHY = Causes(*(1.0,) * 10)
 PERIODS = dataclasses.replace(
-    load_design("period-same-different"), task="two-interval", practice=0, repetitions=10
+    load_design("period-same-different"), task="two-interval", practice=0, repetitions=10, catch=()
 )
-ALIKE = dataclasses.replace(load_design("period-same-different"), practice=0, repetitions=10)
+ALIKE = dataclasses.replace(
+    load_design("period-same-different"), practice=0, catch=(), repetitions=10
+)
 DEPTHS = dataclasses.replace(load_design("friction-jnd"), practice=0, catch=())
 NUMBERS = dataclasses.replace(load_design("coarseness-magnitude"), familiarisation=0)
 
