@@ -53,6 +53,11 @@ EVERY = DESIGNS | {
         "friction-detection",
     )
 }
+_SETTINGS = EVERY["adjustment"]
+# Wide enough for the least sensitive, who find surfaces equal that are 30 % apart.
+EVERY["adjustment"] = dataclasses.replace(
+    _SETTINGS, adaptive=(dataclasses.replace(_SETTINGS.adaptive[0], highest=0.9),)
+)
 THRESHOLD = 0.2
 """Threshold of an amount against a flat surface, over the Weber fraction of the same person."""
 STRENGTH = 8.0

@@ -3,11 +3,13 @@
 Limits: from above a run goes down until the answer changes, from below another goes up; the place
 between the last two levels is its turning point. Adjustment: somebody asks for more or less until
 it is equal; that level is the setting (Gescheider 1997, Psychophysics, chapter 3). Runs begin
-alternately at either end, up to two steps within it, so that nobody counts steps.
+alternately at either end, up to two steps within it, so that nobody counts steps. About a reference
+steps are of one ratio: half and twice as much are as far from it, and so are both ends.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from squeezefilm.core import quantities as si
@@ -28,12 +30,14 @@ class Ending:
 class Runs:
     """A series of runs as it goes: `next_stimulus`, then `update`, until `finished`.
 
-    Nothing in it is random: the answers are all its state. Levels lie between `least` and the
-    series' highest.
+    Nothing in it is random: the answers are all its state. Levels are amounts from the series'
+    lowest to its highest where `is_flat`, else differences from the reference in its parts, from as
+    far below it to as far above.
     """
 
-    def __init__(self, series: AdaptiveCondition, least: float) -> None:
-        self._series, self._least = series, least
+    def __init__(self, series: AdaptiveCondition, is_flat: bool) -> None:
+        self._series, self._is_flat = series, is_flat
+        self._least = series.lowest if is_flat else 1.0 / (1.0 + series.highest) - 1.0
         self._trials = self._begun = 0
         self.endings: list[Ending] = []
         self._begin()
@@ -51,16 +55,15 @@ class Runs:
         """Take in an answer: "more", "less" or "equal" of an adjustment, else one of two, of which
         "yes" and "more" are for a level above."""
         self._trials += 1
-        step = self._series.step
         if self._series.method == "adjustment":
             if answer == "equal":
                 self._end(intensity)
             else:
-                self._move(intensity + (step if answer == "more" else -step))
+                self._move(self._beside(intensity, 1.0 if answer == "more" else -1.0))
             return
-        toward = -step if self._is_down else step
+        toward = -1.0 if self._is_down else 1.0
         if (answer in ("yes", "more")) == self._is_down:
-            beyond = intensity + toward
+            beyond = self._beside(intensity, toward)
             if self._least <= beyond <= self._series.highest:
                 self._move(beyond)
             else:
@@ -70,7 +73,13 @@ class Runs:
             # Nor did it here: it was the other one from the beginning.
             self._begin()
         else:
-            self._end(intensity - 0.5 * toward)
+            self._end(self._beside(intensity, -0.5 * toward))
+
+    def _beside(self, level: float, steps: float) -> float:
+        step = self._series.step
+        if self._is_flat:
+            return level + steps * step
+        return math.expm1(math.log1p(level) + steps * math.log1p(step))
 
     def _move(self, level: float) -> None:
         self._is_first = False
@@ -83,7 +92,8 @@ class Runs:
 
     def _begin(self) -> None:
         self._is_down = self._begun % 2 == 0
-        within = self._begun // 2 % _STARTS * self._series.step
+        within = float(self._begun // 2 % _STARTS)
         self._begun += 1
-        self._move(self._series.highest - within if self._is_down else self._least + within)
+        begin = self._series.highest if self._is_down else self._least
+        self._move(self._beside(begin, -within if self._is_down else within))
         self._is_first = True

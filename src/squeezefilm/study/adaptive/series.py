@@ -124,8 +124,7 @@ def adaptive_method(
             )
         )
     elif series.in_runs:
-        least = series.lowest if TASKS[task].reference == "flat" else -series.highest
-        method = Runs(series, least)
+        method = Runs(series, TASKS[task].reference == "flat")
     else:
         choices = np.geomspace(series.lowest, series.highest, _CHOICES)
         method = BayesianAdaptive(

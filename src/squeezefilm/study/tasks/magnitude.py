@@ -14,16 +14,17 @@ from scipy import stats
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.psychometric.estimate import Estimate, holding, t_interval
+from squeezefilm.study.psychometric.estimate import Estimate, t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import ConditionFinding, PersonEstimate, through
+from squeezefilm.study.tasks.population import scatter_interval
 
 
 def exponents(
     main: Answers, level: si.Dimensionless
 ) -> tuple[list[PersonEstimate], Estimate | None, Estimate | None]:
     """Each person's exponent with the t interval of their own line; the population's mean with
-    that over people; the spread over people, which holds each one's own error too."""
+    that over people; and the spread over people."""
     people = np.unique(main.participant)
     persons = []
     for person in people:
@@ -43,18 +44,16 @@ def exponents(
 def of_exponents(
     persons: list[PersonEstimate], level: si.Dimensionless
 ) -> tuple[Estimate | None, Estimate | None]:
-    """The population's mean exponent and its spread over people; of one person their own."""
+    """The population's mean exponent and its spread over people, without what each one's own error
+    adds; of one person their own."""
     if len(persons) < 2:
         return persons[0].estimate if persons else None, None
-    slopes = np.array([one.estimate.value for one in persons])
-    spread, free = float(slopes.std(ddof=1)), slopes.size - 1
-    low, high = (
-        spread * math.sqrt(free / float(stats.chi2.ppf(share, free)))
-        for share in (0.5 * (1 + level), 0.5 * (1 - level))
-    )
-    low, high = (float(end) for end in holding(spread, low, high))
-    pooled = t_interval(slopes, level)
-    return pooled, Estimate(spread, low, high, level, "χ², over people")
+    own = [person.estimate for person in persons]
+    slopes = np.array([estimate.value for estimate in own])
+    sure = float(stats.norm.isf((1 - level) / 2))
+    errors = np.array([(estimate.high - estimate.low) / (2 * sure) for estimate in own])
+    spread = Estimate(*scatter_interval(slopes, errors**2, level), level, "Q profile, over people")
+    return t_interval(slopes, level), spread
 
 
 def magnitude_conditions(

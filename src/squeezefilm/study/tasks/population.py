@@ -179,7 +179,7 @@ class Population:
         lapses = np.einsum("msl,s->l", np.exp(total - total.max()), self._widths)
         chosen = range(self.size) if people is None else people
         moments = np.array([_moments(self._people[person], lapses) for person in chosen])
-        least, most = scatter_interval(moments[:, 0], moments[:, 1], level)
+        _, least, most = scatter_interval(moments[:, 0], moments[:, 1], level)
         if logs.shape[0] == 1:
             spread = least = most = float("nan")
         # People who are more alike than chance makes them refuse every spread.
@@ -208,11 +208,13 @@ class Population:
 
 def scatter_interval(
     values: si.FloatArray, variances: si.FloatArray, level: si.Dimensionless = 0.95
-) -> tuple[float, float]:
-    """The deviations of normal people that their scatter does not refuse (the Q profile).
+) -> tuple[float, float, float]:
+    """The deviation of normal people that makes their scatter what is expected (Paule and Mandel
+    1982), and the ends of those that it does not refuse (the Q profile: Viechtbauer 2007,
+    10.1002/sim.2514).
 
     `values` are estimates of two people or more, `variances` of their errors, both (people,) and
-    known. Both ends are 0 where people are more alike than chance makes them.
+    known. All are 0 where people are more alike than chance makes them.
     """
     wide = variances[:, None] + _TRIED**2
     middle = (values[:, None] / wide).sum(axis=0) / (1.0 / wide).sum(axis=0)
@@ -220,8 +222,8 @@ def scatter_interval(
     free = max(values.size - 1, 1)
     tails = float(chdtri(free, 0.5 * (1.0 - level))), float(chdtri(free, 0.5 * (1.0 + level)))
     # Scatter falls with the deviation.
-    least, most = np.interp([-tail for tail in tails], -scatter, _TRIED)
-    return float(least), float(most)
+    middle, least, most = np.interp([-float(free), *(-tail for tail in tails)], -scatter, _TRIED)
+    return float(middle), float(least), float(most)
 
 
 def _moments(person: PersonLikelihood, lapses: si.FloatArray) -> tuple[float, float]:

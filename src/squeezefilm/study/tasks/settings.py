@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from scipy import stats
@@ -43,9 +44,13 @@ def settings_of(
     scatter of runs; and what needs care.
 
     Against a flat surface it is the threshold, an amount; else the point of equality, a difference
-    from the reference in its parts. Nobody with fewer than two runs has a value.
+    from the reference in its parts, of which the mean is that of logarithms. Nobody with fewer than
+    two runs has a value.
     """
-    measure = "threshold" if main.design.described.reference == "flat" else EQUALITY
+    is_flat = main.design.described.reference == "flat"
+    measure = "threshold" if is_flat else EQUALITY
+    # Half and twice the reference are as far from it.
+    back: Callable[[float], float] = float if is_flat else math.expm1
     persons, spreads = [], []
     halves: dict[bool, list[si.FloatArray]] = {True: [], False: []}
     people = np.unique(main.participant)
@@ -53,13 +58,13 @@ def settings_of(
         runs = endings(main, person)
         if len(runs) < 2:
             continue
-        sides = [
-            np.array([run.level for run in runs if run.is_down == is_down]) for is_down in halves
-        ]
+        levels = np.array([run.level for run in runs])
+        levels, is_down = levels if is_flat else np.log1p(levels), [run.is_down for run in runs]
+        sides = [levels[np.equal(is_down, begins_above)] for begins_above in halves]
         for each, some in zip(halves.values(), sides, strict=True):
             each += [some] if some.size else []
         own, deviation = _own([some for some in sides if some.size], level)
-        persons.append(PersonEstimate(main.people[person], own, len(runs), False))
+        persons.append(PersonEstimate(main.people[person], through(own, back), len(runs), False))
         spreads.append(QUARTILE * deviation)
     conditions = tuple(
         ConditionFinding(
@@ -67,14 +72,15 @@ def settings_of(
             math.nan,
             sum(ends.size for ends in each),
             len(each),
-            magnitude=t_interval(np.array([ends.mean() for ends in each]), level),
+            magnitude=through(t_interval(np.array([ends.mean() for ends in each]), level), back),
         )
         for is_down, each in halves.items()
         if each
     )
     more = {}
     if spreads:
-        more["difference just told, by the scatter"] = t_interval(np.array(spreads), level)
+        just_told = through(t_interval(np.array(spreads), level), back)
+        more["difference just told, by the scatter"] = just_told
     lacking = people.size - len(persons)
     notes = [f"{lacking} of {people.size} people ended fewer than two runs"] if lacking else []
     return measure, persons, conditions, more, notes
@@ -101,11 +107,10 @@ def _own(sides: list[si.FloatArray], level: float) -> tuple[Estimate, float]:
 def of_settings(
     measure: str, persons: list[PersonEstimate], level: si.Dimensionless
 ) -> Estimate | None:
-    """The mean over people with Student's interval, of thresholds of their logarithms; of one
-    person their own."""
+    """The mean over people with Student's interval, of logarithms; of one person their own."""
     if len(persons) < 2:
         return persons[0].estimate if persons else None
     values = np.array([person.estimate.value for person in persons])
     if measure == EQUALITY:
-        return t_interval(values, level)
+        return through(t_interval(np.log1p(values), level), math.expm1)
     return through(t_interval(np.log(values), level), math.exp)

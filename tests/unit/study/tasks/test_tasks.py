@@ -123,12 +123,18 @@ def test_exponents_are_those_of_peoples_own_lines() -> None:
             (line.slope - reach, line.slope + reach)
         )
         assert abs(one.estimate.value - person.exponent) < 0.3
-    slopes = [one.estimate.value for one in persons]
+    slopes = np.array([one.estimate.value for one in persons])
     assert pooled.value == pytest.approx(np.mean(slopes))
-    assert spread.value == pytest.approx(np.std(slopes, ddof=1))
-    # At each end of the interval, so small or large a spread of four degrees of freedom is rare.
+    errors = np.array([one.estimate.high - one.estimate.low for one in persons]) / 2 / 1.959964
+
+    def scatter(deviation: float) -> float:
+        weight = 1 / (errors**2 + deviation**2)
+        return float(weight @ (slopes - weight @ slopes / weight.sum()) ** 2)
+
+    # The scatter that is expected of four degrees of freedom, and at each end a rare one.
+    assert scatter(spread.value) == pytest.approx(4.0, rel=1e-2)
     for end, chance in ((spread.low, 0.975), (spread.high, 0.025)):
-        assert stats.chi2.cdf(4 * (spread.value / end) ** 2, 4) == pytest.approx(chance)
+        assert stats.chi2.cdf(scatter(end), 4) == pytest.approx(chance, rel=1e-2)
     conditions, notes = magnitude_conditions(main, 0.95)
     numbers = [one.magnitude.value for one in conditions if one.magnitude is not None]
     assert numbers == sorted(numbers)

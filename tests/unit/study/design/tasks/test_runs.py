@@ -124,12 +124,15 @@ def test_runs_of_limits_played_by_hand() -> None:
 def test_an_adjustment_played_by_hand() -> None:
     runs = adaptive_method(ADJUSTED.adaptive[0], task="adjustment")
     assert isinstance(runs, Runs)
-    for said, then in (("less", 0.27), ("less", 0.24), ("more", 0.27), ("equal", -0.3)):
+    down = [1.3 / 1.03**steps - 1 for steps in range(3)]
+    # Steps of one ratio, and as far below the reference as above it.
+    low = 1 / 1.3 - 1
+    for said, then in (("less", down[1]), ("less", down[2]), ("more", down[1]), ("equal", low)):
         runs.update(runs.next_stimulus(), said)
         assert runs.next_stimulus() == pytest.approx(then)
-    assert [run.level for run in runs.endings] == pytest.approx([0.27])
-    runs.update(-0.3, "less")
-    assert runs.next_stimulus() == -0.3
+    assert [run.level for run in runs.endings] == pytest.approx([down[1]])
+    runs.update(low, "less")
+    assert runs.next_stimulus() == pytest.approx(low)
 
 
 @pytest.mark.parametrize(
@@ -195,7 +198,7 @@ def test_runs_from_either_side_weigh_alike() -> None:
     assert both == pytest.approx(math.sqrt(0.02))
 
 
-def test_thresholds_have_a_geometric_mean_over_people_and_equality_a_plain_one() -> None:
+def test_people_have_a_geometric_mean_of_thresholds_and_of_what_is_equal() -> None:
     people = [
         PersonEstimate(f"p{k}", Estimate(x, x, x, 0.95, "t, over runs"), 9, False)
         for k, x in enumerate((0.01, 0.04))
@@ -204,7 +207,7 @@ def test_thresholds_have_a_geometric_mean_over_people_and_equality_a_plain_one()
     assert typical is not None
     assert mean is not None
     assert typical.value == pytest.approx(0.02)
-    assert mean.value == pytest.approx(0.025)
+    assert mean.value == pytest.approx(math.sqrt(1.01 * 1.04) - 1)
     assert of_settings("threshold", people[:1], 0.95) == people[0].estimate
     assert of_settings("threshold", [], 0.95) is None
 
