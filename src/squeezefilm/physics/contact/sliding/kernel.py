@@ -61,7 +61,7 @@ class Track(NamedTuple):
     account: si.Array
 
 
-@compiled()
+@compiled(forceinline=True)
 def strongest_and_fall(rows: Rows, force: si.Array) -> tuple[float, float]:
     """The strongest friction (N) of all rows at `force` (N) for each of their units, and its
     steepest fall with speed (N·s/m), at least 0."""
@@ -79,7 +79,7 @@ def strongest_and_fall(rows: Rows, force: si.Array) -> tuple[float, float]:
     return top.max(), (fall[:-1] / np.diff(speed)).max()
 
 
-@compiled()
+@compiled(forceinline=True)
 def interval_march(
     at: SkinState,
     now: BoneStep,
@@ -142,7 +142,7 @@ def interval_march(
     return at, True
 
 
-@compiled()
+@compiled(forceinline=True)
 def record(i: int, at: SkinState, load: float, drive: BoneDrive, rows: Rows, track: Track) -> None:
     """Write sample i of the skin, pulled with a load (N), into the track."""
     track.position[i], track.speed[i] = at.place, at.speed

@@ -1,5 +1,5 @@
 """Pieces of the skin's motion: along one line of friction until a knot of the rows or a stop, or at
-rest until it is pulled off.
+rest until it is pulled off. All is inlined: as calls the march would take half as long again.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ class Slip(NamedTuple):
     astray: float
 
 
-@compiled()
+@compiled(inline="always")
 def on_segment(speed: si.Array, rows: si.Array, i: int, j: int) -> tuple[float, float]:
     """Coefficient of row i at knot j, and its rise with speed above (s/m)."""
     i = min(i, rows.shape[0] - 1)
@@ -98,14 +98,14 @@ def on_segment(speed: si.Array, rows: si.Array, i: int, j: int) -> tuple[float, 
     return low, (rows[i, j + 1] - low) / (speed[j + 1] - speed[j])
 
 
-@compiled()
+@compiled(inline="always")
 def on_law(speed: si.Array, rows: si.Array, i: int, j: int, pace: float) -> float:
     """Coefficient of row i at a speed (m/s) on the line above knot j."""
     low, rise = on_segment(speed, rows, i, j)
     return float(low + rise * (pace - speed[j]))
 
 
-@compiled()
+@compiled(inline="always")
 def bounds_on(speed: si.Array, j: int, free: bool) -> tuple[float, float]:
     """Speeds (m/s) between which the line above knot j is followed: a little beyond its knots, but
     not below rest; where friction vanishes there (`free`), to the line's mirror image."""
@@ -118,7 +118,7 @@ def bounds_on(speed: si.Array, j: int, free: bool) -> tuple[float, float]:
     return (-high if free else 0.0), high
 
 
-@compiled()
+@compiled(inline="always")
 def slip_piece(
     reach: float,
     w: float,
@@ -148,7 +148,7 @@ def slip_piece(
     return path, part, ended, end
 
 
-@compiled()
+@compiled(inline="always")
 def interval_at(i: int, drive: BoneDrive, rows: Rows) -> BoneStep:
     """Interval number i."""
     last = rows.coefficient.shape[0] - 1
@@ -160,7 +160,7 @@ def interval_at(i: int, drive: BoneDrive, rows: Rows) -> BoneStep:
     return BoneStep(i, drive.bone[i], drive.speed_in[i], rate, hold, hold_rate, free)
 
 
-@compiled()
+@compiled(inline="always")
 def pull_at(s: float, now: BoneStep, skin: LumpedSkin) -> BonePull:
     """The pull of bone and pad a time s into an interval."""
     k, c = skin.stiffness, skin.damping
@@ -171,7 +171,7 @@ def pull_at(s: float, now: BoneStep, skin: LumpedSkin) -> BonePull:
     )
 
 
-@compiled()
+@compiled(inline="always")
 def slip_over(
     reach: float,
     s: float,
@@ -218,7 +218,7 @@ def slip_over(
     return Slip(path, along, line, part, ended, end, astray)
 
 
-@compiled()
+@compiled(inline="always")
 def works_of_rest(part: float, f: float, pull: BonePull, c: float) -> tuple[float, float]:
     """Work of the bone and lost to damping (J) while the skin stays, held by f at the start (N)."""
     # The bone's speed is a line and its force a parabola: cubic, with Simpson's rule exact.
@@ -230,7 +230,7 @@ def works_of_rest(part: float, f: float, pull: BonePull, c: float) -> tuple[floa
     return bone, c * (vb * vb + 4.0 * half * half + end * end) * part / 6.0
 
 
-@compiled()
+@compiled(inline="always")
 def stay(
     at: SkinState,
     s: float,
@@ -262,7 +262,7 @@ def stay(
     return part, side
 
 
-@compiled()
+@compiled(inline="always")
 def slipped(
     slip: Slip, at: SkinState, skin: LumpedSkin, series: si.Array, work: si.Array
 ) -> SkinState:
@@ -275,7 +275,7 @@ def slipped(
     return SkinState(place, at.side * slip.speed, at.side, at.knot)
 
 
-@compiled()
+@compiled(inline="always")
 def beyond(
     slip: Slip,
     s: float,

@@ -106,7 +106,7 @@ def path_over(
     return SkinPath(span, w, terms, fast, decay)
 
 
-@compiled()
+@compiled(forceinline=True)
 def speed_on(path: SkinPath, t: float, series: si.Array) -> tuple[float, float]:
     """Speed (m/s) and acceleration (m/s²) a time t into the path."""
     part = t / path.span
@@ -123,7 +123,7 @@ def speed_on(path: SkinPath, t: float, series: si.Array) -> tuple[float, float]:
     return w, a
 
 
-@compiled()
+@compiled(forceinline=True)
 def way_on(path: SkinPath, t: float, series: si.Array) -> float:
     """The way slid (m) a time t into the path."""
     part = t / path.span
