@@ -25,17 +25,21 @@ import threading
 import time
 import warnings
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+from tests.loop_runs import run_ticks
 
 from squeezefilm.instruments.session.loop import shared
 from squeezefilm.instruments.session.loop.atomics import store_release
 from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
-from squeezefilm.instruments.session.loop.process import PRIORITY, LoopProcess
-from squeezefilm.instruments.session.loop.ring import ring_put_all
-from squeezefilm.instruments.session.loop.simulated import lateness_in, run_ticks, taken
+from squeezefilm.instruments.session.loop.process import PRIORITY, LoopProcess, lateness_in
+from squeezefilm.instruments.session.loop.ring import ring_put_all, taken
 from squeezefilm.instruments.session.loop.worker import Orders, run_loop
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
@@ -45,6 +49,7 @@ from squeezefilm.physics.render.texture.levels import Amplitude
 from squeezefilm.physics.render.texture.shapes import SquareWave
 
 RATES = (1e3, 5e3, 10e3)
+
 SPEED, LIMIT = 0.06, 1e-6
 
 
