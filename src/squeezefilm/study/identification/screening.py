@@ -30,6 +30,7 @@ _LAPSE = 0.04
 _SPREADS, _PLACES, _GUESSES = 24, 21, 13
 _LEAST_PART, _LEAST_TRIALS, _LEAST_PEOPLE = 10, 12, 3
 _ABOVE_CHANCE = 1.6448536269514722
+_BY_CHANCE = 0.05
 _SURE = 3.0
 """Least ln ratio by which lapses beyond the rule's must be likelier."""
 
@@ -102,12 +103,12 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
     """Judgements of all who answered main trials on a display (number in the design's order), by
     the design's rule, and what must be said of all of them; empty for nothing.
 
-    Catch trials count for z, so that somebody who feels nothing of small differences, and tells the
-    clear ones, is not taken for who guesses. Somebody is at chance whose z is below what the rule
-    asks, or below half of the median over people where that is less: few trials, or small
-    differences, tell nobody so surely. Where the median itself is not above chance, where there are
-    fewer than three people, or where the task is match-to-sample, being at chance may be what there
-    is to be found out about the display: it is then a doubt and no reason.
+    Somebody is at chance whose z is below what the rule asks, or below half of the median over
+    people where that is less: few trials, or small differences, tell nobody so surely. Where the
+    median itself is not above chance, where there are fewer than three people, or where the task is
+    match-to-sample, being at chance may be what there is to be found out about the display: it is
+    then a doubt and no reason. So it is of somebody who has all catch trials right: who feels
+    little does the task, and without them people would seem more sensitive than they are.
     """
     main, rule = answers.main(display), rule_of(answers.design)
     caught = answers.take((answers.display == display) & (answers.phase == "catch"))
@@ -117,11 +118,8 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
     by_amount = main.design.on_a_scale or not main.design.described.ranks
     # Runs go where the answers lead, so that these say little of whether they follow.
     by_amount = by_amount and not any(series.in_runs for series in main.design.adaptive)
-    modelled = bool(main.design.answers) and by_amount
-    models = [_models(mine, mine) if modelled else () for mine in people]
-    # Who feels nothing of small differences shows by the catch trials that the task is done.
-    seen = [_with_caught(mine, caught, model) for mine, model in zip(people, models, strict=True)]
-    follows = [_follows(mine, model) for mine, model in zip(people, seen, strict=True)]
+    models = [_models(mine) if main.design.answers and by_amount else () for mine in people]
+    follows = [_follows(mine, model) for mine, model in zip(people, models, strict=True)]
     middle, asked = float(np.median(follows)), -float(ndtri(rule.chance))
     excused, said = main.design.task == "match-to-sample" or len(people) < _LEAST_PEOPLE, ""
     if len(people) >= _LEAST_PEOPLE and abs(middle) < _ABOVE_CHANCE:
@@ -150,7 +148,8 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
             reasons.insert(0, f"answers are mixed up (z = {z:.1f})")
         elif z < asked:
             chance = f"answers do not follow the surfaces (z = {z:.1f}; {asked:.1f} is asked)"
-            (doubts if excused and not reasons else reasons).append(chance)
+            kept = excused or _tells_catch_trials(mine, caught)
+            (doubts if kept and not reasons else reasons).append(chance)
         catch = missed.get(name)
         if catch is not None and catch.p_value < rule.catch:
             reasons.append(f"{catch.right} of {catch.asked} catch trials right")
@@ -158,6 +157,16 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
             reasons.append(f"{mine.trials} of {whole} trials answered")
         judgements.append(PersonJudgement(name, mine.trials, z, tuple(reasons), tuple(doubts)))
     return tuple(judgements), said
+
+
+def _tells_catch_trials(mine: Answers, caught: Answers) -> bool:
+    """True for somebody who has all catch trials right, and so many that answers which are given as
+    often whatever is presented would seldom be."""
+    own = caught.take((caught.participant == mine.participant[0]) & (caught.right >= 0))
+    names = len(mine.design.answers)
+    shares = (np.bincount(mine.choice, minlength=names) + 0.5) / (mine.trials + 0.5 * names)
+    by_chance = float(np.prod(shares[own.right]))
+    return bool(np.all(own.choice == own.right)) and by_chance <= _BY_CHANCE
 
 
 def _habits(mine: Answers) -> list[str]:
@@ -179,20 +188,22 @@ def _habits(mine: Answers) -> list[str]:
     return reasons
 
 
-def _models(mine: Answers, of: Answers, lapse: float = _LAPSE) -> _Models:
-    """ln likelihood of each answer in `of` by who does the task, who mixes up the answers, and who
-    guesses, each of shape (trials, models); models span what the main trials `mine` can tell."""
+def _models(mine: Answers, lapse: float = _LAPSE) -> _Models:
+    """ln likelihood of each trial's answer by who does the task, who mixes up the answers, and who
+    guesses, each of shape (trials, models)."""
     model = mine.design.described.model
     if model is None or model.counts < 0:
-        return _among_names(mine, of)
-    x, asked, y = _differences(mine), _differences(of), of.told
+        return _among_names(mine)
+    shown = mine.presented
+    x = mine.differences if mine.design.on_a_scale else (shown[0] != shown[-1]).astype(float)
+    y = mine.told
     reach = max(float(np.abs(x).max()), 1e-9)
     least = float(np.abs(x[x != 0]).min()) if np.any(x) else reach
     least_place, most_place = model.criteria[[0, -1]] if model.rate is None else (-1.0, 1.5)
     places = np.linspace(least_place, most_place, _PLACES) * reach
     spreads = np.geomspace(least / 4, 8 * reach, _SPREADS)
     place, spread = (axis.ravel() for axis in np.meshgrid(places, spreads))
-    rise = ndtr((asked[:, None] - place) / spread)
+    rise = ndtr((x[:, None] - place) / spread)
     p = 0.5 * lapse + (1 - lapse) * rise
     said = y[:, None]
     task, turned = np.log(np.where(said, p, 1 - p)), np.log(np.where(said, 1 - p, p))
@@ -200,32 +211,16 @@ def _models(mine: Answers, of: Answers, lapse: float = _LAPSE) -> _Models:
     return task, turned, np.log(np.where(said, guesses, 1 - guesses))
 
 
-def _differences(answers: Answers) -> si.FloatArray:
-    if answers.design.on_a_scale:
-        return answers.differences
-    return np.asarray(answers.presented[0] != answers.presented[-1], dtype=float)
-
-
-def _with_caught(
-    mine: Answers, caught: Answers, models: _Models | tuple[()]
-) -> _Models | tuple[()]:
-    """The models of a person's main trials, and of their catch trials after them."""
-    own = caught.take(caught.participant == mine.participant[0])
-    if not models or not own.trials:
-        return models
-    pairs = zip(models, _models(mine, own), strict=True)
-    task, turned, guess = (np.concatenate(pair) for pair in pairs)
-    return task, turned, guess
-
-
-def _among_names(mine: Answers, of: Answers) -> _Models:
+def _among_names(mine: Answers) -> _Models:
     """The same of names: a share of the answers is known, the others follow a person's own
     frequencies; mixed up is the scale from its other end."""
     names = len(mine.design.answers)
     own = (np.bincount(mine.choice, minlength=names) + 0.5) / (mine.trials + 0.5 * names)
-    guess = own[of.choice][:, None]
+    guess = own[mine.choice][:, None]
     known = np.linspace(0.0, 1 - _LAPSE, _SPREADS)
-    right, mirrored = ((of.choice == name)[:, None] for name in (of.right, names - 1 - of.right))
+    right, mirrored = (
+        (mine.choice == name)[:, None] for name in (mine.right, names - 1 - mine.right)
+    )
     # Who has the middle of an odd scale right is not mixed up by it.
     mirrored = mirrored & ~right
     task, turned = (np.log(known * hit + (1 - known) * guess) for hit in (right, mirrored))
@@ -273,7 +268,7 @@ def _changed(mine: Answers, models: _Models) -> list[str]:
             said.append(words.format(int(at[gain.argmax()])))
     if len(models[0][0]) == _PLACES * _SPREADS:
         usual, many = (
-            max(_best(_models(mine, mine, times * rule.lapses)[0]) for times in pair)
+            max(_best(_models(mine, times * rule.lapses)[0]) for times in pair)
             for pair in ((0.5, 1.0), (1.5, 2.0))
         )
         if many - max(one_for_all, usual) > _SURE:
