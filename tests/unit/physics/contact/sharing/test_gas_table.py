@@ -75,7 +75,7 @@ def test_no_film_is_solved_in_the_range_that_people_use(monkeypatch: pytest.Monk
             assert table.relative_error < table.tolerance
 
 
-@pytest.mark.parametrize("share", [20, pytest.param(1, id="all", marks=pytest.mark.nightly)])
+@pytest.mark.parametrize("share", [20, pytest.param(1, id="all", marks=pytest.mark.campaign)])
 @pytest.mark.parametrize("slip", SHIPPED_PANELS)
 def test_panels_that_come_with_the_package_are_what_the_solver_gives(slip: str, share: int) -> None:
     """Run `tools/film_panels.py` where this fails: the solver or the table's nodes have changed."""
