@@ -88,13 +88,17 @@ def test_only_what_a_limit_asks_for_is_computed_of_a_solved_plate(
 ) -> None:
     def solved(limits: Limits, neighbour: Any = None, load: Any = None) -> dict[str, float]:
         p: Any = SimpleNamespace(
-            mode=SimpleNamespace(neighbour=neighbour), voltage=10.0, frequency=3e4
+            mode=SimpleNamespace(neighbour=neighbour),
+            voltage=10.0,
+            frequency=3e4,
+            law=None,
+            drive=None,
         )
         monkeypatch.setattr(criteria, "load_of_mode", lambda *given: load)
         asked: Any = SimpleNamespace(limits=limits)
         return criteria.numbers_of_solved(asked, PLATE, p)
 
-    def area(display: Any, p: Any) -> Any:
+    def area(*_: Any) -> Any:
         return SimpleNamespace(share_below=lambda wanted: wanted / 2)
 
     heard: list[Any] = [SimpleNamespace(level_dB=91.0)]
