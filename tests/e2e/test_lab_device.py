@@ -27,6 +27,10 @@ pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
 COMPILED = 180_000
 """ms in which a twin is there, its kernels compiled."""
+ALL_ANSWERED = """() => {
+  const people = [...document.querySelectorAll(".participants progress")];
+  return people.length === 2 && people.every((one) => one.value === one.max);
+}"""
 
 
 @pytest.mark.nightly
@@ -208,10 +212,14 @@ def test_every_task_goes_from_its_plan_to_its_results(
     page, complaints = opened(chromium, shared_lab, "study")
     page.locator("#design").select_option(design)
     page.get_by_label("name of its file").fill(design)
+    page.get_by_label("seed of all orders").fill("7")
     page.get_by_role("button", name="Create the study").click()
     page.get_by_label("how many simulated participants").fill("2")
     page.get_by_role("button", name="Rehearse with simulated").click()
     page.get_by_text("Every answer in this file is simulated.").wait_for(timeout=COMPILED)
+    assert page.locator(".error").filter(visible=True).all_inner_texts() == []
+    # A busy lab may have the page drawn anew before everybody has answered.
+    page.wait_for_function(ALL_ANSWERED, timeout=COMPILED)
     page.goto(f"{shared_lab.address}#results")
     page.get_by_text("Read first, biet2008-plate").wait_for(timeout=60_000)
     assert page.locator(".first li").first.inner_text().startswith("2 simulated participants")
