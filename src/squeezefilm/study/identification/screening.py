@@ -148,7 +148,7 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
             reasons.insert(0, f"answers are mixed up (z = {z:.1f})")
         elif z < asked:
             chance = f"answers do not follow the surfaces (z = {z:.1f}; {asked:.1f} is asked)"
-            kept = excused or _tells_catch_trials(mine, caught)
+            kept = excused or (bool(model) and _tells_catch_trials(mine, caught))
             (doubts if kept and not reasons else reasons).append(chance)
         catch = missed.get(name)
         if catch is not None and catch.p_value < rule.catch:
