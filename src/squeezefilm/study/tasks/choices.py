@@ -27,6 +27,7 @@ from squeezefilm.study.tasks.findings import ConditionFinding, PersonEstimate, t
 
 _HELD = 4.0
 """Deviation of ln w about its mean that is held possible where answers do not bound it. Assumed."""
+_POLISHED = 3
 
 
 def likelihood(
@@ -69,7 +70,12 @@ def fitted(
         return 0.5 * float(values @ pull @ values) - total, -slope
 
     start = np.zeros(terms.shape[1])
-    values = minimize(loss, start, jac=True, method="BFGS", options={"gtol": 1e-9}).x
+    values = minimize(loss, start, jac=True, method="BFGS").x
+    # Newton's steps: robust intervals ask that the derivatives of all trials end in nothing.
+    for _ in range(_POLISHED):
+        _, scores, information = likelihood(order, terms @ values)
+        bend = terms.T @ information @ terms + pull
+        values = values - np.linalg.pinv(bend, hermitian=True) @ loss(values)[1]
     _, scores, information = likelihood(order, terms @ values)
     return values, scores @ terms, terms.T @ information @ terms + pull
 

@@ -85,16 +85,3 @@ def test_simulated_people_tell_the_surfaces_apart_better_than_by_guessing(place:
     assert share[0, 0] > 2 * share[1, 0]
     assert share[1, 1] > 2 * share[0, 1]
     assert "plain hand" in (place / "sim/index.html").read_text()
-
-
-@pytest.mark.slow
-def test_a_rehearsed_path_is_felt(place: Path) -> None:
-    listed = json.loads(program("study", "status", "s.sqlite", "--json", cwd=place).stdout)
-    who = listed["participants"][0]["uuid"]
-    done = program(
-        "study", "felt", "s.sqlite", "--participant", who, "--trial", "20", "--json",
-        "--observer", "one.toml", cwd=place,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    (found,) = json.loads(done.stdout)
-    assert found["nearest"][0]["name"] == found["stimulus"] == found["answer"]
