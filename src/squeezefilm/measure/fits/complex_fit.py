@@ -25,7 +25,7 @@ Model = Callable[[si.FloatArray], tuple[si.Array, si.Array]]
 _PASSES = 3
 # A floor under relative noise must be told by this much (twice the logarithm of the likelihood).
 _EVIDENCE = 10.0
-_FLOORS = 30
+_FLOORS_TRIED = 30
 
 
 @dataclass(frozen=True)
@@ -229,7 +229,7 @@ def noise_floor(residual: si.Array, size: si.FloatArray) -> float:
         return float(share * (np.sum(np.log(square)) + rows.size * np.log(np.mean(rows / square))))
 
     # A floor far above the largest size is noise of one size everywhere.
-    floors = np.geomspace(3e-3 * np.mean(size), 10.0 * np.max(size), _FLOORS)
+    floors = np.geomspace(3e-3 * np.mean(size), 10.0 * np.max(size), _FLOORS_TRIED)
     tried = [deviance(float(floor)) for floor in floors]
     best = int(np.argmin(tried))
     return float(floors[best]) if deviance(0.0) - tried[best] > _EVIDENCE else 0.0

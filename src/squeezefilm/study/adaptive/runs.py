@@ -3,8 +3,9 @@
 Limits: from above a run goes down until the answer changes, from below another goes up; the place
 between the last two levels is its turning point. Adjustment: somebody asks for more or less until
 it is equal; that level is the setting (Gescheider 1997, Psychophysics, chapter 3). Runs begin
-alternately at either end, up to two steps within it, so that nobody counts steps. About a reference
-steps are of one ratio: half and twice as much are as far from it, and so are both ends.
+alternately at either end, up to two steps within it, so that nobody counts steps. Where differences
+are of logarithms steps are of one ratio: half and twice the reference are as far from it, and so
+are both ends.
 """
 
 from __future__ import annotations
@@ -31,13 +32,14 @@ class Runs:
     """A series of runs as it goes: `next_stimulus`, then `update`, until `finished`.
 
     Nothing in it is random: the answers are all its state. Levels are amounts from the series'
-    lowest to its highest where `is_flat`, else differences from the reference in its parts, from as
-    far below it to as far above.
+    lowest to its highest against a flat surface, else differences from the reference in its parts,
+    from as far below it to as far above: in amounts, or in their logarithms.
     """
 
-    def __init__(self, series: AdaptiveCondition, is_flat: bool) -> None:
-        self._series, self._is_flat = series, is_flat
-        self._least = series.lowest if is_flat else 1.0 / (1.0 + series.highest) - 1.0
+    def __init__(self, series: AdaptiveCondition, *, is_flat: bool, in_amounts: bool) -> None:
+        self._series, self._in_amounts = series, in_amounts
+        below = -series.highest if in_amounts else 1.0 / (1.0 + series.highest) - 1.0
+        self._least = series.lowest if is_flat else below
         self._trials = self._begun = 0
         self.endings: list[Ending] = []
         self._begin()
@@ -77,7 +79,7 @@ class Runs:
 
     def _beside(self, level: float, steps: float) -> float:
         step = self._series.step
-        if self._is_flat:
+        if self._in_amounts:
             return level + steps * step
         return math.expm1(math.log1p(level) + steps * math.log1p(step))
 

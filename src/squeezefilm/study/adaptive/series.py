@@ -124,7 +124,9 @@ def adaptive_method(
             )
         )
     elif series.in_runs:
-        method = Runs(series, TASKS[task].reference == "flat")
+        described = TASKS[task]
+        in_amounts = described.compares_amounts(series.varied)
+        method = Runs(series, is_flat=described.reference == "flat", in_amounts=in_amounts)
     else:
         choices = np.geomspace(series.lowest, series.highest, _CHOICES)
         method = BayesianAdaptive(

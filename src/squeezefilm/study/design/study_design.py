@@ -260,7 +260,7 @@ class StudyDesign:
     @property
     def in_amounts(self) -> bool:
         """True where differences are of amounts: of an orientation, or from a flat surface."""
-        return self.described.in_amounts or self.judged == "orientation"
+        return self.described.compares_amounts(self.judged)
 
     @property
     def measure(self) -> str:

@@ -132,7 +132,7 @@ def _ranked(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
 def _set(main: Answers, level: float, _seed: int, tell: Tell) -> Measured:
     tell("runs of each person")
     measure, persons, conditions, more, notes = settings_of(main, level)
-    pooled = of_settings(measure, persons, level)
+    pooled = of_settings(measure, main.design.in_amounts, persons, level)
     if len(persons) == 1:
         notes.append("one participant: the interval is over their runs, and says nothing of others")
     return Measured(measure, tuple(persons), pooled, None, conditions, more, {}, notes)

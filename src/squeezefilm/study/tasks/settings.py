@@ -44,13 +44,13 @@ def settings_of(
     scatter of runs; and what needs care.
 
     Against a flat surface it is the threshold, an amount; else the point of equality, a difference
-    from the reference in its parts, of which the mean is that of logarithms. Nobody with fewer than
-    two runs has a value.
+    from the reference in its parts. Means are of what the design takes differences of: amounts, or
+    their logarithms. Nobody with fewer than two runs has a value.
     """
-    is_flat = main.design.described.reference == "flat"
-    measure = "threshold" if is_flat else EQUALITY
-    # Half and twice the reference are as far from it.
-    back: Callable[[float], float] = float if is_flat else math.expm1
+    in_amounts = main.design.in_amounts
+    measure = "threshold" if main.design.described.reference == "flat" else EQUALITY
+    # Of logarithms half and twice the reference are as far from it.
+    back: Callable[[float], float] = float if in_amounts else math.expm1
     persons, spreads = [], []
     halves: dict[bool, list[si.FloatArray]] = {True: [], False: []}
     people = np.unique(main.participant)
@@ -59,7 +59,7 @@ def settings_of(
         if len(runs) < 2:
             continue
         levels = np.array([run.level for run in runs])
-        levels, is_down = levels if is_flat else np.log1p(levels), [run.is_down for run in runs]
+        levels, is_down = levels if in_amounts else np.log1p(levels), [run.is_down for run in runs]
         sides = [levels[np.equal(is_down, begins_above)] for begins_above in halves]
         for each, some in zip(halves.values(), sides, strict=True):
             each += [some] if some.size else []
@@ -105,12 +105,15 @@ def _own(sides: list[si.FloatArray], level: float) -> tuple[Estimate, float]:
 
 
 def of_settings(
-    measure: str, persons: list[PersonEstimate], level: si.Dimensionless
+    measure: str, in_amounts: bool, persons: list[PersonEstimate], level: si.Dimensionless
 ) -> Estimate | None:
-    """The mean over people with Student's interval, of logarithms; of one person their own."""
+    """The mean over people with Student's interval: of logarithms, but for a point of equality
+    where differences are of amounts; of one person their own."""
     if len(persons) < 2:
         return persons[0].estimate if persons else None
     values = np.array([person.estimate.value for person in persons])
+    if measure == EQUALITY and in_amounts:
+        return t_interval(values, level)
     if measure == EQUALITY:
         return through(t_interval(np.log1p(values), level), math.expm1)
     return through(t_interval(np.log(values), level), math.exp)

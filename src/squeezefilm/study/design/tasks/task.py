@@ -182,6 +182,10 @@ class StudyTask:
     model: DifferenceModel | None = None
     ranks: tuple[tuple[int, ...], ...] = ()
 
+    def compares_amounts(self, judged: Varied) -> bool:
+        """True where differences are of amounts: of an orientation, or from a flat surface."""
+        return self.in_amounts or judged == "orientation"
+
     @property
     def ordered(self) -> bool:
         """True where answers are a cumulative normal of the difference."""

@@ -135,6 +135,15 @@ def test_an_adjustment_played_by_hand() -> None:
     assert runs.next_stimulus() == pytest.approx(low)
 
 
+def test_an_orientation_is_turned_by_steps_of_one_amount() -> None:
+    series = dataclasses.replace(ADJUSTED.adaptive[0], varied="orientation")
+    runs = adaptive_method(series, task="adjustment")
+    assert isinstance(runs, Runs)
+    for said, then in (("less", 0.27), ("less", 0.24), ("more", 0.27), ("equal", -0.3)):
+        runs.update(runs.next_stimulus(), said)
+        assert runs.next_stimulus() == pytest.approx(then)
+
+
 @pytest.mark.parametrize(
     ("design", "level", "measure"),
     [(ADJUSTED, 0.05, "point of equality"), (LIMITS, -0.05, "point of equality"),
@@ -203,13 +212,18 @@ def test_people_have_a_geometric_mean_of_thresholds_and_of_what_is_equal() -> No
         PersonEstimate(f"p{k}", Estimate(x, x, x, 0.95, "t, over runs"), 9, False)
         for k, x in enumerate((0.01, 0.04))
     ]
-    typical, mean = (of_settings(name, people, 0.95) for name in ("threshold", "point of equality"))
+    typical = of_settings("threshold", True, people, 0.95)
+    mean = of_settings("point of equality", False, people, 0.95)
     assert typical is not None
     assert mean is not None
     assert typical.value == pytest.approx(0.02)
     assert mean.value == pytest.approx(math.sqrt(1.01 * 1.04) - 1)
-    assert of_settings("threshold", people[:1], 0.95) == people[0].estimate
-    assert of_settings("threshold", [], 0.95) is None
+    # Differences of an orientation are of amounts, whose mean is a plain one.
+    turned = of_settings("point of equality", True, people, 0.95)
+    assert turned is not None
+    assert turned.value == pytest.approx(0.025)
+    assert of_settings("threshold", True, people[:1], 0.95) == people[0].estimate
+    assert of_settings("threshold", True, [], 0.95) is None
 
 
 def test_what_is_called_equal_differs_by_less_than_the_criterion() -> None:
