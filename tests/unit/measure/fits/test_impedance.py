@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -267,3 +268,23 @@ def test_a_neighbour_under_such_noise_is_found_or_missed_aloud() -> None:
     )
     one = fit_impedance(ImpedanceSweep(FREQUENCY, curve + held + noise), branches=1)
     assert not one.adequacy.adequate
+
+
+@pytest.mark.parametrize(("neighbour", "capacitance"), [(39.5e3, 1e-9), (40.3e3, 3e-9)])
+def test_a_mode_above_the_band_is_not_taken_for_a_coil(
+    neighbour: float, capacitance: float
+) -> None:
+    """It adds to the static capacitance, of which a coil of a millihenry would leave 40 %, and
+    would move the resonance by 2 %."""
+    f = np.linspace(30.93e3, 37.14e3, 161)
+
+    def branch(own: float, size: float) -> np.ndarray:
+        return np.asarray(2j * np.pi * f * size / (1 - (f / own) ** 2 + 1j * f / (own * 44)))
+
+    y = 2j * np.pi * f * 59e-9 + branch(34.04e3, 3.43e-9) + branch(neighbour, capacitance)
+    white = np.random.default_rng(0).standard_normal((2, f.size)) / math.sqrt(2)
+    fit = fit_impedance(ImpedanceSweep(f, y + 0.01 * np.abs(y).max() * (white[0] + 1j * white[1])))
+    seen = 59e-9 + capacitance / (1 - (34.04e3 / neighbour) ** 2)
+    assert fit.static_capacitance.value == pytest.approx(seen, rel=0.05)
+    assert fit.branches[fit.main].series_resonance.value == pytest.approx(34.04e3, rel=5e-4)
+    assert fit.branches[fit.main].quality_factor.value == pytest.approx(44, rel=0.05)

@@ -36,6 +36,13 @@ _EVIDENCE, _LESS_LEFT = 10.0, 0.8
 # ... and be told from the others: to that standard error of ln Q and ln C.
 _TOLD_APART = 0.35
 
+# Inductance of leads (H): some metres; and their reactance over the sweep's least impedance.
+_WIRE, _COIL = 5e-6, 0.5
+# Loss of the coupling, either way, and of a capacitance that gives power; usual ones are .02.
+_MOST_LOSS = 0.1
+# A gain that changes by more from one end of the sweep to the other is no drift.
+_MOST_DRIFT = 0.3
+
 CORRECTIONS = ("coupling_loss", "leads", "drift")
 """Corrections that may stand beside the branches."""
 
@@ -233,17 +240,31 @@ def _fitted(
     bounded = variances[3 : layout.loss : 3] < _BOUNDED**2
     if not np.all(inside & sharp & strong & bounded) or not np.all(variances > 0):
         return None
-    if layout.leads:
-        ohms, henries = fit.parameters[layout.lead :][:2]
-        # A coil within the sweep's own reactance; leads give no power.
-        error = math.sqrt(fit.covariance[layout.lead, layout.lead])
-        least = float(np.min(np.abs(1 / y)))
-        if ohms < -2 * error or ohms > least or 2 * math.pi * f[-1] * abs(henries) > 10 * least:
-            return None
-    # Softer by a third is no correction of a linear circuit any more.
-    if layout.softening and np.any(np.abs(fit.parameters[layout.soft :][:2]) > [0.3, 0.95]):
+    if not _is_passive(sweep, fit, layout):
         return None
     return _in_order(fit, layout, frequency), layout
+
+
+def _is_passive(sweep: ImpedanceSweep, fit: ComplexFit, layout: Layout) -> bool:
+    """True where corrections are what leads, ceramics and analysers do; else they stand for modes
+    beside the band, with another static capacitance."""
+    p = fit.parameters
+    if layout.leads:
+        ohms, henries = p[layout.lead : layout.lead + 2]
+        # Leads give no power. A coil may be what metres of wire have, or half of the impedance;
+        # any where leads are told.
+        error = math.sqrt(fit.covariance[layout.lead, layout.lead])
+        omega = 2 * math.pi * sweep.frequency[-1]
+        least = float(np.min(np.abs(1 / sweep.admittance)))
+        most = 10 * least if sweep.compensated is False else max(omega * _WIRE, _COIL * least)
+        if ohms < -2 * error or ohms > least or omega * abs(henries) > most:
+            return False
+    if layout.coupling_loss and (abs(p[layout.loss]) > _MOST_LOSS or p[1] < -_MOST_LOSS):
+        return False
+    if layout.drift and math.hypot(*p[-2:]) > _MOST_DRIFT:
+        return False
+    # Softer by a third is no correction of a linear circuit any more.
+    return not (layout.softening and np.any(np.abs(p[layout.soft :][:2]) > [0.3, 0.95]))
 
 
 def sweep_motion(sweep: ImpedanceSweep, p: si.FloatArray) -> si.DimensionlessArray:
