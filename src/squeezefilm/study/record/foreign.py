@@ -38,6 +38,7 @@ WORDS = (
 )
 COUNT = "count"
 MILLISECONDS = "response_time_ms"
+_NOT_SET_ASIDE = ("0", "false", "no", "n/a", "none")
 _MEASURED = (*NUMBERS, MILLISECONDS, COUNT)
 SUFFIXES = (".csv", ".tsv", ".json")
 """Ends of the names of files with answers."""
@@ -86,10 +87,25 @@ def read_answers(
             raise InputError(
                 f"{file} has no row with an answer; is the column of the choice right?"
             )
+        numbered = _in_order_of_trials(numbered)
         require_plausible_rows(file, design, numbered, known)
         rows += [row for _, row in numbered]
         require_within(FOREIGN_TRIALS, len(rows), enough="give a part of them")
     return answers_of(design, rows, PEOPLE)
+
+
+def _in_order_of_trials(
+    numbered: list[tuple[int, dict[str, Cell]]],
+) -> list[tuple[int, dict[str, Cell]]]:
+    """Rows of a file, each person's in the order of their trials, however the file is sorted."""
+    of_person: dict[Cell, list[tuple[int, dict[str, Cell]]]] = {}
+    for line, row in numbered:
+        of_person.setdefault(row["participant_id"], []).append((line, row))
+    return [
+        pair
+        for mine in of_person.values()
+        for pair in sorted(mine, key=lambda pair: int(str(pair[1]["trial"])))
+    ]
 
 
 def _files(path: str | Path) -> list[Path]:
@@ -140,13 +156,15 @@ def _rows(
         for key in ("choice", *SURFACES, "answer"):
             if key in words:
                 words[key] = values.get(words[key], words[key])
+        if words.get("choice") == "None" and "None" not in design.answers:
+            continue  # PsychoPy's word for no key.
         if decimal_comma:
             words |= {key: words[key].replace(",", ".") for key in _MEASURED if key in words}
         row = _row(path, number, design, words, columns)
         for _ in range(_count(path, number, words)):
             who = str(row["participant_id"])
             given[who] = given.get(who, 0) + 1
-            yield number, {**row, "trial": row["trial"] or given[who]}
+            yield number, {**row, "trial": given[who] if row["trial"] == "" else row["trial"]}
 
 
 def _csv(path: str | Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
@@ -160,7 +178,7 @@ def _csv(path: str | Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
         for number, cells in enumerate(reader, 2):
             if not any(cell.strip() for cell in cells):
                 continue
-            if len(cells) < len(names):
+            if len(cells) < len(names) or any(cell.strip() for cell in cells[len(names) :]):
                 raise ConfigError(
                     f"has {len(cells)} cells where the header has {len(names)}",
                     file=path,
@@ -203,6 +221,10 @@ def _places(
                 f"{path} has no column '{theirs}'; it has {', '.join(names) or 'none'}",
                 quantity="columns",
             )
+    for name in (columns.get(key, key) for key in ours):
+        if names.count(name) > 1:
+            said = f"{path} has {names.count(name)} columns '{name}'; keep one"
+            raise InputError(said, quantity="columns")
     places = {
         key: names.index(columns.get(key, key)) for key in ours if columns.get(key, key) in names
     }
@@ -240,6 +262,8 @@ def _row(
     }
     if design.answers:
         allowed["choice"] = design.answers
+        if words.get("answer"):
+            allowed["answer"] = design.answers
     for key, words_allowed in allowed.items():
         if found[key] not in words_allowed:
             raise ConfigError(
@@ -253,6 +277,8 @@ def _row(
     def refused(key: str, said: str) -> ConfigError:
         return ConfigError(said, file=path, line=line, key=columns.get(key, key) or None)
 
+    if str(found["set_aside"]).lower() in _NOT_SET_ASIDE:
+        found["set_aside"] = ""
     if found["trial"]:
         trial = _number(path, line, columns.get("trial", "trial"), words["trial"])
         if not trial.is_integer():
@@ -261,12 +287,17 @@ def _row(
     if not design.answers and not float(str(found["estimate"])) > 0:
         raise refused("estimate", f"'{words['estimate']}' is not above 0, and has no logarithm")
     pair = [str(found[key]) for key in SURFACES if found[key]]
+    if not pair:
+        raise refused(SURFACES[0], "is empty; a row with an answer says what was presented")
     try:
         surfaces = [presented(design, name, found) for name in pair]
     except InputError as error:
         raise refused(error.quantity or "", str(error)) from error
-    if "answer" not in words:
-        found["answer"] = design.answer_to(*surfaces)
+    right = design.answer_to(*surfaces)
+    if words.get("answer") and right not in ("", words["answer"]) and found["phase"] != "catch":
+        said = f"'{words['answer']}' is not right here, where '{right}' is; are columns exchanged?"
+        raise refused("answer", said)
+    found["answer"] = words.get("answer", right)
     return found
 
 
@@ -274,7 +305,8 @@ def _number(path: str | Path, line: int, column: str, text: str) -> float:
     if text.lower() in ("", "n/a", "na", "nan", "none"):
         return math.nan
     try:
-        return float(text)
+        # Python would read 1_234 as 1234.
+        return float(text.replace("_", "no number"))
     except ValueError as error:
         raise ConfigError(
             f"'{text}' is no number; write one with a point, like 0.0125, or ask for decimal "
@@ -289,7 +321,7 @@ def _count(path: str | Path, line: int, words: Mapping[str, str]) -> int:
     if COUNT not in words:
         return 1
     count = _number(path, line, COUNT, words[COUNT])
-    if not (count >= 0 and count == int(count)):
+    if not (count >= 0 and count.is_integer()):
         raise ConfigError(
             f"'{words[COUNT]}' is no count; write 0, 1, 2 …", file=path, line=line, key=COUNT
         )

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
+import unicodedata
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from statistics import median
 
@@ -34,9 +37,10 @@ def require_plausible_rows(
 
     `known` has the answers of people in other files, and takes up those of this one.
 
-    Raises `ConfigError` for times below 0 or in milliseconds, a pair without the reference, an
-    intensity outside its series, a number a thousand times another of the same person and stimulus,
-    a trial that is there twice, a part that was pasted twice, and two people with the same answers.
+    Raises `ConfigError` for times below 0, in milliseconds or that are moments, a pair without the
+    reference, an intensity outside its series, a number a thousand times another of the same person
+    and stimulus, a trial that is there twice, a part that was pasted twice, a person without a name
+    or with two ways to write it, and two people with the same answers.
     """
     people: dict[str, list[tuple[int, Mapping[str, Cell]]]] = defaultdict(list)
     for line, row in rows:
@@ -50,16 +54,39 @@ def require_plausible_rows(
         _require_seconds(path, who, mine)
         _require_once(path, who, mine)
         _require_one_scale(path, who, mine)
-        key = tuple(tuple(str(row[name]) for name in _TIMED) for _, row in mine)
-        timed = any(_value_of(row, "response_time_s") > 0 for _, row in mine)
-        if len(mine) >= _FEWEST and key in known and timed:
-            raise _refused(
-                path,
-                mine[0][0],
-                "participant_id",
-                f"'{who}' has the same answers and times as '{known[key]}', row by row; keep one",
+        _require_own_name(path, who, mine[0][0], known)
+        _require_own_answers(path, who, mine, known)
+
+
+def _require_own_name(path: str | Path, who: str, line: int, known: dict[Answered, str]) -> None:
+    """Refuse somebody without a name, or with one that is another's but for its writing."""
+    seen = unicodedata.normalize("NFKC", who).casefold()
+    seen = "".join(sign for sign in seen if sign.isprintable() and not sign.isspace())
+    seen = re.sub(r"(?<!\d)0+(?=\d)", "", re.sub(r"\.0+$", "", seen))
+    other = known.setdefault((("name", seen),), who)
+    if not seen or other != who:
+        said = f"'{who}' and '{other}' are written alike; give one person one name"
+        raise _refused(path, line, "participant_id", said if seen else "says nobody; write who")
+
+
+def _require_own_answers(
+    path: str | Path, who: str, mine: Numbered, known: dict[Answered, str]
+) -> None:
+    """Refuse answers that are in another file or another's: twelve rows running.
+
+    Times or numbers tell: where most are the same, as those in whole seconds, nothing is said.
+    """
+    rows = [tuple(str(row[name]) for name in _TIMED) for _, row in mine]
+    told = [(str(row["response_time_s"]), str(row["estimate"])) for _, row in mine]
+    for at in range(len(rows) - _FEWEST + 1):
+        part = tuple(rows[at : at + _FEWEST])
+        if part in known and len(set(told[at : at + _FEWEST])) > _FEWEST // 2:
+            said = (
+                f"'{who}' has the same answers and times as '{known[part]}', row by row; keep one"
             )
-        known.setdefault(key, who)
+            raise _refused(path, mine[at][0], "participant_id", said)
+    for at in range(len(rows) - _FEWEST + 1):
+        known[tuple(rows[at : at + _FEWEST])] = who
 
 
 def _require_pair(
@@ -90,15 +117,21 @@ def _require_pair(
 
 
 def _require_seconds(path: str | Path, who: str, mine: Numbered) -> None:
-    times = [time for _, row in mine if (time := _value_of(row, "response_time_s")) > 0]
-    if times and median(times) > LONGEST_USUAL:
-        raise _refused(
-            path,
-            mine[0][0],
-            "response_time_s",
-            f"'{who}' takes {median(times):g} s in the median; if these are milliseconds, say so "
-            'by columns = "response_time_ms=COLUMN"',
-        )
+    timed = [(line, time) for line, row in mine if (time := _value_of(row, "response_time_s")) > 0]
+    times = [time for _, time in timed]
+    if not times:
+        return
+    usual = median(times)
+    for line, time in timed:
+        if usual > LONGEST_USUAL or time > max(LONGEST_USUAL, _FACTOR * usual):
+            said = (
+                f"'{who}' takes {usual:g} s in the median and {time:g} s here; if these are "
+                'milliseconds, say so by columns = "response_time_ms=COLUMN"'
+            )
+            raise _refused(path, line, "response_time_s", said)
+    if len(times) >= _FEWEST and all(then > now for now, then in pairwise(times)):
+        said = f"'{who}' takes longer in every row: are these moments in place of durations?"
+        raise _refused(path, timed[0][0], "response_time_s", said)
 
 
 def _require_once(path: str | Path, who: str, mine: Numbered) -> None:

@@ -278,7 +278,7 @@ def test_a_folder_holds_a_file_for_each_person(tmp_path: Path) -> None:
     assert people == ["who1"] * 4 + ["who2"]
     # A file that was copied holds the same answers at the same times.
     again = "participant,a,b,key,rt\n" + "".join(
-        f"who1,30 %,22 %,left,0.{number}\n" for number in range(11, 40)
+        f"who1,30 %,22 %,left,0.{number}\n" for number in (*range(25, 40), *range(11, 25))
     )
     for name in ("3.csv", "3 (1).csv"):
         (folder / name).write_text(again, encoding="utf-8")

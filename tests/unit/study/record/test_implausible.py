@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.core.errors import ConfigError
+from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.implausible import _require_one_scale, _require_pair
@@ -63,13 +63,78 @@ def test_an_ordinary_file_is_read(tmp_path: Path) -> None:
         (lambda: changed(7, 1, "18 %"), "line 7.*no reference"),
         (lambda: changed(7, 2, ""), "line 7.*no reference"),
         (lambda: [[*r[:4], str(1000 * float(r[4]))] for r in rows()], "milliseconds"),
+        (lambda: rows() + [["c", *row[1:]] for row in rows()[5:20]], "'c' has the same answers"),
+        (lambda: [*rows(), *rows()[:15], *rows()[20:35]], "rows twice"),
+        (lambda: [["a", *row[1:]] for row in rows()[20:35]] + rows(), "'b' has the same answers"),
+        (lambda: changed(25, 0, "B "), "'B' and 'b' are written alike|'b' and 'B' are written"),
+        (lambda: changed(25, 0, "b\u200b"), "written alike"),
+        (lambda: [[f"{k % 2}1", *row[1:]] for k, row in enumerate(rows())], None),
+        (lambda: [["01" if k % 2 else "1", *r[1:]] for k, r in enumerate(rows())], "alike"),
+        (lambda: [["1.0" if k % 2 else "1", *r[1:]] for k, r in enumerate(rows())], "alike"),
+        (lambda: changed(9, 0, ""), "line 9.*participant_id.*nobody"),
+        (lambda: changed(9, 4, "1250"), "line 9.*response_time_s.*1250 s here"),
+        (lambda: changed(9, 4, "1_250"), "line 9.*'1_250' is no number"),
+        (lambda: [[*row, "x"] for row in rows()], "line 2.*has 6 cells where the header has 5"),
+        (lambda: [[*row, ""] for row in rows()], None),
+        (lambda: [[*r[:4], f"{3 * k + 1}"] for k, r in enumerate(rows()[:20])], "moments"),
         (lambda: changed(9, 3, "left"), 'line 9.*values = "left=first"'),
         (lambda: changed(9, 1, "30"), "Did you mean '30 %'"),
     ],
 )
-def test_what_cannot_be_is_refused(tmp_path: Path, made: Callable[[], Rows], said: str) -> None:
+def test_what_cannot_be_is_refused(
+    tmp_path: Path, made: Callable[[], Rows], said: str | None
+) -> None:
+    """And what can, with nothing said, is read."""
+    if said is None:
+        assert read_answers(write(tmp_path, made()), DESIGN).trials == 40
+        return
     with pytest.raises(ConfigError, match=said):
         read_answers(write(tmp_path, made()), DESIGN)
+
+
+@pytest.mark.parametrize(
+    ("column", "cells", "said"),
+    [
+        ("answer", ["foo"] * 40, "line 2.*'foo' is none of: first, second"),
+        ("answer", ["first"] * 40, "'first' is not right here, where 'second' is"),
+        ("count", ["inf"] * 40, "line 2.*'inf' is no count"),
+        ("choice", ["first"] * 40, "has 2 columns 'choice'"),
+        ("set_aside", ["False", "0", "no", ""] * 10, None),
+        ("trial", [str(k % 20) for k in range(40)], None),
+    ],
+)
+def test_another_column_is_true_or_refused(
+    tmp_path: Path, column: str, cells: list[str], said: str | None
+) -> None:
+    made = [[*row, cell] for row, cell in zip(rows(), cells, strict=True)]
+    path = write(tmp_path, made, f"{HEAD},{column}")
+    if said is None:
+        assert read_answers(path, DESIGN).trials == 40
+        return
+    with pytest.raises(InputError, match=said):
+        read_answers(path, DESIGN)
+
+
+def test_rows_are_in_the_order_of_their_trials(tmp_path: Path) -> None:
+    made = [[*row, str(k % 20 + 1)] for k, row in enumerate(rows())]
+    inner = read_answers(write(tmp_path, made, f"{HEAD},trial"), DESIGN)
+    turned = read_answers(write(tmp_path, made[::-1], f"{HEAD},trial"), DESIGN)
+    for who in ("a", "b"):
+        times = [
+            answers.response_time[answers.participant == answers.people.index(who)].tolist()
+            for answers in (inner, turned)
+        ]
+        assert times[0] == times[1]
+
+
+def test_an_answer_to_nothing_is_refused(tmp_path: Path) -> None:
+    path = write(tmp_path, [["Total", "", "432", "1"]], "participant_id,stimulus,estimate,trial")
+    with pytest.raises(ConfigError, match=r"line 2.*stimulus: is empty"):
+        read_answers(path, load_design("coarseness-magnitude"))
+
+
+def test_no_key_pressed_is_no_answer(tmp_path: Path) -> None:
+    assert read_answers(write(tmp_path, changed(9, 3, "None")), DESIGN).trials == 39
 
 
 def test_a_file_without_times_pasted_twice_is_refused(tmp_path: Path) -> None:
