@@ -41,7 +41,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "measure/recordings/files/matlab.py": {"loadmat": CHILD},
     "measure/recordings/files/universal.py": {"pyuff.UFF": CHILD},
     "measure/recordings/files/instruments.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
-    "measure/recordings/files/sound.py": {"wave.open": "bytes that `read_regular` read"},
+    "measure/recordings/files/raw_table.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
     "measure/recordings/description.py": {"tomllib.loads": TOML},
     "physics/texture_files/image_file.py": {"Pillow.open": CHILD},
     "design/plate/report/page.py": {"read_bytes": "a draft in a folder of its own"},

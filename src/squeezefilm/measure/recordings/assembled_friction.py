@@ -55,11 +55,15 @@ def _position(reading: Reading, time: si.SecondArray, tangential: si.NewtonArray
         "the place was not recorded: the finger is taken to slide at the told speed wherever it is "
         "pressed, and to turn where the tangential force changes its sign; leave rests out"
     )
-    step = float(np.median(np.diff(time)))
-    width = int(np.clip(_SMOOTHED / step, 1, time.size // 4)) | 1
-    padded = np.pad(tangential, width // 2, mode="edge")
-    way = np.sign(np.convolve(padded, np.ones(width) / width, mode="valid"))
+    way = np.sign(smoothed(time, tangential))
     return np.asarray(speed * np.cumsum(way * np.gradient(time)))
+
+
+def smoothed(time: si.SecondArray, values: si.FloatArray) -> si.FloatArray:
+    """Values (points,) averaged over some hundredths of a second."""
+    width = int(np.clip(_SMOOTHED / np.median(np.diff(time)), 1, time.size // 4)) | 1
+    padded = np.pad(values, width // 2, mode="edge")
+    return np.asarray(np.convolve(padded, np.ones(width) / width, mode="valid"))
 
 
 _SMOOTHED: si.Second = 0.02

@@ -29,11 +29,6 @@ def _polar(size: si.FloatArray, phase: si.FloatArray) -> si.ComplexArray:
     return np.asarray(size * np.exp(1j * phase))
 
 
-def _beside(size: si.FloatArray, part: si.FloatArray) -> si.FloatArray:
-    """The resistive part of what has this size and this reactive part."""
-    return np.asarray(np.sqrt(np.maximum(size**2 - part**2, 0)))
-
-
 def _reflected(wave: si.ComplexArray, at: Fixture) -> si.ComplexArray:
     """Impedance of a one-port at the end of a line."""
     return np.asarray(at.reference * (1 + wave) / (1 - wave))
@@ -44,45 +39,57 @@ def _through(wave: si.ComplexArray, at: Fixture) -> si.ComplexArray:
     return np.asarray(2 * at.reference * (1 - wave) / wave)
 
 
+# The reactance of what is in series, the susceptance of what is in parallel, by its value and ω.
+_REACTIVE: Mapping[str, Callable[[Any, Any], Any]] = {
+    "series_capacitance": lambda c, omega: -1 / (omega * c),
+    "series_inductance": lambda coil, omega: omega * coil,
+    "parallel_capacitance": lambda c, omega: omega * c,
+    "parallel_inductance": lambda coil, omega: -1 / (omega * coil),
+}
+# The resistance or conductance beside it, by what was recorded of it and the size of that.
+_LOSSES: Mapping[str, Callable[[Any, Any], Any]] = {
+    "resistance": lambda r, x: r,
+    "conductance": lambda g, b: g,
+    "parallel_resistance": lambda r, b: 1 / r,
+    "dissipation_factor": lambda d, x: x * d,
+    "quality_factor": lambda q, x: x / q,
+    "magnitude": lambda z, x: np.sqrt(np.maximum(z**2 - x**2, 0)),
+}
+_RATIOS, _PARALLEL = (
+    ("dissipation_factor", "quality_factor"),
+    ("conductance", "parallel_resistance"),
+)
+
+
+def _beside(part: str, loss: str, *, swapped: bool = False) -> Made:
+    """What a reactive part makes with a loss, or with the size of both. A ratio of a negative part
+    is taken as positive, to which some instruments give its sign and others none."""
+
+    def made(value: Any, other: Any, at: Fixture) -> Any:
+        value, other = (other, value) if swapped else (value, other)
+        parallel = part.startswith("parallel")
+        if loss in _RATIOS:
+            other = np.where(value < 0, np.abs(other), other)
+        elif loss == "magnitude" and parallel:
+            other = 1 / other
+        x = _REACTIVE[part](value, at.omega)
+        whole = _LOSSES[loss](other, np.abs(x)) + 1j * x
+        return 1 / whole if parallel else whole
+
+    return made
+
+
 IMPEDANCES: Mapping[tuple[str, ...], Made] = {
     ("magnitude", "phase"): lambda z, phase, at: _polar(z, phase),
     ("resistance", "reactance"): lambda r, x, at: r + 1j * x,
     ("admittance_magnitude", "phase"): lambda y, phase, at: 1 / _polar(y, phase),
     ("conductance", "susceptance"): lambda g, b, at: 1 / (g + 1j * b),
-    ("series_capacitance", "resistance"): lambda c, r, at: r + 1 / (1j * at.omega * c),
-    ("series_capacitance", "dissipation_factor"): lambda c, d, at: (d - 1j) / (at.omega * c),
-    ("series_capacitance", "quality_factor"): lambda c, q, at: (1 / q - 1j) / (at.omega * c),
-    ("series_inductance", "resistance"): lambda l, r, at: r + 1j * at.omega * l,  # noqa: E741
-    ("series_inductance", "quality_factor"): lambda l, q, at: (  # noqa: E741
-        at.omega * np.abs(l) / q + 1j * at.omega * l
-    ),
-    ("parallel_capacitance", "conductance"): lambda c, g, at: 1 / (g + 1j * at.omega * c),
-    ("parallel_capacitance", "dissipation_factor"): lambda c, d, at: 1 / (at.omega * c * (d + 1j)),
-    ("parallel_capacitance", "quality_factor"): lambda c, q, at: 1 / (at.omega * c * (1 / q + 1j)),
-    ("parallel_capacitance", "parallel_resistance"): lambda c, r, at: (
-        1 / (1 / r + 1j * at.omega * c)
-    ),
-    ("parallel_inductance", "conductance"): lambda l, g, at: (  # noqa: E741
-        1 / (g + 1 / (1j * at.omega * l))
-    ),
-    ("parallel_inductance", "quality_factor"): lambda l, q, at: (  # noqa: E741
-        1 / ((1 / (np.abs(l) * q) - 1j / l) / at.omega)
-    ),
-    ("parallel_inductance", "parallel_resistance"): lambda l, r, at: (  # noqa: E741
-        1 / (1 / r + 1 / (1j * at.omega * l))
-    ),
-    ("magnitude", "series_capacitance"): lambda z, c, at: (
-        _beside(z, 1 / (at.omega * c)) - 1j / (at.omega * c)
-    ),
-    ("magnitude", "series_inductance"): lambda z, l, at: (  # noqa: E741
-        _beside(z, at.omega * l) + 1j * at.omega * l
-    ),
-    ("magnitude", "parallel_capacitance"): lambda z, c, at: (
-        1 / (_beside(1 / z, at.omega * c) + 1j * at.omega * c)
-    ),
-    ("magnitude", "parallel_inductance"): lambda z, l, at: (  # noqa: E741
-        1 / (_beside(1 / z, 1 / (at.omega * l)) - 1j / (at.omega * l))
-    ),
+    **{
+        (part, loss): _beside(part, loss)
+        for part in _REACTIVE
+        for loss in (*(_PARALLEL if part.startswith("parallel") else ("resistance",)), *_RATIOS)
+    },
+    **{("magnitude", part): _beside(part, "magnitude", swapped=True) for part in _REACTIVE},
     ("reflection", "reflection_imaginary"): lambda re, im, at: _reflected(re + 1j * im, at),
     ("reflection", "phase"): lambda s, phase, at: _reflected(_polar(s, phase), at),
     ("transmission", "transmission_imaginary"): lambda re, im, at: _through(re + 1j * im, at),

@@ -8,7 +8,7 @@ places, times and frequencies of the points may not.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
@@ -70,9 +70,18 @@ class Told:
         return [(what, how) for what, how in said if how]
 
 
+class _Rows:
+    """Series of one length: the attributes that `_alike` names."""
+
+    _alike: ClassVar[tuple[str, ...]]
+
+    def __post_init__(self) -> None:
+        si.require_alike(**{name: getattr(self, name) for name in self._alike})
+
+
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
-class ImpedanceSweep:
+class ImpedanceSweep(_Rows):
     """Admittance (S, complex, time factor e^{iωt}) at rising `frequency` (Hz), both (points,);
     `body` is the bare ceramic that was swept, where it is told to be one, `compensated` whether
     the fixture's leads were (None where that is not told). Without `phase_recorded` the phase is
@@ -87,8 +96,7 @@ class ImpedanceSweep:
     phase_recorded: bool = True
     in_series: si.Ohm = 0.0
 
-    def __post_init__(self) -> None:
-        si.require_alike(frequency=self.frequency, admittance=self.admittance)
+    _alike = ("frequency", "admittance")
 
     def as_recorded(self, admittance: si.ComplexArray) -> si.Array:
         """What such a sweep records of a body's admittance (S, (points,)): all of it; without a
@@ -100,7 +108,7 @@ class ImpedanceSweep:
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
-class FrequencyResponse:
+class FrequencyResponse(_Rows):
     """Displacement per volt (m/V, complex) at one place against `frequency` (Hz), both (points,);
     `voltage` (V) is the drive's amplitude during the sweep, `coherence` (0 to 1) where recorded,
     `place` where on the plate (x, y in m) where told."""
@@ -112,17 +120,12 @@ class FrequencyResponse:
     told: Told = field(default_factory=Told)
     place: tuple[si.Metre, si.Metre] | None = None
 
-    def __post_init__(self) -> None:
-        si.require_alike(
-            frequency=self.frequency,
-            displacement_per_volt=self.displacement_per_volt,
-            coherence=self.coherence,
-        )
+    _alike = ("frequency", "displacement_per_volt", "coherence")
 
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
-class LineScan:
+class LineScan(_Rows):
     """Displacement (m, complex; real where the phase was not recorded) at `position` (m) along a
     line, both (points,), at one `frequency` (Hz) and drive `voltage` (V)."""
 
@@ -132,13 +135,12 @@ class LineScan:
     voltage: si.Volt | None = None
     told: Told = field(default_factory=Told)
 
-    def __post_init__(self) -> None:
-        si.require_alike(position=self.position, displacement=self.displacement)
+    _alike = ("position", "displacement")
 
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
-class GridScan:
+class GridScan(_Rows):
     """Displacement (m, complex) at places `x`, `y` (m), all (points,), at one `frequency` (Hz) and
     drive `voltage` (V)."""
 
@@ -149,8 +151,7 @@ class GridScan:
     voltage: si.Volt | None = None
     told: Told = field(default_factory=Told)
 
-    def __post_init__(self) -> None:
-        si.require_alike(x=self.x, y=self.y, displacement=self.displacement)
+    _alike = ("x", "y", "displacement")
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +195,7 @@ class RawSignals:
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
-class FrictionBench:
+class FrictionBench(_Rows):
     """Strokes of a finger or probe: `time` (s), `normal_force` and `tangential_force` (N),
     `position` (m) and `vibration_amplitude` (m, zero to peak), all (points,); `frequency` (Hz) of
     the vibration where told."""
@@ -207,14 +208,7 @@ class FrictionBench:
     told: Told = field(default_factory=Told)
     frequency: si.Hertz | None = None
 
-    def __post_init__(self) -> None:
-        si.require_alike(
-            time=self.time,
-            normal_force=self.normal_force,
-            tangential_force=self.tangential_force,
-            position=self.position,
-            vibration_amplitude=self.vibration_amplitude,
-        )
+    _alike = ("time", "normal_force", "tangential_force", "position", "vibration_amplitude")
 
 
 FrictionQuantity = Literal["friction_force", "friction_coefficient", "relative_friction"]
@@ -272,7 +266,7 @@ class FrictionCurve:
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
-class FrictionDecays:
+class FrictionDecays(_Rows):
     """Fits of µ = `friction_coefficient` exp(−a²/2τ²) over the amplitude a, as they were published:
     τ is `decay_amplitude` (m), both (strokes,). Force (N) and speed (m/s) are None where they are
     not told."""
@@ -285,15 +279,12 @@ class FrictionDecays:
     told: Told = field(default_factory=Told)
     display: str = ""
 
-    def __post_init__(self) -> None:
-        si.require_alike(
-            decay_amplitude=self.decay_amplitude, friction_coefficient=self.friction_coefficient
-        )
+    _alike = ("decay_amplitude", "friction_coefficient")
 
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
-class FingertipImpedances:
+class FingertipImpedances(_Rows):
     """`damping` (N s/m) and moving `mass` (kg) of fingertips on a vibration, both (touches,), at a
     `frequency` (Hz) and a `normal_force` (N), without sliding."""
 
@@ -304,13 +295,12 @@ class FingertipImpedances:
     told: Told = field(default_factory=Told)
     display: str = ""
 
-    def __post_init__(self) -> None:
-        si.require_alike(damping=self.damping, mass=self.mass)
+    _alike = ("damping", "mass")
 
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
-class DetectionThresholds:
+class DetectionThresholds(_Rows):
     """The least `amplitude` (zero-to-peak, 1) of the friction coefficient that is detected of sines
     of a spatial `period` (m), both (periods,): medians over `people` whose fingers slide at a
     `speed` (m/s) under a `normal_force` (N)."""
@@ -322,8 +312,7 @@ class DetectionThresholds:
     people: Annotated[int, si.AtLeast(1)]
     told: Told = field(default_factory=Told)
 
-    def __post_init__(self) -> None:
-        si.require_alike(period=self.period, amplitude=self.amplitude)
+    _alike = ("period", "amplitude")
 
 
 Recording = (

@@ -60,43 +60,32 @@ QUANTITIES: dict[str, Quantity] = {
     "frequency": Quantity(_HZ, FREQUENCY.most, FREQUENCY.least),
     "magnitude": Quantity(_OHM, 1e12, 1e-6),
     "admittance_magnitude": Quantity(_SIEMENS, 1e6, 1e-12),
-    "resistance": Quantity(_OHM, 1e12),
-    "reactance": Quantity(_OHM, 1e12),
-    "conductance": Quantity(_SIEMENS, 1e6),
-    "susceptance": Quantity(_SIEMENS, 1e6),
-    "series_capacitance": Quantity(_FARAD, 1.0),
-    "parallel_capacitance": Quantity(_FARAD, 1.0),
-    "series_inductance": Quantity(_HENRY, 1e6),
-    "parallel_inductance": Quantity(_HENRY, 1e6),
+    **dict.fromkeys(("resistance", "reactance"), Quantity(_OHM, 1e12)),
+    **dict.fromkeys(("conductance", "susceptance"), Quantity(_SIEMENS, 1e6)),
+    **dict.fromkeys(("series_capacitance", "parallel_capacitance"), Quantity(_FARAD, 1.0)),
+    **dict.fromkeys(("series_inductance", "parallel_inductance"), Quantity(_HENRY, 1e6)),
     "parallel_resistance": Quantity(_OHM, 1e15),
-    "quality_factor": Quantity(_ONE, 1e9),
-    "dissipation_factor": Quantity(_ONE, 1e9),
-    "reflection": Quantity(_ONE, 10.0),
-    "reflection_imaginary": Quantity(_ONE, 10.0),
-    "transmission": Quantity(_ONE, 10.0),
-    "transmission_imaginary": Quantity(_ONE, 10.0),
+    **dict.fromkeys(("quality_factor", "dissipation_factor"), Quantity(_ONE, 1e9)),
+    **dict.fromkeys(("reflection", "reflection_imaginary"), Quantity(_ONE, 10.0)),
+    **dict.fromkeys(("transmission", "transmission_imaginary"), Quantity(_ONE, 10.0)),
     "gain": Quantity(_ONE, 1e6),
     "shunt_voltage": Quantity(_V, MOST_VOLTAGE),
     "phase": Quantity(_RAD, 1e6),
     "displacement": Quantity(_M, VIBRATION.most),
-    "displacement_imaginary": Quantity(_M, VIBRATION.most),
     # A millimetre at 30 kHz; nothing that is meant here moves faster.
     "velocity": Quantity(_SPEED, 200.0),
-    "velocity_imaginary": Quantity(_SPEED, 200.0),
     "voltage": Quantity(_V, MOST_VOLTAGE),
     "coherence": Quantity(_ONE, 1.000001, 0.0),
-    "position": Quantity(_M, SIDE.most),
+    **dict.fromkeys(("position", "x", "y"), Quantity(_M, SIDE.most)),
     "spatial_period": Quantity(_M, SIDE.most, 1e-6),
-    "x": Quantity(_M, SIDE.most),
-    "y": Quantity(_M, SIDE.most),
     "time": Quantity(_S, 1e9),
-    "normal_force": Quantity(_N, FORCE.most),
-    "tangential_force": Quantity(_N, FORCE.most),
-    "vibration_amplitude": Quantity(_M, TOUCHED_VIBRATION.most, 0.0),
-    "decay_amplitude": Quantity(_M, TOUCHED_VIBRATION.most, 0.0),
-    "friction_force": Quantity(_N, FORCE.most),
-    "friction_coefficient": Quantity(_ONE, 1e3),
-    "relative_friction": Quantity(_ONE, 1e3),
+    **dict.fromkeys(
+        ("normal_force", "tangential_force", "friction_force"), Quantity(_N, FORCE.most)
+    ),
+    **dict.fromkeys(
+        ("vibration_amplitude", "decay_amplitude"), Quantity(_M, TOUCHED_VIBRATION.most, 0.0)
+    ),
+    **dict.fromkeys(("friction_coefficient", "relative_friction"), Quantity(_ONE, 1e3)),
     "spread": Quantity(_ONE, 1e3, 0.0),
     "speed": Quantity(_SPEED, FINGER_SPEED.most, FINGER_SPEED.least),
     "damping": Quantity(si.Unit("N*s/m"), 1e4),
@@ -104,11 +93,11 @@ QUANTITIES: dict[str, Quantity] = {
 }
 _PER_VOLT_OF = {
     "displacement": Quantity(_PER_VOLT, VIBRATION.most),
-    "displacement_imaginary": Quantity(_PER_VOLT, VIBRATION.most),
     "velocity": Quantity(_SPEED_PER_VOLT, 200.0),
-    "velocity_imaginary": Quantity(_SPEED_PER_VOLT, 200.0),
 }
 """The same over the voltage of the drive."""
+for _known in (QUANTITIES, _PER_VOLT_OF):
+    _known |= {f"{name}_imaginary": _known[name] for name in ("displacement", "velocity")}
 
 
 @dataclass
@@ -193,6 +182,8 @@ class Reading:
         low, high = (quantity(value, meant.unit) for value in ends)
         if name == "phase":
             low, high = (f"{np.degrees(value):.1f} deg" for value in ends)
+            if scale < 1 and np.max(np.abs(values)) < scale * np.pi:
+                self.doubts.append(f"the phase stays within {low} and {high}: is its unit rad?")
         self.facts.append((words(name), f"{low} to {high}, from {said}"))
         return np.asarray(values)
 
@@ -298,7 +289,8 @@ class Reading:
                 ["columns", name, "column"],
             )
         own = self.table.unit_in_name(place)
-        if own is None or column.unit == own:
+        # Seconds and siemens, both "(S)" in one maker's files.
+        if own is None or column.unit == own or (name, own) == ("time", "S"):
             return
         if _DECIBELS.fullmatch(column.unit) is None and si.parse_unit(own) == si.parse_unit(
             column.unit

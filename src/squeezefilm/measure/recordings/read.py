@@ -23,11 +23,10 @@ from squeezefilm.measure.recordings.description import (
 )
 from squeezefilm.measure.recordings.doubts import doubts_of
 from squeezefilm.measure.recordings.files.analysers import is_4294a, read_4294a
-from squeezefilm.measure.recordings.files.instruments import recognised
 from squeezefilm.measure.recordings.files.matlab import read_matlab
 from squeezefilm.measure.recordings.files.raw_table import RawTable
 from squeezefilm.measure.recordings.files.sound import read_wav
-from squeezefilm.measure.recordings.files.text_table import decoded, read_text_table
+from squeezefilm.measure.recordings.files.text_table import read_text_table
 from squeezefilm.measure.recordings.files.touchstone import SUFFIX as TOUCHSTONE
 from squeezefilm.measure.recordings.files.touchstone import read_touchstone
 from squeezefilm.measure.recordings.files.universal import SUFFIXES, read_universal
@@ -77,9 +76,15 @@ def proposed(table: RawTable) -> Proposal | None:
         f"instrument = {_quoted(table.format.split(',')[0])}",
     ]
     lines += ['shunt = "… ohm"'] if "gain" in quantities else []
+    names = [table.names[table.index(column) or 0] for _, column, _ in held]
+    # Of the second of a pair: "-Im(Z)", "-phase".
+    turned = names[-1][:1] in ("-", "−") and kind == "impedance"
+    lines += ['correct = "phase sign"'] if turned else []
     lines.append("\n[columns]")
     for quantity, column, unit in held:
-        scale = ', scale = "… nm/V"' if quantity == "displacement" else ""
+        over = "" if unit == "1" else "/V"
+        scale = f', scale = "… nm{over}"' if quantity == "displacement" else ""
+        scale = ', scale = "… V"' if quantity == "voltage" and not over else scale
         said = _quoted(column) if isinstance(column, str) else str(column)
         lines.append(f"{quantity} = {{ column = {said}, unit = {_quoted(unit)}{scale} }}")
     return Proposal(kind, "\n".join([*lines, ""]), to_confirm)
@@ -256,13 +261,11 @@ def _says_itself(path: Path) -> bool:
     """True where a file is of an instrument that says what it holds, and needs no description."""
     if not path.is_file() or path.with_suffix(".toml").exists():
         return False
-    if is_4294a(path) or TOUCHSTONE.fullmatch(path.suffix.lower()):
-        return True
-    if path.suffix.lower() not in _TEXTS:
+    suffix = path.suffix.lower()
+    if suffix not in _TEXTS and not TOUCHSTONE.fullmatch(suffix) and not is_4294a(path):
         return False
     try:
-        text, _ = decoded(path)
-        return recognised(text) is not None and not propose_description(path).to_confirm
+        return not propose_description(path).to_confirm
     except ConfigError:
         return False
 

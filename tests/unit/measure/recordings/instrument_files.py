@@ -142,7 +142,7 @@ def touchstone(
             pair = [value.real, value.imag]
         elif "DB" in words:
             pair = [20 * np.log10(np.abs(value)), _degrees(value)]
-        others = [0.1 * np.ones(f.size)] * (6 if ports == 2 else 0)
+        others = [1e-3 * np.ones(f.size)] * (6 if ports == 2 else 0)
         return f"! made here\n{head}{option}\n" + _rows([f / factor, *pair, *others], " ")
 
     return write

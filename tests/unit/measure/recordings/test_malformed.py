@@ -57,7 +57,7 @@ REFUSED = {
     "an empty cell": (cell(7, 2, ""), 7, 2, "the cell is empty"),
     "overflow of the instrument": (cell(5, 2, "OVLD"), 5, 2, "'OVLD' is no number"),
     "infinity": (cell(5, 2, "inf"), 5, 2, "inf is no finite number"),
-    "one decimal comma": (line(6, '29200,"3,5",-80'), 6, 4, "has 4 cells"),
+    "one decimal comma": (line(6, '29200,"3,5",-80'), 6, 2, "decimals after ','"),
     "a damaged first row": (cell(2, 2, "x12"), 2, 2, "'x12' stands beside a number"),
     "a frequency that falls back": (cell(20, 1, "29000"), 20, 1, "must rise from row to row"),
     "a row twice": (line(9, GOOD.split("\n")[7]), 9, 1, "stands twice, in lines 8 and 9"),

@@ -53,7 +53,7 @@ def test_columns_are_found_by_number_by_name_and_without_their_unit() -> None:
     ]  # fmt: skip
     assert [table.unit_in_name(k) for k in range(3)] == ["Hz", "ohm", None]
     assert str(table.error("no", 1, 0)) == "a, column 1: value 2: no"
-    named = RawTable(Path("a"), "text", ("theta (degrees)",), np.ones((1, 1)), np.array([7]))
+    named = RawTable(Path("a"), "text", ("theta (steps)",), np.ones((1, 1)), np.array([7]))
     assert named.unit_in_name(0) is None
     assert str(named.error("no", 0, 0)) == "a, line 7, column 1: no"
 

@@ -223,17 +223,11 @@ class _Fitted:
             )
         return cls(design, _straight(design.matrix, data), data)
 
-    def straight(self, row: si.FloatArray) -> Estimate:
-        """A weighted sum of the fitted numbers."""
-        error = math.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
-        value = float(row @ self.fit.weights)
-        return interval_around(value, error, self.fit.freedom, "1")
-
-    def exponential(self, row: si.FloatArray) -> Estimate:
-        """e to such a sum."""
+    def sum(self, row: si.FloatArray, *, exponential: bool = False) -> Estimate:
+        """A weighted sum of the fitted numbers, or e to that."""
         error = math.sqrt(max(float(row @ self.fit.covariance @ row), 0.0))
         value, freedom = float(row @ self.fit.weights), self.fit.freedom
-        return interval_around(value, error, freedom, "1", logarithmic=True)
+        return interval_around(value, error, freedom, "1", logarithmic=exponential)
 
     def one(self, i: int, other: int | None = None) -> si.FloatArray:
         row = np.zeros(self.design.matrix.shape[1])
@@ -245,7 +239,9 @@ class _Fitted:
     def read(self, recording: FrictionBench, strokes: Strokes) -> FrictionBenchFit:
         design, count = self.design, self.design.levels.size
         still = design.levels[0] < _LEVEL * design.levels[-1] or count == 1
-        relative = [self.exponential(self.one(i, 0)) for i in range(1, count)] if still else []
+        relative = (
+            [self.sum(self.one(i, 0), exponential=True) for i in range(1, count)] if still else []
+        )
         after_speed = count + (2 if count > 1 else 1) * design.speeds_vary
         spread = float(np.sqrt(np.sum(self.fit.residual**2) / self.fit.freedom))
         return FrictionBenchFit(
@@ -254,10 +250,10 @@ class _Fitted:
             amplitudes=design.levels,
             speed=design.speed,
             normal_force=design.force,
-            coefficients=tuple(self.exponential(self.one(i)) for i in range(count)),
+            coefficients=tuple(self.sum(self.one(i), exponential=True) for i in range(count)),
             relative_friction=tuple(relative),
-            speed_exponent=self.straight(self.one(count)) if design.speeds_vary else None,
-            force_exponent=self.straight(self.one(after_speed)) if design.forces_vary else None,
+            speed_exponent=self.sum(self.one(count)) if design.speeds_vary else None,
+            force_exponent=self.sum(self.one(after_speed)) if design.forces_vary else None,
             drift=self._drift() if design.drift else None,
             between_strokes=spread,
             adequacy=self._adequacy(strokes),
@@ -268,7 +264,7 @@ class _Fitted:
         design, row = self.design, np.zeros(self.design.matrix.shape[1])
         own = slice(design.drift_at, design.drift_at + design.drift)
         row[own] = design.matrix[-1, own] - design.matrix[0, own]
-        return self.straight(row)
+        return self.sum(row)
 
     def _adequacy(self, strokes: Strokes) -> Adequacy:
         friction = strokes.column("coefficient")

@@ -9,10 +9,10 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
+from squeezefilm.measure.recordings.assembled_friction import smoothed
 from squeezefilm.measure.recordings.kinds import FrictionBench
 
 _FEWEST_POINTS = 100
-_SMOOTHED: si.Second = 0.02
 # Of what is usual in the recording: slower is turning around, lighter is lifting off.
 _MOVING, _TOUCHING = 0.6, 0.4
 _SHORTEST: si.Second = 0.1
@@ -122,10 +122,7 @@ def _usual(values: si.FloatArray) -> float:
 
 def _speed(t: si.SecondArray, position: si.MetreArray) -> si.MetrePerSecondArray:
     """The speed, its noise averaged over some hundredths of a second."""
-    speed = np.gradient(position, t)
-    width = int(np.clip(_SMOOTHED / np.median(np.diff(t)), 1, t.size // 4)) | 1
-    padded = np.pad(speed, width // 2, mode="edge")
-    return np.convolve(padded, np.ones(width) / width, mode="valid")
+    return smoothed(t, np.gradient(position, t))
 
 
 def _even_part(part: si.IntArray, amplitude: si.MetreArray, tolerated: float) -> si.IntArray:

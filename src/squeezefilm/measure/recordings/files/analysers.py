@@ -11,37 +11,20 @@ from pathlib import Path
 
 import numpy as np
 
+from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.hard_limits import RECORDING_BYTES
 from squeezefilm.core.regular_file import opened
 from squeezefilm.measure.recordings.circuits_read import IMPEDANCES
+from squeezefilm.measure.recordings.files.instruments import read_name
 from squeezefilm.measure.recordings.files.raw_table import Held, RawTable
-from squeezefilm.measure.recordings.files.text_table import decoded
+from squeezefilm.measure.recordings.files.text_table import Notation, decoded, values_in
 
 _HEAD = re.compile(r"\s*\"?4294A\b")
 _SAID = re.compile(r'\s*"([^":]+):\s*([^"]*)"\s*$')
 _COLUMNS = ("real", "imaginary", "memory real", "memory imaginary")
-# What traces A and B hold, by the words of the head's parameter.
-_SYMBOLS = {
-    "LS": ("series_inductance", "H"),
-    "LP": ("parallel_inductance", "H"),
-    "CS": ("series_capacitance", "F"),
-    "CP": ("parallel_capacitance", "F"),
-    "RS": ("resistance", "ohm"),
-    "R": ("resistance", "ohm"),
-    "RP": ("parallel_resistance", "ohm"),
-    "X": ("reactance", "ohm"),
-    "G": ("conductance", "S"),
-    "B": ("susceptance", "S"),
-    "Q": ("quality_factor", "1"),
-    "D": ("dissipation_factor", "1"),
-    "|Z|": ("magnitude", "ohm"),
-    "Z": ("magnitude", "ohm"),
-    "IMPEDANCE": ("magnitude", "ohm"),
-    "|Y|": ("admittance_magnitude", "S"),
-    "Y": ("admittance_magnitude", "S"),
-    "ADMITTANCE": ("admittance_magnitude", "S"),
-}
+# What a trace holds by a word of the head's parameter, as columns are called.
+_TRACED = {name for pair in IMPEDANCES for name in pair} - {"phase", "gain"}
 _PARTS = {"ohm": ("resistance", "reactance"), "S": ("conductance", "susceptance")}
 
 
@@ -59,7 +42,7 @@ class _Trace:
     """A trace as it stands in the file: its letter, the rows and their lines."""
 
     letter: str
-    rows: list[tuple[float, ...]]
+    rows: si.FloatArray
     lines: list[int]
 
 
@@ -85,22 +68,18 @@ def read_4294a(path: Path) -> RawTable:
                 line=trace.lines[-1] if trace.lines else None,
             )
     first = traces[0]
-    frequency = np.array([row[0] for row in first.rows])
+    if not first.lines:
+        raise ConfigError(f"trace {first.letter} has no points; export it again", file=path)
+    frequency = first.rows[:, 0]
     columns, names = [frequency], ["Frequency"]
     for trace in traces:
-        numbers = np.array(trace.rows).reshape(len(trace.rows), -1)
-        other = (
-            np.flatnonzero(numbers[:, 0] != frequency)
-            if numbers.shape[0] == frequency.size
-            else [0]
-        )
-        if len(other):
+        numbers = trace.rows
+        if not np.array_equal(numbers[:, :1].ravel(), frequency):
             raise ConfigError(
                 f"trace {trace.letter} is at other frequencies than trace {first.letter}; export "
                 "both of one sweep",
                 file=path,
-                line=trace.lines[int(other[0])],
-                column=1,
+                line=trace.lines[0] if trace.lines else None,
             )
         columns += list(numbers[:, 1:].T)
         names += [f"{trace.letter} {part}" for part in _COLUMNS[: numbers.shape[1] - 1]]
@@ -130,7 +109,7 @@ def _described(head: dict[str, str], names: Sequence[str]) -> tuple[Held, ...]:
     one that leaves the sign of the reactance open."""
     said = head.get("MEASURE PARAMETER", "").upper()
     words = re.findall(r"\|?[A-Z]+\|?", said)
-    known = [_SYMBOLS[word] for word in words if word in _SYMBOLS]
+    known = [held for word in words if (held := read_name(word)) and held[0] in _TRACED]
     if "A real" not in names or not known:
         return ()
     if {"COMPLEX", "COMP"} & set(words):
@@ -155,41 +134,21 @@ def _held(meant: Sequence[tuple[str, str]], columns: Sequence[str]) -> tuple[Hel
 def _read(lines: Sequence[str], path: Path) -> tuple[dict[str, str], list[_Trace]]:
     """Words of the head, and the traces."""
     head: dict[str, str] = {}
-    traces: list[_Trace] = []
+    traces: list[tuple[str, list[tuple[int, str]]]] = []
     for number, line in enumerate(lines, 1):
         if not line.strip() or _HEAD.match(line):
             continue
         if match := _SAID.match(line):
             if match[1] == "TRACE":
-                traces.append(_Trace(match[2].strip(), [], []))
+                traces.append((match[2].strip(), []))
             elif not traces:
                 head[match[1]] = match[2].strip()
         elif traces and not line.lstrip().startswith('"'):
-            rows = traces[-1].rows
-            rows.append(_row(line, number, path, len(rows[0]) if rows else 0))
-            traces[-1].lines.append(number)
-    return head, traces
+            traces[-1][1].append((number, line))
+    return head, [_trace(letter, rows, path) for letter, rows in traces]
 
 
-def _row(line: str, number: int, path: Path, cells_before: int) -> tuple[float, ...]:
-    cells = line.split()
-    if len(cells) not in (3, 5) or len(cells) != (cells_before or len(cells)):
-        raise ConfigError(
-            f"has {len(cells)} cells, and a row of a trace has three (frequency, real, imaginary), "
-            "or five with a trace in memory; export it again",
-            file=path,
-            line=number,
-            column=min(len(cells), 3),
-        )
-    numbers = []
-    for column, cell in enumerate(cells, 1):
-        try:
-            value = float(cell)
-        except ValueError:
-            value = float("nan")
-        if not np.isfinite(value):
-            raise ConfigError(
-                f"'{cell[:40]}' is no finite number", file=path, line=number, column=column
-            )
-        numbers.append(value)
-    return tuple(numbers)
+def _trace(letter: str, rows: Sequence[tuple[int, str]], path: Path) -> _Trace:
+    count = len(rows[0][1].split()) if rows else 0
+    notation = Notation(None, ".", count, tuple(range(count)))
+    return _Trace(letter, values_in(rows, notation, path), [number for number, _ in rows])

@@ -4,36 +4,22 @@ by their names: the table `instruments.toml`, read here."""
 from __future__ import annotations
 
 import functools
+import itertools
 import re
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+
+import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.measure.recordings.circuits_read import IMPEDANCES, SIZES
-from squeezefilm.measure.recordings.files.raw_table import Held, RawTable, is_unit
+from squeezefilm.measure.recordings.files.raw_table import Held, RawTable, parted
 
 _HEAD_CHARACTERS = 4000
-_UNIT = re.compile(r"\s*[(\[]([^()\[\]]*)[)\]]|\s+in\s+(\S+)$")
 _BESIDE_A_NAME = re.compile(r"^trace\s*\d*\s*:?\s*|^tr\d+\s+|[-_ ]data$|^measurement\s*:?\s*")
-_SYMBOLS = {
-    "º": "deg",
-    "degree": "deg",
-    "degrees": "deg",
-    "degre": "deg",
-    "siemens": "S",
-    "volt": "V",
-    "volts": "V",
-    "second": "s",
-    "seconds": "s",
-    "sec": "s",
-    "ohms": "ohm",
-    "db": "dB",
-    "u": "1",
-    "": "1",
-}
 
 
 @dataclass(frozen=True)
@@ -45,7 +31,6 @@ class Instrument:
     range: tuple[float, float] | None = None
     begin: str = ""
     end: str = ""
-    start_column: int = 1
     names: tuple[str, ...] = ()
     single: bool = False
     counted: bool = False
@@ -60,7 +45,6 @@ class _Vocabulary:
     quantity: str
     names: re.Pattern[str]
     unit: str
-    dimension: str
 
 
 @functools.cache
@@ -69,12 +53,11 @@ def _tables() -> tuple[tuple[Instrument, ...], tuple[_Vocabulary, ...]]:
     tree = tomllib.loads(text)
     instruments = []
     for entry in tree["instrument"]:
-        entry["start_column"] = entry.pop("from", 1)
         entry |= {key: tuple(entry[key]) for key in ("range", "names") if key in entry}
         instruments.append(Instrument(**entry))
     words = tuple(
-        _Vocabulary(one["quantity"], re.compile(one["names"]), one["unit"], one.get("with", ""))
-        for one in tree["column"]
+        _Vocabulary(word["quantity"], re.compile(word["names"]), word["unit"])
+        for word in tree["column"]
     )
     return tuple(instruments), words
 
@@ -93,8 +76,8 @@ def held_by(names: Sequence[str]) -> tuple[Held, ...]:
     impedance, or time with voltages; nothing where the names do not say."""
     quantities: dict[str, list[tuple[int, str]]] = {}
     for number, name in enumerate(names, 1):
-        for quantity, unit in _read_name(name):
-            quantities.setdefault(quantity, []).append((number, unit))
+        if held := read_name(name):
+            quantities.setdefault(held[0], []).append((number, held[1]))
     if "frequency" in quantities:
         wanted = _pair(quantities)
         chosen = [("frequency", quantities["frequency"][0])] if wanted else []
@@ -124,41 +107,33 @@ def _column(names: Sequence[str], number: int) -> str | int:
     return name if len(alike) == 1 and '"' not in name and "\\" not in name else number
 
 
-def _read_name(name: str) -> Iterable[tuple[str, str]]:
-    """The quantity that a column's name says, with its unit; none or one."""
-    unit, bare = "", name
-    for match in _UNIT.finditer(name):
-        symbol = (match[1] if match[1] is not None else match[2]).strip()
-        symbol = _SYMBOLS.get(symbol.casefold(), symbol)
-        if symbol == "dB" or is_unit(symbol):
-            unit, bare = symbol, name[: match.start()] + name[match.end() :]
+def read_name(name: str) -> tuple[str, str] | None:
+    """The quantity that a column's name says, with its unit; None for a name that says none."""
+    bare, unit = parted(name)
     bare = _BESIDE_A_NAME.sub("", " ".join(bare.casefold().split()))
-    bare = _BESIDE_A_NAME.sub("", bare).strip(" _:\"'")
-    for word in _tables()[1]:
-        if not word.names.fullmatch(bare):
-            continue
-        said = unit or word.unit
-        if word.dimension and said != word.dimension and not _alike(said, word.dimension):
-            continue
-        if said == "dB" and word.unit not in ("1", "dB"):
-            said = f"dB re 1 {word.unit}"
-        elif said != "dB" and not _alike(said, word.unit):
+    bare = _BESIDE_A_NAME.sub("", bare).strip(" _:-−")
+    readings = bare, bare.replace("_", " "), bare.rpartition(":")[2].strip()
+    for said, word in itertools.product(readings, _tables()[1]):
+        meant = unit or word.unit
+        if meant == "dB" and word.unit in ("ohm", "S"):
+            meant = f"dB re 1 {word.unit}"
+        elif meant == "S" and word.unit == "s":
             # Seconds and siemens, both "(S)" in one maker's files.
-            said = word.unit
-        return [(word.quantity, said)]
-    return []
+            meant = "s"
+        if word.names.fullmatch(said) and _fits(meant, word.unit):
+            return word.quantity, meant
+    return None
 
 
-def _alike(first: str, second: str) -> bool:
-    """True where two units are of one dimension."""
-    if "dB" in (first, second):
-        return first == second
-    return si.parse_unit(first)[1] == si.parse_unit(second)[1]
+def _fits(unit: str, usual: str) -> bool:
+    """True where a unit is one of what is usually told in another."""
+    if "dB" in unit + usual:
+        return unit in (usual, f"dB re 1 {usual}") or (unit, usual) == ("dB", "1")
+    return si.parse_unit(unit)[1] == si.parse_unit(usual)[1]
 
 
 def table_lines(lines: Sequence[str], instrument: Instrument | None) -> list[str]:
-    """The lines of a file with those blanked that stand outside the first table, and cells before
-    it taken off; line numbers stay."""
+    """The lines of a file with those blanked that stand outside the first table."""
     if instrument is None:
         return list(lines)
     kept = list(lines)
@@ -173,8 +148,6 @@ def table_lines(lines: Sequence[str], instrument: Instrument | None) -> list[str
             )
         last = ends[0] if ends else len(lines)
         kept = [line if first < k < last else "" for k, line in enumerate(lines)]
-    if instrument.start_column > 1:
-        kept = [line.split(",", instrument.start_column - 1)[-1] for line in kept]
     return kept
 
 
@@ -184,7 +157,7 @@ def times_of(text: str, instrument: Instrument) -> tuple[float, float] | None:
         return None
     head = text[:_HEAD_CHARACTERS]
     matches = [
-        re.search(pattern, head, re.MULTILINE | re.IGNORECASE)
+        re.search(pattern, head, re.MULTILINE | re.IGNORECASE) if pattern else ("", "0")
         for pattern in (instrument.start, instrument.step)
     ]
     try:
@@ -202,6 +175,7 @@ def times_of(text: str, instrument: Instrument) -> tuple[float, float] | None:
 def with_meaning(table: RawTable, instrument: Instrument | None) -> RawTable:
     """A table with what its columns hold by their names, and the instrument that wrote it."""
     described = table.described or held_by(table.names)
+    described = tuple(_turned(table, *held) for held in described)
     if instrument is None:
         return replace(table, described=described)
     return replace(
@@ -212,3 +186,11 @@ def with_meaning(table: RawTable, instrument: Instrument | None) -> RawTable:
         instrument=instrument.name,
         specified=instrument.range,
     )
+
+
+def _turned(table: RawTable, quantity: str, column: str | int, unit: str) -> Held:
+    """What a column holds, a phase without a unit of its own in rad where it stays within π."""
+    at = table.index(column)
+    if quantity == "phase" and at is not None and table.unit_in_name(at) is None:
+        unit = "rad" if np.max(np.abs(table.values[:, at])) < np.pi else unit
+    return quantity, column, unit

@@ -17,7 +17,7 @@ from squeezefilm.measure.recordings.files.raw_table import RawTable
 
 
 def read_matlab(path: Path) -> RawTable:
-    """The table in a MATLAB file: of the variables (also those within one structure) the ones of
+    """The table in a MATLAB file: of the variables (also those within structures) the ones of
     the commonest length; ``H real`` and ``H imaginary`` of a complex H, ``data 1``, ``data 2`` of
     the columns of a matrix.
 
@@ -73,14 +73,17 @@ def _variables(data: bytes, name: str) -> list[tuple[str, Any]]:
         ) from error
     variables = []
     for name, value in loaded.items():
-        if name.startswith("__"):
-            continue
-        fields = getattr(getattr(value, "dtype", None), "names", None)
-        if fields and np.ndim(value) == 0:
-            variables += [(field, np.squeeze(value[field].item())) for field in fields]
-        else:
-            variables.append((name, value))
+        if not name.startswith("__"):
+            variables += _within(name, value)
     return variables
+
+
+def _within(name: str, value: Any) -> list[tuple[str, Any]]:
+    """A variable, or those within a structure, at any depth."""
+    fields = getattr(getattr(value, "dtype", None), "names", None)
+    if not fields or np.ndim(value):
+        return [(name, value)]
+    return [pair for field in fields for pair in _within(field, np.squeeze(value[field].item()))]
 
 
 def _columns(name: str, value: Any) -> list[tuple[str, si.FloatArray]]:
@@ -89,6 +92,8 @@ def _columns(name: str, value: Any) -> list[tuple[str, si.FloatArray]]:
     if array.dtype.kind not in "iufc" or array.ndim not in (1, 2) or array.size < 2:
         return []
     if array.ndim == 2:
+        # Of a few long rows each is a column.
+        array = array.T if array.shape[0] < array.shape[1] else array
         parts = [(f"{name} {k + 1}", array[:, k]) for k in range(array.shape[1])]
     else:
         parts = [(name, array)]

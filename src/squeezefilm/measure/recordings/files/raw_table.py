@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,7 +12,15 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError, QuantityError
 
-_UNIT_IN_NAME = re.compile(r"[(\[]\s*([^()\[\]]+?)\s*[)\]]\s*$")
+# In brackets that stand in no others; else behind "in", a stroke, or an underscore (there of two
+# letters or more: "R_s" is a resistance in series).
+_UNIT = re.compile(
+    r"\s*(?<![(\[])[(\[]\s*([^()\[\]]*?)\s*[)\]]"
+    r"|(?:\s+in\s+|\s*/\s*)([a-zA-ZµμΩ°%]+)$|_([a-zA-ZµμΩ°]{2,})$"
+)
+_SYMBOLS: dict[str, str] = tomllib.loads(
+    Path(__file__).with_name("units.toml").read_text(encoding="utf-8")
+)
 
 Held = tuple[str, str | int, str]
 """A quantity, the column that holds it (name, or number from 1), and its unit."""
@@ -71,7 +80,7 @@ class RawTable:
 
     def index(self, wanted: str | int) -> int | None:
         """The place (from 0) of a column by its number from 1, or by its name; None if none is so
-        called. A unit in brackets at the end of a name may be left out."""
+        called. A unit in a name may be left out."""
         if isinstance(wanted, int):
             return wanted - 1 if 1 <= wanted <= self.values.shape[1] else None
         for reading in (str, _folded, _without_unit):
@@ -81,14 +90,14 @@ class RawTable:
         return None
 
     def unit_in_name(self, column: int) -> str | None:
-        """The unit that a column's name ends with in brackets, where it is one that is known."""
-        match = _UNIT_IN_NAME.search(self.names[column])
-        return match[1] if match is not None and is_unit(match[1]) else None
+        """The unit that a column's name holds, where it is one that is known."""
+        unit = parted(self.names[column])[1]
+        return unit if is_unit(unit) else None
 
     @property
     def known_names(self) -> list[str]:
         """Names by which columns may be called: their names, whole and without a unit."""
-        bare = [_UNIT_IN_NAME.sub("", name).strip() for name in self.names]
+        bare = [parted(name)[0] for name in self.names]
         return [name for name in (*bare, *self.names) if name]
 
     @property
@@ -113,6 +122,24 @@ class RawTable:
             )
 
 
+def parted(name: str) -> tuple[str, str]:
+    """A column's name without its unit, and the unit ("dB" among them); "" where it has none."""
+    for match in reversed(list(_UNIT.finditer(name))):
+        symbol = (match[1] if match[1] is not None else match[2] or match[3]).strip()
+        symbol = _SYMBOLS.get(symbol.casefold(), symbol)
+        # Of two channels over another "A" and the like are no ampere.
+        if (symbol.startswith("dB") or is_unit(symbol)) and not (match[2] and symbol == "A"):
+            return (name[: match.start()] + name[match.end() :]).strip(), symbol
+    return name.strip(), ""
+
+
+def unit_alone(cell: str) -> str:
+    """The unit that a cell holds and nothing else; "" where it does not."""
+    bare, unit = parted(f"({cell.strip('()[] ')})")
+    # The word is a column's name, in the heads of oscilloscopes.
+    return "" if bare or cell.casefold() == "second" else unit
+
+
 def is_unit(symbol: str) -> bool:
     """True where a symbol is a unit that is known."""
     try:
@@ -127,4 +154,4 @@ def _folded(name: str) -> str:
 
 
 def _without_unit(name: str) -> str:
-    return _folded(_UNIT_IN_NAME.sub("", name))
+    return _folded(parted(name)[0])

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import io
-import wave
+import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,35 +16,39 @@ from squeezefilm.measure.recordings.files.raw_table import RawTable
 
 
 def read_wav(path: Path) -> RawTable:
-    """The channels of a WAV file (PCM of 8, 16, 24 or 32 bit) from −1 to 1 of full scale over time.
+    """The channels of a WAV file over time: PCM of 8, 16, 24 or 32 bit from −1 to 1 of full scale,
+    floats as they are.
 
-    Raises `ConfigError` for a file that is cut short, of floats, or no WAV file.
+    Raises `ConfigError` for a file that is cut short, of another coding, or no WAV file.
     """
-    content = read_regular(path, RECORDING_BYTES, "a WAV file")
+    from scipy.io import wavfile
+
+    stream: Any = io.BytesIO(read_regular(path, RECORDING_BYTES, "a WAV file"))
     try:
-        with wave.open(io.BytesIO(content), "rb") as sound:
-            width, channels, rate = sound.getsampwidth(), sound.getnchannels(), sound.getframerate()
-            said, data = sound.getnframes(), sound.readframes(sound.getnframes())
-    except (wave.Error, EOFError) as error:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", wavfile.WavFileWarning)
+            warnings.filterwarnings("error", "Reached EOF", wavfile.WavFileWarning)
+            rate, samples = wavfile.read(stream)
+    # Damaged heads end in errors of any type, of struct, of NumPy.
+    except Exception as error:
         raise ConfigError(
-            f"is no WAV file of whole numbers ({error or 'it ends early'}); save it as PCM of 16 "
-            "or 24 bit",
+            f"is cut short, or no WAV file of PCM or floats ({error or 'it ends early'}); save it "
+            "again as PCM of 16 or 24 bit",
             file=path,
         ) from None
-    if len(data) != said * width * channels or rate <= 0:
-        raise ConfigError("is cut short: its head tells of more samples; save it again", file=path)
-    wide = np.zeros((said * channels, 4), dtype=np.uint8)
-    wide[:, 4 - width :] = np.frombuffer(data, dtype=np.uint8).reshape(-1, width)
-    if width == 1:
-        # Eight bits alone are without a sign.
-        wide[:, 3] ^= 0x80
-    values = wide.view("<i4").reshape(said, channels) / 2.0**31
-    names = ("Time (s)", *(f"Channel {k}" for k in range(1, channels + 1)))
+    if rate <= 0:
+        raise ConfigError(f"has {rate} samples a second; save it again", file=path)
+    values = samples.reshape(samples.shape[0], -1).astype(float)
+    if samples.dtype == np.uint8:
+        values = values / 2**7 - 1  # Eight bits alone are without a sign.
+    elif samples.dtype.kind == "i":
+        values /= 2.0 ** (8 * samples.dtype.itemsize - 1)
+    names = ("Time (s)", *(f"Channel {k + 1}" for k in range(values.shape[1])))
     table = RawTable(
         file=path,
-        format=f"WAV file, {8 * width} bit at {rate} Hz, over full scale",
+        format=f"WAV file, {samples.dtype} at {rate} Hz, over full scale",
         names=names,
-        values=np.column_stack([np.arange(said) / rate, values]),
+        values=np.column_stack([np.arange(values.shape[0]) / rate, values]),
         described=(("time", 1, "s"), *(("signal", name, "1") for name in names[1:])),
     )
     table.require_finite()

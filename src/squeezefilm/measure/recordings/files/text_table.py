@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,36 +27,51 @@ from squeezefilm.measure.recordings.files.instruments import (
     times_of,
     with_meaning,
 )
-from squeezefilm.measure.recordings.files.raw_table import RawTable, is_unit
+from squeezefilm.measure.recordings.files.raw_table import RawTable, unit_alone
 
 DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ",", "blank": None}
 _WORDS = {"\t": "tabs", ";": "semicolons", ",": "commas", None: "blanks"}
 _COMMENTS = ("#", "%", "//", "!")
+_THOUSANDS = re.compile(r"[+-]?\d{1,3}(,\d{3})+\.\d*")
 _SAMPLE = 400
 _SHOWN = 40
 
 
 @dataclass(frozen=True)
-class _Notation:
-    """Notation of a table: what parts the cells of a line and what the decimals of a number, and
-    how many cells there are."""
+class Notation:
+    """Notation of a table: what parts the cells of a line and what the decimals of a number, how
+    many cells a line has, and the places of those that hold numbers."""
 
     delimiter: str | None
     decimal: str
-    cells: int
+    whole: int = 0
+    kept: tuple[int, ...] = ()
+
+    @property
+    def cells(self) -> int:
+        """How many numbers a row has."""
+        return len(self.kept)
 
     def split(self, line: str) -> list[str]:
-        """The cells of a line, without quotation marks; empty ones may end it."""
-        cells = [cell.strip(" \t\"'") for cell in line.split(self.delimiter)]
-        while len(cells) > self.cells > 0 and not cells[-1]:
+        """The cells of a line that hold numbers, without quotation marks; all of them where it has
+        another count of cells than the table. Empty ones may end it."""
+        if '"' in line and self.delimiter is not None:
+            parts = next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True), [])
+        else:
+            parts = line.split(self.delimiter)
+        cells = [_unquoted(cell) for cell in parts]
+        while len(cells) > self.whole and cells and not cells[-1]:
             cells.pop()
-        return cells
+        return [cells[at] for at in self.kept] if len(cells) == self.whole else cells
 
     def number(self, cell: str) -> float:
         """The number in a cell. Raises `ValueError` for what is none."""
         if "_" in cell or (self.decimal == "," and "." in cell):
             raise ValueError(cell)
-        return float(cell.replace(",", ".") if self.decimal == "," else cell)
+        if self.decimal == "," or _THOUSANDS.fullmatch(cell):
+            cell = cell.replace(",", "." if self.decimal == "," else "")
+        # Fortran's exponent.
+        return float(cell.upper().replace("D", "E"))
 
     def is_row(self, line: str) -> bool:
         """True where a line is a row of numbers, as many as there are columns."""
@@ -78,6 +93,12 @@ class _Notation:
         return f"{_WORDS[self.delimiter]} between the columns, decimals after {point}"
 
 
+def _unquoted(cell: str) -> str:
+    """A cell without blanks and quotation marks around it; a prime at its end stays."""
+    bare = cell.strip()
+    return bare[1:-1].strip() if bare[:1] == bare[-1:] and bare[:1] in ("'", '"') else bare
+
+
 def decoded(path: Path) -> tuple[str, list[str]]:
     """The text of a file with "\\n" at line ends, and what is to be said of its encoding.
 
@@ -87,6 +108,9 @@ def decoded(path: Path) -> tuple[str, list[str]]:
     notes = []
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         encoding = "utf-16"
+    elif 3 * data[:4096].count(0) > len(data[:4096]):
+        # Two bytes a character without a mark: every second one of plain letters is zero.
+        encoding = "utf-16-be" if data[:1] == b"\0" else "utf-16-le"
     elif b"\0" in data[:4096]:
         raise ConfigError(
             "holds bytes that no text has; give a text, a Universal File (.uff, .unv) or a MATLAB "
@@ -127,8 +151,8 @@ def read_text_table(path: Path, said: Described | None = None) -> RawTable:
     single = instrument is not None and instrument.single
     notation = _notation(numbered, said, path, 1 if single else 2)
     first = next(k for k, (_, line) in enumerate(numbered) if notation.is_row(line))
-    rows = numbered[first:]
-    values = _values(rows, notation, path)
+    rows, doubts = _first_table(numbered[first:], {line for _, line in numbered[:first]}, notation)
+    values = values_in(rows, notation, path)
     if instrument is not None and len(instrument.names) >= notation.cells:
         header_line, names = None, instrument.names[: notation.cells]
     else:
@@ -141,7 +165,9 @@ def read_text_table(path: Path, said: Described | None = None) -> RawTable:
     before = [number for number, _ in numbered[:first] if number != header_line]
     if before:
         notes.append(f"{len(before)} lines before the table were not read as numbers")
-    cut = _perhaps_cut(text, rows)
+    others = [str(at + 1) for at in range(notation.whole) if at not in notation.kept]
+    if others:
+        notes.append(f"cells that hold no numbers were left out: {', '.join(others)} of each line")
     table = RawTable(
         file=path,
         format=f"text, {notation.words}",
@@ -150,7 +176,7 @@ def read_text_table(path: Path, said: Described | None = None) -> RawTable:
         lines=np.array([number for number, _ in rows]),
         header_line=header_line,
         notes=tuple(notes),
-        doubts=() if cut is None else (cut,),
+        doubts=(*doubts, *_perhaps_cut(text, rows)),
     )
     table.require_finite()
     return with_meaning(table, instrument)
@@ -158,28 +184,30 @@ def read_text_table(path: Path, said: Described | None = None) -> RawTable:
 
 def _notation(
     numbered: Sequence[tuple[int, str]], said: Described | None, path: Path, least: int
-) -> _Notation:
-    """The notation in which most lines are rows of at least so many numbers; of equals the
-    first."""
+) -> Notation:
+    """The notation in which most lines hold at least so many numbers at the same places, counted
+    half where other cells stand among them; of equals the first."""
     sample = [line for _, line in numbered[:_SAMPLE]] + [line for _, line in numbered[-20:]]
     delimiter = None if said is None else said.delimiter
     decimal = None if said is None else said.decimal
     wanted = DELIMITERS if delimiter is None else {delimiter: DELIMITERS[delimiter]}
-    best, most = None, 0
+    best, most = None, 0.0
     for parted_by in wanted.values():
         for point in (".", ",") if decimal is None else (decimal,):
-            if parted_by == point:
-                continue
-            trial = _Notation(parted_by, point, 0)
-            counts: Counter[int] = Counter()
+            trial = Notation(parted_by, point)
+            counts: Counter[Notation] = Counter()
             for line in sample:
-                cells = trial.split(line)
-                while cells and not cells[-1]:
-                    cells.pop()
-                if len(cells) >= least and all(map(trial.is_number, cells)):
-                    counts[len(cells)] += 1
-            if counts and (commonest := counts.most_common(1)[0])[1] > most:
-                best, most = _Notation(parted_by, point, commonest[0]), commonest[1]
+                # Where a comma parts both, quotation marks must.
+                if parted_by == point and '"' not in line:
+                    continue
+                cells = list(trial.split(line))
+                kept = [at for at, cell in enumerate(cells) if trial.is_number(cell)]
+                if len(kept) >= least:
+                    counts[Notation(parted_by, point, len(cells), tuple(kept))] += 1
+            for notation, count in counts.items():
+                weight = count if notation.whole == notation.cells else count / 2
+                if weight > most:
+                    best, most = notation, weight
     if best is None:
         told = "" if delimiter is None and decimal is None else " as delimiter and decimal tell"
         at = numbered[0][0] if numbered else None
@@ -191,7 +219,7 @@ def _notation(
     return best
 
 
-def _values(rows: Sequence[tuple[int, str]], notation: _Notation, path: Path) -> si.FloatArray:
+def values_in(rows: Sequence[tuple[int, str]], notation: Notation, path: Path) -> si.FloatArray:
     """The numbers of all rows, shape (rows, columns)."""
     values = np.empty((len(rows), notation.cells))
     for k, (number, line) in enumerate(rows):
@@ -208,37 +236,38 @@ def _values(rows: Sequence[tuple[int, str]], notation: _Notation, path: Path) ->
                 values[k, column] = notation.number(cell)
             except ValueError:
                 raise ConfigError(
-                    _no_number(cell, notation), file=path, line=number, column=column + 1
+                    _no_number(cell, notation),
+                    file=path,
+                    line=number,
+                    column=notation.kept[column] + 1,
                 ) from None
     return values
 
 
-def _miscounted(cells: Sequence[str], notation: _Notation, *, last: bool) -> str:
+def _miscounted(cells: Sequence[str], notation: Notation, *, last: bool) -> str:
     said = f"has {len(cells)} cells where the rows before have {notation.cells}"
     if last and len(cells) < notation.cells:
         return f"{said}: the file ends within a row; copy it again, or delete the row"
     return f"{said}; mend the row or delete it"
 
 
-def _no_number(cell: str, notation: _Notation) -> str:
+def _no_number(cell: str, notation: Notation) -> str:
     shown = cell if len(cell) <= _SHOWN else f"{cell[:_SHOWN]}…"
+    if "∞" in cell:
+        return "the instrument was over its range here; record with a larger one"
     if not cell:
         return "the cell is empty; leave the whole row out where nothing was measured"
-    if notation.decimal == "." and re.fullmatch(r"[+-]?\d+,\d+([eE][+-]?\d+)?", cell):
+    other = "," if notation.decimal == "." else "."
+    if re.fullmatch(rf"[+-]?\d+[{other}]\d+([eE][+-]?\d+)?", cell):
         return (
-            f"'{shown}' has its decimals after a comma, and other rows after a point; write all "
-            "of them alike"
-        )
-    if notation.decimal == "," and "." in cell:
-        return (
-            f"'{shown}' has a point, and other rows have their decimals after a comma; write all "
-            "of them alike"
+            f"'{shown}' has its decimals after '{other}', and other rows after "
+            f"'{notation.decimal}'; write all of them alike"
         )
     return f"'{shown}' is no number; mend it, or delete the row"
 
 
 def _names(
-    lines: Sequence[str], first: int, notation: _Notation, said: Described | None, path: Path
+    lines: Sequence[str], first: int, notation: Notation, said: Described | None, path: Path
 ) -> tuple[int | None, tuple[str, ...]]:
     """The line of the columns' names, told or the last one above the numbers that fits, and
     they."""
@@ -287,7 +316,7 @@ def _names(
             line=above[0],
             column=cells.index(other) + 1,
         )
-    if all(is_unit(cell.strip("()[] ") or "1") for cell in cells) and len(above) > 1:
+    if all(cell == "#" or unit_alone(cell) for cell in cells) and len(above) > 1:
         upper = _header_cells(lines[above[1] - 1], notation)
         if len(upper) == notation.cells:
             joined = (f"{a} ({b.strip('()[] ')})" for a, b in zip(upper, cells, strict=True))
@@ -295,31 +324,53 @@ def _names(
     return above[0], tuple(cells)
 
 
-def _header_cells(line: str, notation: _Notation) -> list[str]:
+def _header_cells(line: str, notation: Notation) -> list[str]:
     """The names in a line, which may stand between quotation marks, or behind a comment's sign."""
-    bare = line.strip()
-    for sign in _COMMENTS:
-        bare = bare.removeprefix(sign).lstrip() if bare.startswith(sign) else bare
+    # As it is first: a sign alone may be the name of a column that counts.
+    for bare in (line.strip(" "), line.strip(), line.strip().lstrip("".join(_COMMENTS)).strip()):
+        cells = _names_in(bare, notation)
+        while len(cells) > notation.whole and not cells[-1]:
+            cells.pop()
+        if len(cells) == notation.whole:
+            cells[0] = _unquoted(cells[0].lstrip("".join(_COMMENTS))) or cells[0]
+            return [cells[at] for at in notation.kept]
+    return cells
+
+
+def _names_in(bare: str, notation: Notation) -> list[str]:
     if notation.delimiter is None:
         # Names may hold single blanks where they are quoted, or where two blanks part them.
         parts = re.findall(r'"([^"]*)"', bare) or re.split(r"\t+|\s{2,}", bare)
-        return parts if len(parts) == notation.cells else bare.split()
+        return parts if len(parts) == notation.whole else bare.split()
     try:
-        cells = next(csv.reader([bare], delimiter=notation.delimiter), [])
-    except csv.Error:
+        return [_unquoted(cell) for cell in next(csv.reader([bare], delimiter=notation.delimiter))]
+    except (csv.Error, StopIteration):
         return []
-    cells = [cell.strip(" \t\"'") for cell in cells]
-    return cells[:-1] if len(cells) > notation.cells and not cells[-1] else cells
 
 
-def _perhaps_cut(text: str, rows: Sequence[tuple[int, str]]) -> str | None:
+def _first_table(
+    rows: Sequence[tuple[int, str]], above: Set[str], notation: Notation
+) -> tuple[Sequence[tuple[int, str]], list[str]]:
+    """The rows without words below them, up to a line that stood above them already, with a doubt
+    that says so."""
+    for k, (number, line) in enumerate(rows):
+        if line in above:
+            return rows[:k], [f"a second table begins in line {number}: the first was read"]
+    while not any(map(notation.is_number, (cells := notation.split(rows[-1][1])))) and (
+        len(cells) != notation.cells
+    ):
+        rows = rows[:-1]
+    return rows, []
+
+
+def _perhaps_cut(text: str, rows: Sequence[tuple[int, str]]) -> Iterator[str]:
     """A doubt where the last row has no end and is shorter than all others."""
     if text.endswith("\n") or len(rows) < 3:
-        return None
+        return
     last = len(rows[-1][1])
     if last >= min(len(line) for _, line in rows[:-1]):
-        return None
-    return (
+        return
+    yield (
         f"the last row (line {rows[-1][0]}) is shorter than all others and its line has no end: if "
         "the file was cut short there, its last number lacks digits"
     )

@@ -16,6 +16,8 @@ from squeezefilm.measure.recordings.files.text_table import decoded
 
 SUFFIX = re.compile(r"\.[sSyYzZ]([12])[pP]|\.[tT][sS]")
 _UNITS = {"HZ": "Hz", "KHZ": "kHz", "MHZ": "MHz", "GHZ": "GHz"}
+# The rest of a device in series, over what others leave; S21 over S11 past noise and crosstalk.
+_IN_SERIES, _PASSED = 0.3, 0.05
 # Port by port, as version 1 has it: S21 before S12.
 _PORTS = {1: ("11",), 2: ("11", "21", "12", "22")}
 
@@ -73,6 +75,14 @@ def read_touchstone(path: Path) -> RawTable:
         table[:, 1::2] *= 1.0 if form == "DB" else scale
         table[:, 2::2] *= scale if form == "RI" else 1.0
         table[:, 1::2] += 20 * np.log10(scale) if form == "DB" else 0.0
+    at, doubts = _place(table, names, kind, form)
+    if version == 1 and kind in "ZY" and reference != 1:
+        doubts.append(
+            f"{kind} was taken as over {reference:g} ohm, as version 1 of Touchstone has it: of a "
+            f"program that writes ohms or siemens it is {reference:g} times off; compare one value"
+        )
+    if names[at].startswith("S21"):
+        notes.append("S11 + S21 = 1: the device is in series between the ports, S21 is read")
     instrument = recognised(text)
     raw = RawTable(
         file=path,
@@ -81,7 +91,8 @@ def read_touchstone(path: Path) -> RawTable:
         values=table,
         lines=np.array(lines, dtype=int),
         notes=tuple(notes),
-        described=_held(names, unit, kind, form),
+        doubts=tuple(doubts),
+        described=_held(names[at : at + 2], unit, kind, form),
         sure=True,
         reference=reference,
         instrument="" if instrument is None else instrument.name,
@@ -112,23 +123,51 @@ def _options(words: list[str], path: Path) -> tuple[str, str, str, si.Ohm]:
     return unit, kind, form, ohms
 
 
-def _held(names: list[str], unit: str, kind: str, form: str) -> tuple[Held, ...]:
-    """Quantities that the columns of port 1 hold."""
-    real, imaginary = {
-        "S": ("reflection", "reflection_imaginary"),
-        "Z": ("resistance", "reactance"),
-        "Y": ("conductance", "susceptance"),
+def _place(table: si.FloatArray, names: list[str], kind: str, form: str) -> tuple[int, list[str]]:
+    """The column where the parameter begins that the device is read from, and doubts: S21 of a
+    device in series between two ports, else what port 1 sees."""
+    at = {name[:3]: names.index(name) for name in reversed(names[1:])}
+    if len(at) == 1 or kind != "S" or not table.size:
+        return at[f"{kind}11"], []
+    s11, s21 = (_complex(table[:, at[port] :], form) for port in ("S11", "S21"))
+    # In series S11 + S21 = 1; alone at port 1 S21 is missing there, across both 2 S11 too much.
+    rest, *apart = (float(np.linalg.norm(of)) for of in (s11 + s21 - 1, 1 - s11, s11))
+    if rest < _IN_SERIES * min(apart):
+        return at["S21"], []
+    if float(np.linalg.norm(s21)) < _PASSED * apart[1]:
+        return at["S11"], []
+    return at["S11"], [
+        "port 2 takes part (S21 is no noise), and the device is not in series between the ports: "
+        "S11 is read as if it stood at port 1 alone"
+    ]
+
+
+def _complex(columns: si.FloatArray, form: str) -> si.ComplexArray:
+    """A parameter by the first two columns."""
+    first, second = columns[:, 0], columns[:, 1]
+    if form == "RI":
+        return np.asarray(first + 1j * second)
+    size = 10 ** (first / 20) if form == "DB" else first
+    return np.asarray(size * np.exp(1j * np.radians(second)))
+
+
+def _held(columns: list[str], unit: str, kind: str, form: str) -> tuple[Held, ...]:
+    """Quantities that a parameter's two columns hold."""
+    wave = "transmission" if columns[0].startswith("S21") else "reflection"
+    real, imaginary, size, linear = {
+        "S": (wave, f"{wave}_imaginary", wave, "1"),
+        "Z": ("resistance", "reactance", "magnitude", "ohm"),
+        "Y": ("conductance", "susceptance", "admittance_magnitude", "S"),
     }[kind]
-    linear = {"S": "1", "Z": "ohm", "Y": "S"}[kind]
-    second, angle = (imaginary, linear) if form == "RI" else ("phase", "deg")
-    if form != "RI":
-        real = {"S": "reflection", "Z": "magnitude", "Y": "admittance_magnitude"}[kind]
-    first = f"dB re 1 {linear}" if form == "DB" else linear
-    return (("frequency", "Frequency", unit), (real, names[1], first), (second, names[2], angle))
+    frequency, (first, second) = ("frequency", "Frequency", unit), columns
+    if form == "RI":
+        return frequency, (real, first, linear), (imaginary, second, linear)
+    decibels = f"dB re 1 {linear}" if form == "DB" else linear
+    return frequency, (size, first, decibels), ("phase", second, "deg")
 
 
 def _numbers(text: str, line: int, path: Path) -> list[float]:
     try:
-        return [float(cell) for cell in text.split()]
+        return [float(cell.replace(",", ".")) for cell in text.split()]
     except ValueError:
         raise ConfigError(f"'{text[:40]}' is no row of numbers", file=path, line=line) from None

@@ -1,11 +1,11 @@
-"""Universal Files (UFF, UNV): functions (type 58), data at nodes (55) and the nodes' places
-(15)."""
+"""Universal Files (UFF, UNV): functions (type 58), data at nodes (55), the nodes' places (15,
+2411) and the units of all (164)."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,10 @@ from squeezefilm.core.regular_file import read_regular
 from squeezefilm.measure.recordings.files.raw_table import RawTable
 
 SUFFIXES = (".uff", ".unv", ".uf")
-_READ = (15, 55, 58)
+_NODES = (15, 2411)
+_READ = (*_NODES, 55, 58, 164)
+# By how many of the file's lengths are a metre, as its data set of units says.
+_LENGTHS = {1: "m", 1e2: "cm", 1e3: "mm", 1e6: "um"}
 _DIRECTIONS = ("r1", "r2", "r3")
 # By the specific data type of an ordinate, and the axis of a direction.
 _MOTIONS = {8: "displacement", 11: "velocity", 12: "acceleration"}
@@ -29,11 +32,13 @@ _OVER_ANOTHER = 4  # the type of a function that is a frequency response
 
 @dataclass(frozen=True)
 class _Block:
-    """A data set: its type, and the line of the file in which it begins."""
+    """A data set: its type, the line of the file in which it begins, and the file's unit of
+    lengths ("" where it has none)."""
 
     type: int
     line: int
     content: Mapping[str, Any]
+    length: str = ""
 
 
 def read_universal(path: Path, at: si.Hertz | None = None) -> RawTable:
@@ -62,26 +67,24 @@ def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
     the columns' values (read in the child)."""
     path = Path(file)
     blocks = _blocks(path)
-    functions = [part for part in blocks if part.type == 58]
     nodes: dict[int, list[float]] = {}
-    for block in (candidate for candidate in blocks if candidate.type == 15):
-        c = block.content
+    a_metre = [float(block.content["length"]) for block in blocks if block.type == 164]
+    length = _LENGTHS.get(round(a_metre[-1], 6), "") if a_metre else ""
+    blocks = [replace(block, length=length) for block in blocks]
+    for c in (block.content for block in blocks if block.type in _NODES):
         nodes |= {
             int(n): place for n, *place in zip(c["node_nums"], c["x"], c["y"], c["z"], strict=True)
         }
-    fields = [block for block in blocks if block.type == 55]
+    functions, fields = ([block for block in blocks if block.type == of] for of in (58, 55))
     if fields and nodes:
         names, columns = _data_at_nodes(fields[0], nodes, path)
         own = dict.fromkeys(_DIRECTIONS, _motion(fields[0], "spec_data_type"))
     elif functions and nodes and at is not None:
         names, columns = _functions_at_nodes(functions, nodes, at, path)
-        own = {"58": _motion(functions[0], "ordinate_spec_data_type")}
+        own = {"58": _motion(functions[0])}
     elif functions:
         names, columns = _functions(functions, path)
-        own = {
-            f"58.{k}": _motion(block, "ordinate_spec_data_type")
-            for k, block in enumerate(functions, 1)
-        }
+        own = {f"58.{k}": _motion(block) for k, block in enumerate(functions, 1)}
     else:
         kinds = ", ".join(sorted({str(block.type) for block in blocks})) or "none"
         raise ConfigError(
@@ -91,6 +94,9 @@ def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
         )
     moved = [own.get(name.split(" ")[0], "") for name in names]
     notes = [_said(block, nodes) for block in functions[:3]]
+    if length and nodes and names[:3] == ["x", "y", "z"]:
+        names = [*(f"{name} ({length})" for name in "xyz"), *names[3:]]
+    notes += [f"its units (type 164): {count:g} lengths a metre" for count in a_metre[-1:]]
     said = f"Universal File of {len(blocks)} data sets", names, moved, notes
     return said, [np.stack(columns, axis=1)]
 
@@ -153,7 +159,10 @@ def _require_whole(block: _Block, path: Path) -> None:
                 file=path,
                 line=block.line,
             )
-    elif block.type == 15:
+    elif block.type == 164:
+        if not c.get("length", 0) > 0:
+            raise ConfigError("the units that begin here have parts missing", file=path)
+    elif block.type in _NODES:
         if len({len(c[key]) for key in ("node_nums", "x", "y", "z")}) > 1:
             raise ConfigError(
                 "the nodes that begin here have parts missing", file=path, line=block.line
@@ -173,28 +182,34 @@ def _words(block: _Block, key: str) -> str:
 
 
 def _unit(block: _Block) -> str:
-    """The unit of a function, of a frequency response over that of its drive; empty where its head
-    does not say all of it."""
+    """The unit of a function, of a frequency response over that of its drive; empty where neither
+    its head nor the file's unit of lengths says all of it."""
     above, below = (_words(block, f"{part}_axis_units_lab") for part in ("ordinate", "orddenom"))
+    if block.length and not above:
+        # A drive whose unit is not told is a voltage: the units of a file hold no volts.
+        moved = _motion(block)
+        above = {"displacement": block.length, "velocity": f"{block.length}/s"}.get(moved, "")
+        below = below or "V"
     if int(block.content.get("func_type") or 0) != _OVER_ANOTHER:
         return above
     return f"{above}/{below}" if above and below else ""
 
 
-def _motion(block: _Block, key: str) -> str:
+def _motion(block: _Block, key: str = "ordinate_spec_data_type") -> str:
     return _MOTIONS.get(int(block.content.get(key) or 0), "")
 
 
 def _said(block: _Block, nodes: Mapping[int, Sequence[float]]) -> str:
     """Words of a function on itself: its name, quantity, unit and point."""
     names = [_words(block, key) for key in ("id1", "ordinate_axis_lab")]
-    names.append(_motion(block, "ordinate_spec_data_type"))
+    names.append(_motion(block))
     told = ", ".join(dict.fromkeys(name for name in names if name))
     unit = _unit(block)
     node, axis = (int(block.content.get(key) or 0) for key in ("rsp_node", "rsp_dir"))
     at = f", at node {node}" + (f" along {_AXES[abs(axis)]}" if abs(axis) in _AXES else "")
     if node in nodes:
-        at += " ({:.6g}, {:.6g}, {:.6g} in the file's unit)".format(*nodes[node])
+        at += " ({:.6g}, {:.6g}, {:.6g} in ".format(*nodes[node])
+        at += (block.length or "the file's unit") + ")"
     return (
         f"the function in line {block.line} says: {told or 'nothing'}, "
         + (f"unit {unit}" if unit else "no unit")
@@ -259,7 +274,8 @@ def _functions_at_nodes(
             )
         places.append(_places([int(block.content["rsp_node"])], nodes, block, path)[0])
         values.append(data[nearest])
-    if len({(_unit(block), _motion(block, "ordinate_spec_data_type")) for block in functions}) > 1:
+    kinds = {(_unit(block), _motion(block)) for block in functions}
+    if len(kinds) > 1:
         raise ConfigError(
             "its functions are of several quantities or units, and a scan is of one; save those of "
             "one quantity in a file",
