@@ -78,10 +78,10 @@ def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
     named = {name for pair in _PAIRS for name in pair if reading.has(name)}
     named |= {"gain"} if reading.has("shunt_voltage") else set()
     alone = len(named) == 1 and named < set(SIZES)
-    value = _size(reading, named.pop(), frequency) if alone else _admittance(reading, frequency)
-    frequency, value = _rising(reading, "frequency", frequency, value)
-    kept = _in_band(reading, frequency)
-    frequency, value = frequency[kept], value[kept]
+    value: Any = _size(reading, min(named), frequency) if alone else _admittance(reading, frequency)
+    order = rising_order(reading, "frequency", frequency)
+    kept = _in_band(reading, frequency[order])
+    frequency, value = frequency[order][kept], value[order][kept]
     outside = reading.table.outside(frequency)
     reading.doubts += [] if outside is None else [outside]
     said: Any = reading.description.said
@@ -281,7 +281,7 @@ def _ring_down(reading: Reading) -> kinds.RingDown:
         motion, unit = reading.take_any("signal")
     else:
         motion = moment_by_moment(reading, time)
-    _, motion = _rising(reading, "time", time, motion)
+    require_rising(reading, "time", time)
     return kinds.RingDown(time, motion, reading.told(), unit)
 
 
@@ -367,13 +367,6 @@ def _one_of(reading: Reading, pairs: tuple[tuple[str, ...], ...]) -> tuple[str, 
         f"{', '.join(sorted(named)) or 'none'}",
         ["columns"],
     )
-
-
-def _rising(
-    reading: Reading, name: str, values: si.FloatArray, other: Any
-) -> tuple[si.FloatArray, Any]:
-    order = rising_order(reading, name, values)
-    return values[order], other[order]
 
 
 _OF_KIND: Mapping[str, Callable[[Reading], kinds.Recording]] = {

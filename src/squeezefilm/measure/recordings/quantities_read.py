@@ -349,7 +349,7 @@ def _sum(first: si.Dimension, second: si.Dimension) -> si.Dimension:
 
 def rising_order(reading: Reading, name: str, values: si.FloatArray) -> slice:
     """The rows in which a quantity rises: as they are, or turned around where all of them fall."""
-    if name != "time" and np.all(np.diff(values) < 0):
+    if np.all(np.diff(values) < 0):
         reading.facts.append((words(name), "swept downwards; the rows were turned around"))
         return slice(None, None, -1)
     require_rising(reading, name, values)

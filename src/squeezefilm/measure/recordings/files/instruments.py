@@ -38,27 +38,19 @@ class Instrument:
     step: str = ""
 
 
-@dataclass(frozen=True)
-class _Vocabulary:
-    """Meaning of a column by its name, and the unit meant where the name has none."""
-
-    quantity: str
-    names: re.Pattern[str]
-    unit: str
+# The quantity that names like these say, and the unit meant where a name has none.
+_Word = tuple[str, re.Pattern[str], str]
 
 
 @functools.cache
-def _tables() -> tuple[tuple[Instrument, ...], tuple[_Vocabulary, ...]]:
+def _tables() -> tuple[tuple[Instrument, ...], tuple[_Word, ...]]:
     text = Path(__file__).with_name("instruments.toml").read_text(encoding="utf-8")
     tree = tomllib.loads(text)
     instruments = []
     for entry in tree["instrument"]:
         entry |= {key: tuple(entry[key]) for key in ("range", "names") if key in entry}
         instruments.append(Instrument(**entry))
-    words = tuple(
-        _Vocabulary(word["quantity"], re.compile(word["names"]), word["unit"])
-        for word in tree["column"]
-    )
+    words = tuple((w["quantity"], re.compile(w["names"]), w["unit"]) for w in tree["column"])
     return tuple(instruments), words
 
 
@@ -113,15 +105,15 @@ def read_name(name: str) -> tuple[str, str] | None:
     bare = _BESIDE_A_NAME.sub("", " ".join(bare.casefold().split()))
     bare = _BESIDE_A_NAME.sub("", bare).strip(" _:-−")
     readings = bare, bare.replace("_", " "), bare.rpartition(":")[2].strip()
-    for said, word in itertools.product(readings, _tables()[1]):
-        meant = unit or word.unit
-        if meant == "dB" and word.unit in ("ohm", "S"):
-            meant = f"dB re 1 {word.unit}"
-        elif meant == "S" and word.unit == "s":
+    for said, (quantity, names, usual) in itertools.product(readings, _tables()[1]):
+        meant = unit or usual
+        if meant == "dB" and usual in ("ohm", "S"):
+            meant = f"dB re 1 {usual}"
+        elif meant == "S" and usual == "s":
             # Seconds and siemens, both "(S)" in one maker's files.
             meant = "s"
-        if word.names.fullmatch(said) and _fits(meant, word.unit):
-            return word.quantity, meant
+        if names.fullmatch(said) and _fits(meant, usual):
+            return quantity, meant
     return None
 
 
@@ -176,15 +168,17 @@ def with_meaning(table: RawTable, instrument: Instrument | None) -> RawTable:
     """A table with what its columns hold by their names, and the instrument that wrote it."""
     described = table.described or held_by(table.names)
     described = tuple(_turned(table, *held) for held in described)
-    if instrument is None:
-        return replace(table, described=described)
-    return replace(
-        table,
-        format=f"{instrument.name}, {table.format}",
-        described=described,
-        sure=True,
-        instrument=instrument.name,
-        specified=instrument.range,
+    table = replace(table, described=described)
+    return (
+        table
+        if instrument is None
+        else replace(
+            table,
+            format=f"{instrument.name}, {table.format}",
+            sure=True,
+            instrument=instrument.name,
+            specified=instrument.range,
+        )
     )
 
 

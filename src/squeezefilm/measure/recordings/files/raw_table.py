@@ -83,7 +83,7 @@ class RawTable:
         called. A unit in a name may be left out."""
         if isinstance(wanted, int):
             return wanted - 1 if 1 <= wanted <= self.values.shape[1] else None
-        for reading in (str, _folded, _without_unit):
+        for reading in (str, _folded, lambda name: _folded(parted(name)[0])):
             places = [k for k, name in enumerate(self.names) if reading(name) == reading(wanted)]
             if len(places) == 1:
                 return places[0]
@@ -151,7 +151,3 @@ def is_unit(symbol: str) -> bool:
 
 def _folded(name: str) -> str:
     return " ".join(name.split()).casefold()
-
-
-def _without_unit(name: str) -> str:
-    return _folded(parted(name)[0])

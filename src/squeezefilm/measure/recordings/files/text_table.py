@@ -86,12 +86,6 @@ class Notation:
             return False
         return True
 
-    @property
-    def words(self) -> str:
-        """Notation of numbers, for people."""
-        point = "a comma" if self.decimal == "," else "a point"
-        return f"{_WORDS[self.delimiter]} between the columns, decimals after {point}"
-
 
 def _unquoted(cell: str) -> str:
     """A cell without blanks and quotation marks around it; a prime at its end stays."""
@@ -165,12 +159,13 @@ def read_text_table(path: Path, said: Described | None = None) -> RawTable:
     before = [number for number, _ in numbered[:first] if number != header_line]
     if before:
         notes.append(f"{len(before)} lines before the table were not read as numbers")
+    point = "a comma" if notation.decimal == "," else "a point"
     others = [str(at + 1) for at in range(notation.whole) if at not in notation.kept]
     if others:
         notes.append(f"cells that hold no numbers were left out: {', '.join(others)} of each line")
     table = RawTable(
         file=path,
-        format=f"text, {notation.words}",
+        format=f"text, {_WORDS[notation.delimiter]} between the columns, decimals after {point}",
         names=names,
         values=values,
         lines=np.array([number for number, _ in rows]),
