@@ -13,7 +13,7 @@ import numpy as np
 from scipy.special import ndtr
 
 from squeezefilm.physics.perception.stimuli import Stimulus
-from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.adaptive.series import adaptive_method, hears_choice
 from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import Trial, trials
@@ -58,6 +58,28 @@ _SETTINGS = EVERY["adjustment"]
 EVERY["adjustment"] = dataclasses.replace(
     _SETTINGS, adaptive=(dataclasses.replace(_SETTINGS.adaptive[0], highest=0.9),)
 )
+for _name, _lowest, _highest in (
+    ("direction", 0.02, 0.9),
+    ("odd-one-out", 0.02, 1.5),
+    ("yes-no", 0.004, 0.2),
+):
+    EVERY[f"{_name}, adaptive"] = dataclasses.replace(
+        EVERY[_name],
+        catch=(),
+        adaptive=(
+            AdaptiveCondition(
+                "bayes",
+                "bayesian",
+                EVERY[_name].judged,
+                lowest=_lowest,
+                highest=_highest,
+                count=160,
+            ),
+        ),
+    )
+EVERY["odd-one-out-of-four"] = dataclasses.replace(
+    EVERY["odd-one-out"], task="odd-one-out-of-four", catch=()
+)
 THRESHOLD = 0.2
 """Threshold of an amount against a flat surface, over the Weber fraction of the same person."""
 STRENGTH = 8.0
@@ -93,9 +115,9 @@ class Person:
         if design.task == "direction":
             more = ndtr((logs[0] - math.log(design.reference_value) + self.bias) / spread)
             return "more" if random.random() < more else "less"
-        if design.task == "odd-one-out":
-            felt = np.array(logs) + own * random.standard_normal(3)
-            away = [abs(felt[k] - np.delete(felt, k).mean()) for k in range(3)]
+        if design.task.startswith("odd-one-out"):
+            felt = np.array(logs) + own * random.standard_normal(len(logs))
+            away = [abs(felt[k] - np.delete(felt, k).mean()) for k in range(len(logs))]
             return design.answers[int(np.argmax(away))]
         if design.task == "ranking":
             utility = STRENGTH * self.exponent * np.array(logs) + random.gumbel(size=3)
@@ -143,31 +165,28 @@ def answered(design: StudyDesign, people: list[Person], random: np.random.Genera
     surfaces: list[Stimulus] = [*design.stimuli, *(one.stimulus for one in design.catch)]
     place = {one.name: k for k, one in enumerate(surfaces)}
     rows: list[dict[str, object]] = []
+    task = design.described
     for number, person in enumerate(people):
         methods = {one.name: adaptive_method(one, task=design.task) for one in design.adaptive}
         for trial in trials(design, number, 7):
             if not trial.asks:
                 continue
             names, intensity = list(trial.stimuli), math.nan
-            if trial.adaptive and trial.answer == "same":
-                intensity, names = 0.0, [design.reference] * 2
-            elif trial.adaptive:
-                intensity = methods[trial.adaptive].next_stimulus()
-                series = design.series(trial.adaptive)
-                one = design.comparison(series, intensity)
-                key = f"{one.name} {intensity!r}"
-                if key not in place:
+            if trial.adaptive:
+                how, key, intensity = (trial.reference_first, trial.answer), "", 0.0
+                if task.presents_comparison(*how):
+                    intensity = methods[trial.adaptive].next_stimulus()
+                    chosen = design.comparison(design.series(trial.adaptive), intensity)
+                    key = f"{chosen.name} {intensity!r}"
+                if key and key not in place:
                     place[key] = len(surfaces)
-                    surfaces.append(one)
-                names = [design.reference, key]
-                names = names if trial.reference_first else names[::-1]
+                    surfaces.append(chosen)
+                names = list(task.arranges(design.reference, key, *how))
             pair = tuple(surfaces[place[name]] for name in names)
             given = person.answer(design, pair, random)
             if trial.adaptive:
-                in_runs = design.series(trial.adaptive).in_runs
-                methods[trial.adaptive].update(
-                    intensity, given if in_runs else given == trial.answer
-                )
+                hears = hears_choice(design.series(trial.adaptive), task)
+                methods[trial.adaptive].update(intensity, given if hears else given == trial.answer)
             rows.append(_row(design, number, trial, names, place, intensity, given))
     columns = {key: np.array([row[key] for row in rows]).T for key in rows[0]}
     return Answers(

@@ -176,7 +176,7 @@ function trial(found) {
  * or from the end of the last one. */
 async function feel(found, number) {
   const mine = (turn += 1);
-  const which = found.surfaces === 1 ? "surface" : `${["first", "second", "third"][number]} surface`;
+  const which = found.surfaces === 1 ? "surface" : `${["first", "second", "third", "fourth", "fifth"][number]} surface`;
   const there = new Promise((resolve) => { inPlace = resolve; });
   playing = found.plays;
   if (found.plays) page(element("h2", { text: "One moment" }), element("p", { role: "status", text: `The ${which} is being prepared.` }), stopper());

@@ -7,42 +7,50 @@ from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
+from scipy.special import ndtr
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.perception.senses import D_PRIME_OF_75
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.placement import Placement, PlacementModel
 from squeezefilm.study.adaptive.runs import Runs
 from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
 from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.tasks.every_task import TASKS
-from squeezefilm.study.design.tasks.same_different import SAME_DIFFERENT
-from squeezefilm.study.design.tasks.task import Task
+from squeezefilm.study.design.tasks.task import StudyTask, Task
 from squeezefilm.study.psychometric.function import PsychometricPrior
 
 _CHOICES = 40
-# Cells of Weber fractions and criteria: a choice takes a millisecond, and finer ones choose alike.
-_WEBER_FRACTIONS, _CRITERIA, _LARGEST_CRITERION = 41, 12, 4.0
+# Cells of thresholds, and every third criterion of a task's model: a choice takes a millisecond,
+# and finer ones choose alike.
+_THRESHOLDS, _LARGEST_CRITERION = 41, 4.0
 _SPREAD_EVERY = 4
 # Up to a third of the answers: with fewer, plain differences are never asked, and who lapses is
 # not told from who is sharp.
 _LAPSES = np.array([0.01, 0.04, 0.1, 0.2, 0.35])
 
 
-class SameDifferentSeries:
-    """The differences of a same-different series: those whose answers tell the most of the Weber
-    fraction, by the differencing model; every fourth goes through all differences in turn.
+class ModelSeries:
+    """The differences of a series by the model of its task: those whose answers tell the most of
+    the threshold; every fourth goes through all differences in turn.
 
     What tells the most lies near one difference, from which nobody can tell a sharp person who
-    lapses often from one who is less sharp; the fourths show the whole function. Half of the
-    trials are planned to present the reference twice, so that people meet as much of the same as
-    of the different and keep their criterion; their answers (a difference of 0) say who is sharp
-    and who says "different", and are taken in like all others.
+    lapses often from one who is less sharp; the fourths show the whole function. Trials of the
+    reference alone are planned where the task has them, so that people meet as much of it as of the
+    rest and keep their criterion; their answers (a difference of 0) say who is sharp and where the
+    criterion is, and are taken in like all others. About a reference that is remembered differences
+    go as far below it as above.
     """
 
-    def __init__(self, series: AdaptiveCondition) -> None:
-        self._choices = np.geomspace(series.lowest, series.highest, _CHOICES)
-        self.placement = Placement(_differencing(series.lowest, series.highest), series.count)
+    def __init__(self, series: AdaptiveCondition, task: Task) -> None:
+        described = TASKS[task]
+        in_amounts = described.compares_amounts(series.varied)
+        ends = series.lowest, series.highest
+        self._differences, model = _placement(ends, task, in_amounts)
+        # As intensities have them, in parts of the reference or amounts.
+        self._choices = self._differences if in_amounts else np.expm1(self._differences)
+        self._is_right = described.model is not None and described.model.counts < 0
+        self._hears_choice = described.surfaces == 1
+        self.placement = Placement(model, series.count)
 
     @property
     def finished(self) -> bool:
@@ -50,45 +58,68 @@ class SameDifferentSeries:
         return self.placement.finished
 
     def next_stimulus(self) -> si.Dimensionless:
-        """The next difference above 0, in parts of the reference."""
-        asked = sum(number > 0 for number, _ in self.placement.given)
+        """The next difference other than 0, in parts of the reference or as an amount."""
+        real = np.flatnonzero(self._differences)
+        asked = sum(self._differences[number] != 0 for number, _ in self.placement.given)
         if asked % _SPREAD_EVERY == _SPREAD_EVERY - 1:
             # Steps of 17 come to each of the forty once before any comes again.
-            return float(self._choices[17 * (asked // _SPREAD_EVERY) % _CHOICES])
-        told = self.placement.expected_information()[1:]
-        return float(self._choices[int(np.argmax(told))])
+            return float(self._choices[real[17 * (asked // _SPREAD_EVERY) % real.size]])
+        told = self.placement.expected_information()[real]
+        return float(self._choices[real[int(np.argmax(told))]])
 
-    def update(self, intensity: si.Dimensionless, correct: bool) -> None:
-        """Take in whether the answer to a difference was right; 0 of a pair that was the same."""
-        number = 0
-        if intensity > 0:
-            number = 1 + int(np.argmin(np.abs(np.log(self._choices / intensity))))
-        # "different" is right of all but a pair that is the same.
-        said = "different" if correct == (intensity > 0) else "same"
-        self.placement.update(number, self.placement.model.answers.index(said))
+    def update(self, intensity: si.Dimensionless, answered: bool | str) -> None:
+        """Take in an answer to a difference: the answer itself of one surface, else whether it was
+        right; 0 is the reference alone."""
+        number = int(np.argmin(np.abs(self._choices - intensity)))
+        answers = self.placement.model.answers
+        said = answered
+        if not self._hears_choice:
+            # What is counted is right of all but the reference alone.
+            counted = answered == (self._is_right or intensity > 0)
+            said = answers[0] if counted else answers[1]
+        self.placement.update(number, answers.index(str(said)))
 
 
 @functools.lru_cache(maxsize=8)
-def _differencing(lowest: float, highest: float) -> PlacementModel:
-    differences = np.append(0.0, np.log1p(np.geomspace(lowest, highest, _CHOICES)))
-    fractions = np.geomspace(lowest / 4, 4 * highest, _WEBER_FRACTIONS)
-    criteria = _LARGEST_CRITERION * (np.arange(_CRITERIA) + 0.5) / _CRITERIA
-    parameters = {"Weber fraction": fractions, "criterion": criteria, "lapse rate": _LAPSES}
+def _placement(
+    ends: tuple[float, float], task: Task, in_amounts: bool
+) -> tuple[si.FloatArray, PlacementModel]:
+    """Differences to choose from, rising, and the chances of a task's answers to them."""
+    described = TASKS[task]
+    model = described.model
+    assert model is not None
+    choices = np.geomspace(
+        *ends, _CHOICES // 2 if described.reference == "remembered" else _CHOICES
+    )
+    above = choices if in_amounts else np.log1p(choices)
+    below = -above[::-1] if described.reference == "remembered" else np.zeros(1)
+    differences = np.concatenate([below, above])
+    thresholds = np.geomspace(ends[0] / 4, 4 * ends[1], _THRESHOLDS)
+    within = model.criteria[model.criteria <= _LARGEST_CRITERION]
+    criteria = within[within.size // 2 % 3 :: 3]
+    parameters = {"threshold": thresholds, "criterion": criteria, "lapse rate": _LAPSES}
     # Every combination, the last running fastest.
     grid = np.meshgrid(*parameters.values(), indexing="ij")
-    weber, criterion, lapse = (axis.reshape(-1, 1) for axis in grid)
-    model = SAME_DIFFERENT.model
-    assert model is not None
-    assert model.rate is not None
-    rise = model.rate(differences * D_PRIME_OF_75 / np.log1p(weber), criterion)
-    different = model.lapses * lapse + (1.0 - lapse) * rise
-    chances = np.stack([different, 1.0 - different])
+    threshold, criterion, lapse = (axis.reshape(-1, 1) for axis in grid)
+    deviation = (threshold if in_amounts else np.log1p(threshold)) / model.threshold
+    if model.rate is None:
+        rise = ndtr((differences - criterion * above[-1]) / deviation)
+    else:
+        rise = model.rate(differences / deviation, criterion)
+    counted = model.lapses * lapse + (1.0 - lapse) * rise
+    answers = ("right", "wrong") if model.counts < 0 else described.answers[:: 1 - 2 * model.counts]
     # The prior of psychometric functions, Beta(1, 10).
     prior = {"lapse rate": (1.0 - _LAPSES) ** 9}
-    return PlacementModel(parameters, differences, ("different", "same"), chances, prior)
+    chances = np.stack([counted, 1.0 - counted])
+    return differences, PlacementModel(parameters, differences, answers, chances, prior)
 
 
-AdaptiveMethod = Staircase | BayesianAdaptive | SameDifferentSeries | Runs
+def hears_choice(series: AdaptiveCondition, task: StudyTask) -> bool:
+    """True of a method that goes by what was answered, and not by whether it was right."""
+    return series.in_runs or task.surfaces == 1
+
+
+AdaptiveMethod = Staircase | BayesianAdaptive | ModelSeries | Runs
 
 
 def adaptive_method(
@@ -105,13 +136,11 @@ def adaptive_method(
 
     A staircase moves linearly, halves its step at each reversal down to a quarter, and goes on
     for `count` trials. The Bayesian choice is of 40 logarithmic steps between `lowest` and
-    `highest`, for a logistic function of two alternatives; of same-different see
-    `SameDifferentSeries`.
+    `highest`, for a logistic function of two alternatives; of tasks in which it takes more than
+    what is right see `ModelSeries`.
     """
     method: AdaptiveMethod
-    if task == "same-different":
-        method = SameDifferentSeries(series)
-    elif series.method == "staircase":
+    if series.method == "staircase":
         method = Staircase(
             StaircaseRule(
                 start=series.start,
@@ -127,6 +156,8 @@ def adaptive_method(
         described = TASKS[task]
         in_amounts = described.compares_amounts(series.varied)
         method = Runs(series, is_flat=described.reference == "flat", in_amounts=in_amounts)
+    elif not TASKS[task].right_is_enough:
+        method = ModelSeries(series, task)
     else:
         choices = np.geomspace(series.lowest, series.highest, _CHOICES)
         method = BayesianAdaptive(

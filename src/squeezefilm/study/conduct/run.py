@@ -23,7 +23,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import to_json
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
-from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.adaptive.series import adaptive_method, hears_choice
 from squeezefilm.study.conduct.again import COUNTED, practise_again, set_aside, spoiled_by
 from squeezefilm.study.conduct.sessions import display_wanted, next_planned
 from squeezefilm.study.conduct.study_device import TrialMotion
@@ -302,9 +302,10 @@ class StudyRun:
             return trial, tuple(gratings[name] for name in trial.stimuli), None
         if not trial.adaptive:
             return trial, tuple(design.stimulus(name) for name in trial.stimuli), None
-        if trial.answer == "same":
-            return trial, (design.stimulus(design.reference),) * 2, 0.0
-        series = design.series(trial.adaptive)
+        series, task = design.series(trial.adaptive), design.described
+        reference, how = design.stimulus(design.reference), (trial.reference_first, trial.answer)
+        if not task.presents_comparison(*how):
+            return trial, task.arranges(reference, reference, *how), 0.0
         answers = self._store.rows(
             "SELECT r.intensity, r.correct, r.choice FROM response r "
             "JOIN trial t ON t.uuid = r.trial WHERE "
@@ -313,13 +314,12 @@ class StudyRun:
             [self.participant, series.name, trial.display],
         )
         given = (
-            (a["intensity"], a["choice"] if series.in_runs else bool(a["correct"])) for a in answers
+            (a["intensity"], a["choice"] if hears_choice(series, task) else bool(a["correct"]))
+            for a in answers
         )
         intensity = adaptive_method(series, given, design.task).next_stimulus()
-        pair = (design.stimulus(design.reference), design.comparison(series, intensity))
-        if not design.compares:
-            return trial, pair[1:], intensity
-        return trial, pair if trial.reference_first else pair[::-1], intensity
+        comparison = design.comparison(series, intensity)
+        return trial, task.arranges(reference, comparison, *how), intensity
 
     def _response_row(
         self,

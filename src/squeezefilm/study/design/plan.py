@@ -11,13 +11,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numpy as np
+
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.hard_limits import PLANNED_TRIALS, require_within
 from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import Result, write_named
+from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.display import load_display
+from squeezefilm.physics.perception.felt import Rubbed, grating_evidence
 from squeezefilm.physics.perception.observer import NamedObserver, Observer, load_observer
+from squeezefilm.physics.perception.senses import D_PRIME_OF_75
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import (
@@ -26,6 +31,9 @@ from squeezefilm.study.design.trials import (
     trials,
     williams_square,
 )
+
+_FRICTION = 0.5
+"""Coefficient of friction without vibration (assumed; a relative depth hardly depends on it)."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -230,21 +238,46 @@ def doubts_of(design: StudyDesign, observer: Observer, reach: bool = False) -> t
     return tuple(sentences)
 
 
+def predicted_depth(design: StudyDesign, observer: Observer) -> si.Dimensionless | None:
+    """Change of relative friction (1) of a square grating with the period of a design's first
+    textured stimulus that the observer tells from a flat surface in 75 % of two intervals, by a
+    display without limits; None without such a stimulus. Source: `physics.perception.felt`."""
+    periods = [one.period for one in design.stimuli if one.name != design.reference]
+    if not periods or math.isnan(periods[0]):
+        return None
+    pad = FingerpadDynamics.pressed(observer.normal_force)
+    rubbed = Rubbed(_FRICTION * observer.normal_force, pad, observer.speed)
+    square = np.repeat([[0.5, -0.5]], 128, axis=1)
+    small = 1e-3
+    # d′ is in proportion to the depth.
+    d_prime = grating_evidence(
+        observer, np.array(periods[:1]), square, lambda share: 1 + small * share, rubbed
+    )
+    return float(D_PRIME_OF_75 * small / d_prime[0])
+
+
 def _of_range(design: StudyDesign, observer: Observer) -> list[str]:
     """Doubt of differences from the reference that do not bracket the predicted threshold."""
-    fraction = predicted_fraction(design, observer)
-    has_threshold = design.described.model is not None and not design.in_amounts
-    if not has_threshold or not design.on_a_scale or fraction is None:
+    task, ends = design.described, design.differences
+    if task.model is None or not design.on_a_scale:
         return []
-    ends = [math.expm1(difference) for difference in design.differences]
+    if task.reference == "flat":
+        predicted = predicted_depth(design, observer) if design.judged == "friction_depth" else None
+    elif design.in_amounts:
+        return []
+    else:
+        predicted = predicted_fraction(design, observer)
+        ends = [math.expm1(difference) for difference in ends]
+    if predicted is None:
+        return []
     least = "from the reference" if design.reference else "between two surfaces"
-    threshold = f"the predicted threshold of {si.percent(fraction, 1)} ('{observer.name}')"
-    if min(ends) > fraction:
+    threshold = f"the predicted threshold of {si.percent(predicted, 1)} ('{observer.name}')"
+    if min(ends) > predicted:
         return [
             f"the least difference {least}, {si.percent(min(ends), 1)}, is above "
             f"{threshold}: most people tell all of them; add smaller ones"
         ]
-    if max(ends) < fraction:
+    if max(ends) < predicted:
         return [
             f"the greatest difference {least}, {si.percent(max(ends), 1)}, is below "
             f"{threshold}: most people tell none of them; add larger ones"

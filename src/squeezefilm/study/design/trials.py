@@ -264,13 +264,12 @@ def _blocks(
 def _adaptive_trials(
     design: StudyDesign, display: str, place: int, participant: int, seed: int, planned: list[Trial]
 ) -> None:
-    """The series interleaved at random, catch trials between them, in blocks of equal size; the
-    reference comes first in half of the trials of each series, and is presented twice in half of
-    them where the same or different is asked."""
+    """The series interleaved at random, catch trials between them, in blocks of equal size; where
+    the reference comes, and how often, is the task's (`StudyTask.series`)."""
     random = _random(seed, _SPREAD, participant, place)
     queue: list[tuple[str, bool, str, CatchTrial | None]] = []
     for series in design.adaptive:
-        kinds = [design.described.series(k) for k in range(series.count)]
+        kinds = [design.described.series(k, series.method) for k in range(series.count)]
         order = random.permutation(series.count)
         queue += [(series.name, *kinds[i], None) for i in order]
     queue = [queue[i] for i in random.permutation(len(queue))]

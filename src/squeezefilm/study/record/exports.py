@@ -31,6 +31,7 @@ from squeezefilm.study.record.tables import (
     Cell,
     Column,
     cell_text,
+    columns_of,
     csv_text,
     session_table,
     trial_table,
@@ -161,7 +162,7 @@ def _remember(store: StudyStore, format: Format, folder: Path) -> None:
 def _csv_files(store: StudyStore) -> dict[str, str]:
     name = store.design.name
     return {
-        f"{name}_trials.csv": csv_text(trial_table(store)),
+        f"{name}_trials.csv": csv_text(trial_table(store), columns_of(store.design)),
         f"{name}_sessions.csv": csv_text(session_table(store), SESSION_COLUMNS),
     }
 
@@ -173,7 +174,8 @@ def psych_ds(store: StudyStore) -> dict[str, str]:
     """The files of a Psych-DS dataset: path within it → text."""
     design = store.design
     name = keyword(design.name)
-    columns = {column.name: column for column in (*COLUMNS, *SESSION_COLUMNS)}
+    of_trials = columns_of(design)
+    columns = {column.name: column for column in (*of_trials, *SESSION_COLUMNS)}
     about = {
         "@context": "https://schema.org",
         "@type": "Dataset",
@@ -188,8 +190,8 @@ def psych_ds(store: StudyStore) -> dict[str, str]:
         "dataset_description.json": _json(about),
         "README.md": readme(store, "Psych-DS"),
         "CHANGES.md": f"Exported by squeezefilm {__version__}.\n",
-        f"{trials}.csv": csv_text(trial_table(store)),
-        f"{trials}.json": _json({"variableMeasured": _variables(COLUMNS)}),
+        f"{trials}.csv": csv_text(trial_table(store), of_trials),
+        f"{trials}.json": _json({"variableMeasured": _variables(of_trials)}),
         f"{sessions}.csv": csv_text(session_table(store), SESSION_COLUMNS),
         f"{sessions}.json": _json({"variableMeasured": _variables(SESSION_COLUMNS)}),
         "materials/design.toml": store.study["design"],
@@ -246,7 +248,7 @@ def bids(store: StudyStore) -> dict[str, str]:
     rows = trial_table(store)
     columns = [
         Column("sitting_id", column.description) if column.name == "session_id" else column
-        for column in COLUMNS
+        for column in columns_of(design)
         if not column.name.startswith("participant_")
     ]
     people = {row["participant_id"]: row["participant_number"] for row in rows}

@@ -10,7 +10,15 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import write_whole
 from squeezefilm.study.design.plan import StudyPlan
 from squeezefilm.study.design.trials import Trial
-from squeezefilm.study.record.tables import COLUMNS, SURFACES, Cell, Column, csv_text, surface_cells
+from squeezefilm.study.record.tables import (
+    COLUMNS,
+    SURFACES,
+    Cell,
+    Column,
+    columns_of,
+    csv_text,
+    surface_cells,
+)
 
 _OWN = (
     Column("reference_first", "Whether a series presents the reference first", kind="truth"),
@@ -35,16 +43,20 @@ def write_orders(plan: StudyPlan, folder: str | Path) -> list[Path]:
 
     The CSV is what PsychoPy's loops take as conditions; the JSON is a list of objects, jsPsych's
     `timeline_variables`. An adaptive series chooses its comparisons as it goes, so that its rows
-    name no stimulus; one whose answer is "same" presents the reference twice. Raises `InputError`
-    where the folder cannot be written to.
+    name no stimulus; one whose answer is "same" or "no" presents the reference alone. Raises
+    `InputError` where the folder cannot be written to.
     """
     folder, written = Path(folder), []
+    columns = [column for column in ORDER_COLUMNS if column in (*columns_of(plan.design), *_OWN)]
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file; give a folder for the orders")
     for number, schedule in enumerate(plan.schedules):
-        rows = [_row(plan, number, trial) for trial in schedule]
+        rows = [
+            {column.name: _row(plan, number, trial)[column.name] for column in columns}
+            for trial in schedule
+        ]
         for suffix, text in (
-            ("csv", csv_text(rows, ORDER_COLUMNS)),
+            ("csv", csv_text(rows, columns)),
             ("json", json.dumps(rows, indent=1) + "\n"),
         ):
             path = folder / f"order-{number:03d}.{suffix}"
@@ -74,4 +86,4 @@ def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
         surface = gratings[name] if felt else (design.stimulus(name) if name else None)
         row[prefix] = name
         row |= {f"{prefix}_{key}": value for key, value in surface_cells(surface).items()}
-    return {column.name: row[column.name] for column in ORDER_COLUMNS}
+    return row

@@ -34,7 +34,13 @@ class Column:
     kind: Literal["text", "number", "whole", "truth"] = "text"
 
 
-SURFACES = ("stimulus", "second_stimulus", "third_stimulus")
+SURFACES = (
+    "stimulus",
+    "second_stimulus",
+    "third_stimulus",
+    "fourth_stimulus",
+    "fifth_stimulus",
+)
 """Columns with the names of what a trial presented, in its order."""
 
 
@@ -89,7 +95,17 @@ COLUMNS = (
     Column("device_sha256", "Hash of the display's description"),
     Column("calibration_sha256", "Hash of its calibration"),
 )
-"""Columns of every export, in this order."""
+"""Columns of exports, in this order."""
+
+_USUAL = 3
+"""Surfaces whose columns every export has; those of more are of tasks that present so many."""
+
+
+def columns_of(design: StudyDesign) -> tuple[Column, ...]:
+    """Columns of a design's trials: `COLUMNS` without those of surfaces that it never presents."""
+    never = SURFACES[max(_USUAL, design.described.surfaces) :]
+    return tuple(column for column in COLUMNS if not never or not column.name.startswith(never))
+
 
 PLACED = "SELECT *, min(number) OVER (PARTITION BY participant, display, block) AS begun FROM trial"
 """Trials, which come in the order of `begun, number`: block by block as they begin, and within one
@@ -110,13 +126,14 @@ Cell = str | float | int | bool | None
 
 
 def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
-    """Every answered trial, in the order of participants and trials; keys as in `COLUMNS`.
+    """Every answered trial, in the order of participants and trials; keys as in `columns_of`.
 
     Trials without an answer are not in it. Raises `RecordError` if the file cannot be read.
     """
     design = store.design
     gratings = {alternative.name: alternative for alternative in design.alternatives}
     rows: list[dict[str, Cell]] = []
+    columns = columns_of(design)
     explored, surfaces = ExploredTrials(store), _Surfaces()
     for row in store.rows(_QUERY):
         names = json.loads(row.pop("stimuli"))
@@ -132,7 +149,7 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
             if name is not None:
                 one = gratings.get(name) if felt else presented(design, name, row)
             row |= {f"{prefix}_{key}": value for key, value in surfaces.cells(one).items()}
-        rows.append({column.name: row[column.name] for column in COLUMNS})
+        rows.append({column.name: row[column.name] for column in columns})
     return rows
 
 
@@ -301,7 +318,7 @@ def unguarded(text: str) -> str:
     return text[1:] if text.startswith("'") else text
 
 
-def csv_text(rows: Sequence[dict[str, Cell]], columns: Sequence[Column] = COLUMNS) -> str:
+def csv_text(rows: Sequence[dict[str, Cell]], columns: Sequence[Column]) -> str:
     """CSV as RFC 4180 has it: comma, CR LF, one header line.
 
     Numbers read back as the same float, nothing is an empty cell, a truth is true or false, and

@@ -17,8 +17,7 @@ from squeezefilm.core.kit.page_style import (
     section,
     text_table,
 )
-from squeezefilm.study.record.tables import COLUMNS as RECORDED
-from squeezefilm.study.record.tables import SURFACES, Column, csv_text
+from squeezefilm.study.record.tables import SURFACES, Column, columns_of, csv_text
 from squeezefilm.study.report import observer_figures
 from squeezefilm.study.report.pictures import pictures, png_files
 from squeezefilm.study.report.words import confusion_rows
@@ -48,11 +47,17 @@ _SHARED = (
     *("trial", "display", "phase", *SURFACES, "adaptive_series", "intensity", "choice", "estimate"),
     *("correct", "response_time_s"),
 )
-COLUMNS = (
-    Column("origin", "Always simulated"),
-    Column("participant", "Number of the simulated participant, from 0", kind="whole"),
-    *(column for column in RECORDED if column.name in _SHARED),
-)
+
+
+def simulated_columns(design: StudyDesign) -> list[Column]:
+    """Columns of trials.csv: those of recorded trials that a simulated participant has too."""
+    return [
+        Column("origin", "Always simulated"),
+        Column("participant", "Number of the simulated participant, from 0", kind="whole"),
+        *(column for column in columns_of(design) if column.name in _SHARED),
+    ]
+
+
 REASONS = ("Simulated", "Hz", "Bandwidth", "Kept", "Lag", "Contact", "Ripple", "d′", "Clearest")
 LEGEND = (
     "Hz: frequency at which the texture passes the finger. Bandwidth: of the display's envelope "
@@ -86,12 +91,13 @@ def write_simulated(
     folder = require_folder(folder)
     tell("figures")
     figures = pictures(drawing, FIGURES, study)
+    design = study.tables.design
+    rows = [{"origin": "simulated", **row} for row in study.rows()]
     files = {
         **png_files(figures),
         "simulated.json": json_text(study.summary()),
-        "trials.csv": csv_text([{"origin": "simulated", **row} for row in study.rows()], COLUMNS),
+        "trials.csv": csv_text(rows, simulated_columns(design)),
     }
-    design = study.tables.design
     about = "What can be compared" if design.alternatives else "What the simulated answers assume"
     below = (
         f"<p>{study.participants} <b>simulated</b> participants, observer "

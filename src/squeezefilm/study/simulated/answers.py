@@ -17,7 +17,7 @@ from squeezefilm.physics.perception.observer import NamedObserver
 from squeezefilm.study.design.study_design import NamedDesign
 from squeezefilm.study.identification.confusion import ConfusionMatrix
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.record.tables import SURFACES
+from squeezefilm.study.record.tables import SURFACES, columns_of
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.participants import (
     Matches,
@@ -142,14 +142,15 @@ class SimulatedStudy(Result):
         a = self.answers
         names = [surface.name for surface in a.surfaces]
         answers, series = a.design.answers, [item.name for item in a.design.adaptive]
+        surfaces = [column.name for column in columns_of(a.design) if column.name in SURFACES]
         return [
             {
                 "participant": int(a.participant[at]),
                 "trial": int(a.number[at]),
                 "display": a.design.displays[a.display[at]],
                 "phase": str(a.phase[at]),
-                **dict.fromkeys(SURFACES, ""),
-                **dict(zip(SURFACES, (names[k] for k in a.presented[:, at]), strict=False)),
+                **dict.fromkeys(surfaces, ""),
+                **dict(zip(surfaces, (names[k] for k in a.presented[:, at]), strict=False)),
                 "adaptive_series": series[a.series[at]] if a.series[at] >= 0 else "",
                 "intensity": float(a.intensity[at]),
                 "choice": answers[a.choice[at]] if a.choice[at] >= 0 else "",

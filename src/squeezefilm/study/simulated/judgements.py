@@ -25,7 +25,7 @@ from squeezefilm.physics.perception.observer import Observer
 from squeezefilm.physics.perception.perceived import Perceived, perceived
 from squeezefilm.physics.perception.senses import FINEST_PERIOD, Candidates, percept_deviation
 from squeezefilm.physics.perception.stimuli import Stimulus
-from squeezefilm.study.adaptive.series import AdaptiveMethod, adaptive_method
+from squeezefilm.study.adaptive.series import AdaptiveMethod, adaptive_method, hears_choice
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.tasks.task import Percepts
 from squeezefilm.study.design.trials import Trial, trials
@@ -173,7 +173,8 @@ class _Part:
 def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], begin: int) -> _Part:
     design, observer = room.design, room.observer
     count, asked = len(schedules), len(schedules[0])
-    surfaces, answers = design.described.surfaces, design.answers
+    task, answers = design.described, design.answers
+    surfaces, reference = task.surfaces, room.place.get(design.reference, -1)
     methods: dict[tuple[int, str, str], AdaptiveMethod] = {}
     shape = count, asked
     choice = np.full(shape, -1, dtype=np.int64)
@@ -185,16 +186,15 @@ def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], b
         for person, row in enumerate(schedules):
             trial = row[at]
             shown = [room.place[name] for name in trial.stimuli]
-            if trial.adaptive and trial.answer == "same":
-                intensity[person, at] = 0.0
-                shown = [room.place[design.reference]] * 2
-            elif trial.adaptive:
-                method = _standing(methods, design, person, trial)
-                intensity[person, at] = method.next_stimulus()
-                one = room.chosen(trial.adaptive, float(intensity[person, at]))
-                shown = [room.place[design.reference], one]
-                shown = shown if trial.reference_first else shown[::-1]
-                shown = shown if design.compares else [one]
+            if trial.adaptive:
+                how = trial.reference_first, trial.answer
+                comparison, intensity[person, at] = reference, 0.0
+                if task.presents_comparison(*how):
+                    intensity[person, at] = _standing(
+                        methods, design, person, trial
+                    ).next_stimulus()
+                    comparison = room.chosen(trial.adaptive, float(intensity[person, at]))
+                shown = list(task.arranges(reference, comparison, *how))
             presented[person, at] = shown
         skill = 1.0 + observer.learning_excess * math.exp(-at / observer.learning_trials)
         alike = count, *(1 for _ in room.directions)
@@ -217,7 +217,7 @@ def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], b
         for person, row in enumerate(schedules):
             if row[at].adaptive:
                 said: Any = answers[choice[person, at]]
-                if not design.series(row[at].adaptive).in_runs:
+                if not hears_choice(design.series(row[at].adaptive), task):
                     said = said == row[at].answer
                 method = _standing(methods, design, person, row[at])
                 method.update(float(intensity[person, at]), said)

@@ -7,10 +7,15 @@ import dataclasses
 import numpy as np
 import pytest
 
+from squeezefilm.physics.perception.senses import D_PRIME_OF_75
 from squeezefilm.study.adaptive.bayesian import BayesianAdaptive
-from squeezefilm.study.adaptive.series import SameDifferentSeries, adaptive_method
+from squeezefilm.study.adaptive.series import ModelSeries, adaptive_method
 from squeezefilm.study.adaptive.staircase import Staircase
 from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.tasks.every_task import TASKS
+from squeezefilm.study.design.tasks.odd_one_out import share_right
+from squeezefilm.study.design.tasks.task import Task
+from squeezefilm.study.design.tasks.two_interval import QUARTILE
 
 STAIRS = AdaptiveCondition("s", "staircase", start=0.4, step=0.08, lowest=0.01, down=3, count=9)
 BAYES = AdaptiveCondition("b", "bayesian", lowest=0.01, highest=0.8, count=9)
@@ -59,7 +64,7 @@ def test_the_bayesian_choice_is_of_40_even_ratios() -> None:
 
 def test_same_different_asks_harder_after_right_answers_and_learns_of_the_same() -> None:
     method = adaptive_method(BAYES, task="same-different")
-    assert isinstance(method, SameDifferentSeries)
+    assert isinstance(method, ModelSeries)
     assert 0.01 <= method.next_stimulus() <= 0.8
     right = adaptive_method(BAYES, [(0.1, True), (0.0, True)] * 4, "same-different")
     wrong = adaptive_method(BAYES, [(0.1, False), (0.0, True)] * 4, "same-different")
@@ -83,10 +88,52 @@ def test_a_same_different_series_finds_the_weber_fraction() -> None:
         different = abs(apart + np.sqrt(2) * random.standard_normal()) > criterion
         different = random.random() < 0.5 if random.random() < 0.02 else different
         method.update(asked, bool(different == (asked > 0)))
-    assert isinstance(method, SameDifferentSeries)
-    found, error = method.placement.estimate("Weber fraction")
+    assert isinstance(method, ModelSeries)
+    found, error = method.placement.estimate("threshold")
     assert error < 0.06
     assert abs(found - weber) < 3 * error
+
+
+def answered(
+    task: Task, asked: float, threshold: float, random: np.random.Generator
+) -> tuple[float, bool | str]:
+    """A difference, or the reference alone, and somebody's answer to it."""
+    lapses = random.random() < 0.02
+    if task == "yes-no":
+        yes = asked * D_PRIME_OF_75 / threshold + random.standard_normal() > 0.6
+        return asked, "yes" if (random.random() < 0.5 if lapses else yes) else "no"
+    apart = np.log1p(asked) / np.log1p(threshold)
+    if task == "direction":
+        more = apart * QUARTILE + random.standard_normal() > 0.1
+        return asked, "more" if (random.random() < 0.5 if lapses else more) else "less"
+    surfaces = TASKS[task].surfaces
+    right = random.random() < share_right(apart * D_PRIME_OF_75, surfaces)
+    return asked, bool(random.random() < 1 / surfaces if lapses else right)
+
+
+@pytest.mark.parametrize("task", ["yes-no", "direction", "odd-one-out", "odd-one-out-of-four"])
+def test_a_series_by_the_tasks_model_finds_its_threshold(task: Task) -> None:
+    """About a remembered reference it asks on both sides; 0 is asked where it is planned."""
+    series = dataclasses.replace(BAYES, lowest=0.02, highest=0.9, count=300)
+    random, threshold = np.random.default_rng(5), 0.2
+    method = adaptive_method(series, task=task)
+    asked = []
+    for number in range(300):
+        alone = TASKS[task].series(number, "bayesian")[1] == "no"
+        intensity, answer = answered(
+            task, 0.0 if alone else method.next_stimulus(), threshold, random
+        )
+        asked.append(intensity)
+        method.update(intensity, answer)  # type: ignore[arg-type] # as the task has it
+    assert isinstance(method, ModelSeries)
+    assert method.finished
+    found, error = method.placement.estimate("threshold")
+    assert error < 0.06
+    assert abs(found - threshold) < 3 * error
+    below = sum(one < 0 for one in asked)
+    assert (below > 60) == (task == "direction")
+    assert min(asked) >= 1 / 1.9 - 1 - 1e-12
+    assert asked.count(0.0) == (150 if task == "yes-no" else 0)
 
 
 @pytest.mark.parametrize("series", [STAIRS, BAYES], ids=["staircase", "bayesian"])

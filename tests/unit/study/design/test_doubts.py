@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from squeezefilm.physics.perception.observer import load_observer
-from squeezefilm.study.design.plan import doubts_of, plan_study, predicted_fraction
+from squeezefilm.study.design.plan import doubts_of, plan_study, predicted_depth, predicted_fraction
 from squeezefilm.study.design.study_design import load_design
 
 OBSERVER = load_observer()
@@ -50,3 +50,17 @@ def test_a_display_that_does_not_reach_a_stimulus_is_named(monkeypatch: pytest.M
     assert "'26 %'" not in reached
     assert plan.summary()["doubts"] == list(plan.doubts)
     assert not [one for one in plan_study("friction-jnd").doubts if "reaches" in one]
+
+
+@pytest.mark.parametrize("name", ["friction-detection", "friction-yes-no", "friction-limits"])
+def test_a_range_beside_the_depth_that_is_told_from_flat_is_said(name: str) -> None:
+    design = load_design(name)
+    depth = predicted_depth(design, OBSERVER)
+    assert depth is not None
+    # The observer's channels are fitted to published thresholds of a few per cent.
+    assert 0.01 < depth < 0.05
+    assert doubts_of(design, OBSERVER) == ()
+    if not design.adaptive:
+        deep = dataclasses.replace(design, stimuli=(design.stimuli[0], *design.stimuli[-2:]))
+        (said,) = doubts_of(deep, OBSERVER)
+        assert said.startswith("the least difference from the reference, 6.0 %, is above")

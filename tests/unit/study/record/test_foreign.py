@@ -21,7 +21,7 @@ from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.foreign import PEOPLE, columns_of, read_answers
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import csv_text
-from squeezefilm.study.report.simulated_page import COLUMNS
+from squeezefilm.study.report.simulated_page import simulated_columns
 from squeezefilm.study.simulated.answers import simulate_participants
 from squeezefilm.study.tasks.analyze import analyze_study
 from squeezefilm.study.tasks.findings import TaskAnalysis
@@ -87,7 +87,7 @@ def test_what_simulated_people_answered_is_analysed_as_by_the_verb_itself(tmp_pa
     simulated = simulate_participants(DESIGN, load_observer("fingertip"), 3, 7)
     rows = [{"origin": "simulated", **row} for row in simulated.rows()]
     path = tmp_path / "trials.csv"
-    path.write_text(csv_text(rows, COLUMNS), encoding="utf-8", newline="")
+    path.write_text(csv_text(rows, simulated_columns(DESIGN)), encoding="utf-8", newline="")
     # Everything else is the design's or the file's; people are numbers there.
     found = analyze_study(path, design=DESIGN, columns={"participant_id": "participant"}, seed=7)
     for display, one in simulated.analyses.items():

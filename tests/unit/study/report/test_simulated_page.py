@@ -23,11 +23,11 @@ from squeezefilm.physics.perception.senses import Candidates, line_periods
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.report import simulated_page
 from squeezefilm.study.report.simulated_page import (
-    COLUMNS,
     LEGEND,
     REASONS,
     REMARK,
     reason_rows,
+    simulated_columns,
     write_simulated,
 )
 from squeezefilm.study.report.words import confusion_rows
@@ -96,7 +96,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Any], 
 def test_every_answer_is_a_row(written: tuple[Path, list[Any], list[str]]) -> None:
     with (written[0] / "trials.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.reader(file))
-    assert rows[0] == [one.name for one in COLUMNS]
+    assert rows[0] == [column.name for column in simulated_columns(DESIGN)]
     assert len(rows) == 9
     kept = [(*row[:6], row[10], row[12], row[13]) for row in rows]
     assert kept[1:3] == [

@@ -66,7 +66,7 @@ ADJUSTMENT = StudyTask(
     ),
     in_plane=(CLEARER,),
     adaptive=("adjustment",),
-    series=lambda _: (True, ""),
+    series=lambda *_: (True, ""),
     decides=_decides,
 )
 """The second surface is made equal to the first."""

@@ -5,7 +5,11 @@ from __future__ import annotations
 from squeezefilm.study.design.tasks.adjustment import ADJUSTMENT
 from squeezefilm.study.design.tasks.detection import DETECTION
 from squeezefilm.study.design.tasks.direction import DIRECTION
-from squeezefilm.study.design.tasks.odd_one_out import ODD_ONE_OUT
+from squeezefilm.study.design.tasks.odd_one_out import (
+    ODD_ONE_OUT,
+    ODD_ONE_OUT_OF_FIVE,
+    ODD_ONE_OUT_OF_FOUR,
+)
 from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE
 from squeezefilm.study.design.tasks.paired_comparison import PAIRED_COMPARISON
 from squeezefilm.study.design.tasks.ranking import RANKING
@@ -21,6 +25,8 @@ TASKS: dict[str, StudyTask] = {
         SAME_DIFFERENT,
         TWO_INTERVAL,
         ODD_ONE_OUT,
+        ODD_ONE_OUT_OF_FOUR,
+        ODD_ONE_OUT_OF_FIVE,
         MAGNITUDE_ESTIMATION,
         DIRECTION,
         YES_NO,

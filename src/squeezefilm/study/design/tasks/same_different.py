@@ -85,7 +85,7 @@ SAME_DIFFERENT = StudyTask(
         "the mean square, whatever is judged.",
     ),
     adaptive=("bayesian",),
-    series=lambda number: (number % 4 < 2, ("different", "same")[number % 2]),
+    series=lambda number, _: (number % 4 < 2, ("different", "same")[number % 2]),
     decides=_decides,
     model=DifferenceModel(
         difference=widest,

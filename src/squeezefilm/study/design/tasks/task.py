@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,8 @@ Task = Literal[
     "same-different",
     "two-interval",
     "odd-one-out",
+    "odd-one-out-of-four",
+    "odd-one-out-of-five",
     "magnitude-estimation",
     "yes-no",
     "direction",
@@ -31,6 +33,7 @@ Task = Literal[
     "ranking",
     "adjustment",
 ]
+Surface = TypeVar("Surface")
 Condition = tuple[str, ...]
 """The names of what one trial presents, in their order."""
 Judged = Callable[[Stimulus], float]
@@ -135,6 +138,24 @@ def from_reference(levels: si.FloatArray, reference: float) -> si.FloatArray:
     return np.asarray(levels[0] - reference)
 
 
+def in_pairs(
+    reference: Surface, comparison: Surface, reference_first: bool, answer: str
+) -> tuple[Surface, ...]:
+    """The reference and a comparison, in one order or the other; the reference twice where that is
+    right."""
+    if answer == "same":
+        return reference, reference
+    return (reference, comparison) if reference_first else (comparison, reference)
+
+
+def alone(
+    reference: Surface, comparison: Surface, reference_first: bool, answer: str
+) -> tuple[Surface, ...]:
+    """The comparison by itself; the reference where there is nothing to feel."""
+    del reference_first
+    return (reference,) if answer == "no" else (comparison,)
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class StudyTask:
     """A task.
@@ -154,8 +175,10 @@ class StudyTask:
         assumed: what simulated answers assume beyond the observer, in sentences.
         in_plane: what they assume besides where surfaces are explored freely.
         adaptive: methods that may choose comparisons.
-        series: of the trial k of such a series: whether the reference comes first, and what is
-            right.
+        series: of the trial k of such a series, by a method: whether the reference comes first
+            (or more than once), and what is right.
+        arranges: what such a trial presents, from the reference, the comparison, whether the
+            reference comes first, and what is right.
         in_amounts: whether differences are of amounts, and not of their logarithms.
         decides: how simulated people answer; None where that takes more than the percepts.
         model: of the answers to a difference; None where the task has an analysis of its own.
@@ -176,7 +199,11 @@ class StudyTask:
     assumed: tuple[str, ...] = ()
     in_plane: tuple[str, ...] = ()
     adaptive: tuple[str, ...] = ()
-    series: Callable[[int], tuple[bool, str]] = lambda k: (k % 2 == 0, ("second", "first")[k % 2])
+    series: Callable[[int, str], tuple[bool, str]] = lambda k, _: (
+        k % 2 == 0,
+        ("second", "first")[k % 2],
+    )
+    arranges: Callable[[Any, Any, bool, str], tuple[Any, ...]] = in_pairs
     in_amounts: bool = False
     decides: Callable[[Percepts], Decision] | None = None
     model: DifferenceModel | None = None
@@ -185,6 +212,15 @@ class StudyTask:
     def compares_amounts(self, judged: Varied) -> bool:
         """True where differences are of amounts: of an orientation, or from a flat surface."""
         return self.in_amounts or judged == "orientation"
+
+    def presents_comparison(self, reference_first: bool, answer: str) -> bool:
+        """True where a trial of a series presents more than the reference."""
+        return any(self.arranges(False, True, reference_first, answer))
+
+    @property
+    def right_is_enough(self) -> bool:
+        """True where a series goes by right and wrong alone: which of two has more?"""
+        return self.surfaces == 2 and self.ordered
 
     @property
     def ordered(self) -> bool:

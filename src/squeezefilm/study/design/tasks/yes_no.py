@@ -21,6 +21,7 @@ from squeezefilm.study.design.tasks.task import (
     Judged,
     Percepts,
     StudyTask,
+    alone,
     from_reference,
 )
 
@@ -56,8 +57,10 @@ YES_NO = StudyTask(
     ),
     counted="Yes",
     assumed=("“Yes” is said where the clearest rhythm passes the observer's criterion.", FELT),
-    adaptive=("limits",),
-    series=lambda _: (False, "yes"),
+    adaptive=("limits", "bayesian"),
+    # Runs present a level each time.
+    series=lambda k, method: (False, "no" if method == "bayesian" and k % 2 else "yes"),
+    arranges=alone,
     in_amounts=True,
     decides=_decides,
     model=DifferenceModel(

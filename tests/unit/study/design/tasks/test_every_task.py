@@ -23,7 +23,7 @@ def test_every_name_of_a_task_has_its_record() -> None:
 def test_conditions_present_what_the_task_says(task: StudyTask) -> None:
     found = tuple(task.conditions("here", ("one", "two")))
     assert {len(names) for names in found} == {task.surfaces}
-    assert 2 <= len(found) <= 12
+    assert 2 <= len(found) <= 20
     assert task.surfaces == 1 or all("here" in names or len(set(names)) == 1 for names in found)
     assert task.question("spatial_period").endswith(("?", "."))
 
