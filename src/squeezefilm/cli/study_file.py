@@ -25,13 +25,13 @@ def status(store: Store, as_json: AsJson = False) -> None:
 @study.command()
 def export(
     store: Store,
-    format: Annotated[str, typer.Option("--format", help="csv, psych-ds or bids.")] = "csv",
+    format: Annotated[str, typer.Option("--format", help="csv or psych-ds.")] = "csv",
     out: Annotated[
         Path | None,
         written_to("Folder; beside the study's file without it."),
     ] = None,
 ) -> None:
-    """Write all answers as CSV, a Psych-DS dataset or a BIDS behavioural dataset."""
+    """Write all answers as CSV or a Psych-DS dataset."""
     from squeezefilm.study.record.exports import export_study
     from squeezefilm.study.record.store import StudyStore
 

@@ -294,11 +294,11 @@ def test_an_export_is_csv_beside_the_file_unless_asked(store: Path, tmp_path: Pa
     done = run("export", store)
     assert done.stdout == f"wrote {tmp_path / 'a.exports' / 'csv'}\n"
     assert (tmp_path / "a.exports" / "csv" / "small_trials.csv").exists()
-    assert run("export", store, "--format", "bids", "--out", tmp_path / "b").returncode == 0
+    assert run("export", store, "--format", "psych-ds", "--out", tmp_path / "b").returncode == 0
     assert (tmp_path / "b" / "dataset_description.json").exists()
     refused = run("export", store, "--format", "xml")
     assert refused.returncode == 2
-    assert "csv, psych-ds, bids" in refused.stderr
+    assert "csv, psych-ds" in refused.stderr
 
 
 def test_a_merge_adds_every_file_named(store: Path, tmp_path: Path) -> None:

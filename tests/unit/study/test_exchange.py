@@ -1,4 +1,4 @@
-"""CSV, Psych-DS and BIDS: what others read, and what their validators say."""
+"""CSV and Psych-DS: what others read, and what their validators say."""
 
 from __future__ import annotations
 
@@ -132,45 +132,17 @@ def test_psych_ds_validator(store: StudyStore) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_bids_validator(store: StudyStore) -> None:
-    folder = export_study(store, "bids")
-    done = _validated("bids-validator-deno", "--format", "json", str(folder))
-    issues = json.loads(done.stdout)["issues"]["issues"]
-    errors = [one for one in issues if one["severity"] == "error"]
-    assert errors == []
-    assert done.returncode == 0
-
-
-def test_bids_holds_every_trial_under_its_participant(store: StudyStore) -> None:
-    folder = export_study(store, "bids")
-    people = list(
-        csv.DictReader(
-            io.StringIO((folder / "participants.tsv").read_text(encoding="utf-8")), delimiter="\t"
-        )
-    )
-    assert len(people) == 2
-    sidecar = json.loads((folder / "task-matchtosample_beh.json").read_text())
-    for one in people:
-        name = one["participant_id"]
-        path = folder / name / "beh" / f"{name}_task-matchtosample_beh.tsv"
-        rows = list(csv.DictReader(io.StringIO(path.read_text(encoding="utf-8")), delimiter="\t"))
-        assert len(rows) == 9
-        assert set(rows[0]) <= set(sidecar)
-        assert all(value for row in rows for value in row.values())
-    assert sidecar["response_time_s"]["Units"] == "s"
-
-
 def test_an_export_is_replaced_and_other_peoples_files_are_not(
     store: StudyStore, tmp_path: Path
 ) -> None:
     target = tmp_path / "out"
-    export_study(store, "bids", target)
-    (target / "participants.tsv").write_text("spoilt")
-    (target / ".participants.tsv.abc").write_text("half")
+    export_study(store, "csv", target)
+    (target / "small_trials.csv").write_text("spoilt")
+    (target / ".small_trials.csv.abc").write_text("half")
     export_study(store, "psych-ds", target)
     assert (target / "data").is_dir()
-    assert not (target / "participants.tsv").exists()
-    assert not (target / ".participants.tsv.abc").exists()
+    assert not (target / "small_trials.csv").exists()
+    assert not (target / ".small_trials.csv.abc").exists()
     assert exported_folders(store) == [("psych-ds", target.resolve())]
     (target / "mine.txt").write_text("mine")
     with pytest.raises(InputError, match=r"mine\.txt"):
@@ -256,4 +228,4 @@ def test_no_cell_of_any_export_is_a_formula(tmp_path: Path) -> None:
                 ):
                     assert float(cell) == -0.5
                     negative += 1
-    assert negative == 3
+    assert negative == 2

@@ -66,7 +66,7 @@ def a_file(folder: Path) -> object:
         (lambda at: simulate_matches(DESIGN, OBSERVER, 2, 1), "no gratings to match"),
         (lambda at: plan_study(DESIGN, participants=0, seed=1), "participants"),
         (lambda at: exports(at, '[{"format": "other", "folder": "x"}]'), "cannot be read"),
-        (lambda at: exports(at, '[{"format": "bids"}]'), "cannot be read"),
+        (lambda at: exports(at, '[{"format": "csv"}]'), "cannot be read"),
         (a_file, "is a file; give a folder"),
         (linked, "is no study's file|is a link"),
         (lambda at: require_study(at / "none.sqlite"), "does not exist"),

@@ -356,7 +356,7 @@ class Studies:
 
     def export(self, study: str, format: str) -> dict[str, Any]:
         """Export a study beside its file; `zip` holds the same in base64, for a link."""
-        si.require_one_of("format", format, ("csv", "psych-ds", "bids"))
+        si.require_one_of("format", format, ("csv", "psych-ds"))
         path = export_study(self.store(study), format)  # type: ignore[arg-type] # checked above
         return {"folder": str(path.relative_to(self.folder.parent)), "zip": zipped(path)}
 

@@ -5,10 +5,7 @@ machine's disk are nobody else's business.
 
 Psych-DS after the rules at https://psychds-docs.readthedocs.io: CSV files under ``data/``, named by
 keywords, each with a sidecar of its own columns; ``dataset_description.json`` in JSON-LD with name,
-description and every column in `variableMeasured`. BIDS after
-https://bids-specification.readthedocs.io (1.10), "Behavioral experiments (with no neural
-recordings)": ``sub-*/beh/sub-*_task-*_beh.tsv``, one row per trial, with one sidecar for all at
-the root, and likewise one row per sitting as the task "sittings".
+description and every column in `variableMeasured`.
 """
 
 from __future__ import annotations
@@ -28,16 +25,14 @@ from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import (
     COLUMNS,
     SESSION_COLUMNS,
-    Cell,
     Column,
-    cell_text,
     columns_of,
     csv_text,
     session_table,
     trial_table,
 )
 
-Format = Literal["csv", "psych-ds", "bids"]
+Format = Literal["csv", "psych-ds"]
 FORMATS: tuple[Format, ...] = get_args(Format)
 LIST = "exports.json"
 """The list's name in the folder of exports."""
@@ -49,7 +44,7 @@ def export_study(store: StudyStore, format: Format, folder: str | Path | None = 
 
     Args:
         store: the study.
-        format: "csv" (trials and sessions), "psych-ds" or "bids".
+        format: "csv" (trials and sessions) or "psych-ds".
         folder: new, empty, or an earlier export, whose files are replaced; by default the
             format's own beside the study.
 
@@ -188,7 +183,7 @@ def psych_ds(store: StudyStore) -> dict[str, str]:
     sessions = f"data/study-{name}_task-sessions_data"
     return {
         "dataset_description.json": _json(about),
-        "README.md": readme(store, "Psych-DS"),
+        "README.md": readme(store),
         "CHANGES.md": f"Exported by squeezefilm {__version__}.\n",
         f"{trials}.csv": csv_text(trial_table(store), of_trials),
         f"{trials}.json": _json({"variableMeasured": _variables(of_trials)}),
@@ -214,12 +209,12 @@ def description(store: StudyStore) -> str:
     return f"{said} {design.note}" if design.note else said
 
 
-def readme(store: StudyStore, standard: str) -> str:
+def readme(store: StudyStore) -> str:
     """The dataset's README."""
     design = store.design
     return (
         f"# {design.title or design.name}\n\n{description(store)}\n\nQuestion: "
-        f"{design.spoken_question}\n\nThis is a {standard} dataset. One row is one answered trial; "
+        f"{design.spoken_question}\n\nThis is a Psych-DS dataset. One row is one answered trial; "
         "participants are random pseudonyms. Periods are whole spatial periods, groove plus "
         "ridge. A text cell that begins with an apostrophe was guarded against being taken for a "
         "formula: leave out that apostrophe.\n"
@@ -237,92 +232,6 @@ def _variables(columns: Sequence[Column]) -> list[dict[str, str]]:
     return variables
 
 
-_MISSING = "n/a"
-_NUMBER = Column("participant_number", "Which of the balanced orders they had, from 0")
-
-
-def bids(store: StudyStore) -> dict[str, str]:
-    """The files of a BIDS dataset: path within it → text."""
-    design = store.design
-    task = keyword(design.task)
-    rows = trial_table(store)
-    columns = [
-        Column("sitting_id", column.description) if column.name == "session_id" else column
-        for column in columns_of(design)
-        if not column.name.startswith("participant_")
-    ]
-    people = {row["participant_id"]: row["participant_number"] for row in rows}
-    listing: list[dict[str, Cell]] = [
-        {"participant_id": f"sub-{one}", "participant_number": number}
-        for one, number in people.items()
-    ]
-    files = {
-        "dataset_description.json": _json(
-            {
-                "Name": design.title or design.name,
-                "BIDSVersion": "1.10.0",
-                "DatasetType": "raw",
-                "GeneratedBy": [{"Name": "squeezefilm", "Version": __version__}],
-            }
-        ),
-        "README": f"{readme(store, 'BIDS')}\n{description(store)}\n",
-        "CHANGES": f"1.0.0 {store.study['created_utc'][:10]}\n  - Exported by squeezefilm.\n",
-        "participants.tsv": _tsv(listing, [COLUMNS[0], _NUMBER]),
-        "participants.json": _json(_described([_NUMBER])),
-        f"task-{task}_beh.json": _json(
-            {
-                "TaskName": task,
-                "TaskDescription": description(store),
-                "Instructions": design.spoken_question,
-                **_described(columns),
-            }
-        ),
-    }
-    sittings = session_table(store)
-    files["task-sittings_beh.json"] = _json(
-        {
-            "TaskName": "sittings",
-            "TaskDescription": "Conditions, airborne ultrasound and the device's state, by sitting",
-            **_described(_SITTINGS),
-        }
-    )
-    for person in people:
-        mine = [row for row in rows if row["participant_id"] == person]
-        files[f"sub-{person}/beh/sub-{person}_task-{task}_beh.tsv"] = _tsv(mine, columns)
-        sat = [row for row in sittings if row["participant_id"] == person]
-        files[f"sub-{person}/beh/sub-{person}_task-sittings_beh.tsv"] = _tsv(sat, _SITTINGS)
-    return files
-
-
-# BIDS keeps the name session_id for sessions of its own folders (ses-*).
-_SITTINGS = [
-    Column("sitting_id", session_column.description)
-    if session_column.name == "session_id"
-    else session_column
-    for session_column in SESSION_COLUMNS
-    if session_column.name != "participant_id"
-]
-
-
-def _described(columns: Sequence[Column]) -> dict[str, Any]:
-    described: dict[str, Any] = {}
-    for column in columns:
-        described[column.name] = {"Description": column.description}
-        if column.unit:
-            described[column.name]["Units"] = column.unit
-    return described
-
-
-def _tsv(rows: Sequence[dict[str, Cell]], columns: Sequence[Column]) -> str:
-    lines = ["\t".join(column.name for column in columns)]
-    for row in rows:
-        named = {**row, "sitting_id": row.get("session_id")}
-        cells = [cell_text(named[column.name], _MISSING) for column in columns]
-        # A tab or a line's end has no escape in TSV.
-        lines.append("\t".join(" ".join(cell.split()) or _MISSING for cell in cells))
-    return "\n".join(lines) + "\n"
-
-
 def _json(value: Any) -> str:
     return json.dumps(value, indent=2, ensure_ascii=False) + "\n"
 
@@ -330,5 +239,4 @@ def _json(value: Any) -> str:
 _FILES: dict[Format, Callable[[StudyStore], dict[str, str]]] = {
     "csv": _csv_files,
     "psych-ds": psych_ds,
-    "bids": bids,
 }

@@ -26,7 +26,7 @@ from squeezefilm.study.record.store import StudyStore
 
 @dataclass(frozen=True)
 class Column:
-    """A column: name with its unit, what it holds, its unit in words of BIDS, and its kind."""
+    """A column: name with its unit, what it holds, its unit, and its kind."""
 
     name: str
     description: str
@@ -333,12 +333,12 @@ def csv_text(rows: Sequence[dict[str, Cell]], columns: Sequence[Column]) -> str:
     return stream.getvalue()
 
 
-def cell_text(value: Cell, missing: str = "") -> str:
+def cell_text(value: Cell) -> str:
     """A cell as text, guarded if it is text."""
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
-        return missing
+        return ""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
-        return guarded(value) if value else missing
+        return guarded(value)
     return repr(value)

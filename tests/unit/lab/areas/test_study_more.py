@@ -427,7 +427,7 @@ def test_a_study_is_exported_below_the_labs_folder(lab: Talk) -> None:
     assert (lab.folder / found["folder"]).exists()
     assert found["folder"].startswith("studies/")
     said = lab.refused("export study", study="one", format="xlsx")
-    assert said == "format = 'xlsx' is not known. Allowed: csv, psych-ds, bids"
+    assert said == "format = 'xlsx' is not known. Allowed: csv, psych-ds"
 
 
 def test_two_stations_are_merged(lab: Talk) -> None:

@@ -71,7 +71,7 @@ def test_no_byte_of_a_participant_is_left_anywhere(tmp_path: Path) -> None:
     # Never closed: some of it is in the log alone.
     store, people = _made(tmp_path)
     gone = people[1]
-    for format in ("csv", "psych-ds", "bids"):
+    for format in ("csv", "psych-ds"):
         export_study(store, format)  # type: ignore[arg-type]
     export_study(store, "csv", tmp_path / "elsewhere")
     store.back_up()
@@ -103,13 +103,13 @@ def test_no_byte_of_a_participant_is_left_anywhere(tmp_path: Path) -> None:
         for who in (people[0], people[2])
     ]
     places = {name for _, name in _left(tmp_path, words)}
-    assert {"study.sqlite", "small_trials.csv", "participants.tsv", left_over} <= places
+    assert {"study.sqlite", "small_trials.csv", left_over} <= places
     assert any(name.endswith("-wal") for name in places)
     done = delete_participant(store, gone)
     assert done.enrolled
     assert done.answers == 15
     assert done.traces == 12
-    assert (done.backups, done.exports) == (1, 4)
+    assert (done.backups, done.exports) == (1, 3)
     assert _left(tmp_path, words) == []
     assert [one["uuid"] for one in store.participants()] == [people[0], people[2]]
     for who, before in zip((people[0], people[2]), others, strict=True):
@@ -323,7 +323,7 @@ def test_what_is_no_pseudonym_is_refused(tmp_path: Path, pseudonym: str) -> None
 def test_a_relative_path_is_the_same_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     store, people = _study(Path())
-    for format in ("csv", "bids"):
+    for format in ("csv", "psych-ds"):
         export_study(store, format)  # type: ignore[arg-type]
     store.back_up()
     done = delete_participant(store, people[1])

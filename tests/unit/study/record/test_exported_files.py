@@ -67,11 +67,11 @@ def test_what_a_killed_program_was_writing_goes_with_the_export(store: StudyStor
 
 def test_every_export_that_is_still_there_is_made_again(store: StudyStore, tmp_path: Path) -> None:
     assert exported_folders(store) == []
-    csv, bids = export_study(store, "csv"), export_study(store, "bids", tmp_path / "b")
+    csv, other = export_study(store, "csv"), export_study(store, "psych-ds", tmp_path / "b")
     export_study(store, "psych-ds", tmp_path / "gone")
     for path in sorted((tmp_path / "gone").rglob("*"), reverse=True):
         path.rmdir() if path.is_dir() else path.unlink()
-    assert dict(exported_folders(store)) == {"csv": csv.resolve(), "bids": bids.resolve()}
+    assert dict(exported_folders(store)) == {"csv": csv.resolve(), "psych-ds": other.resolve()}
     (csv / "small_trials.csv").write_text("old")
     assert export_again(store) == 2
     assert (csv / "small_trials.csv").read_text() != "old"

@@ -42,7 +42,7 @@ def test_the_files_of_the_dataset(store: StudyStore) -> None:
     ])  # fmt: skip
     assert files["CHANGES.md"] == f"Exported by squeezefilm {__version__}.\n"
     assert files["materials/design.toml"] == store.study["design"]
-    assert files["README.md"] == readme(store, "Psych-DS")
+    assert files["README.md"] == readme(store)
     # Two people feel three gratings without an answer and answer three.
     assert len(list(csv.reader(io.StringIO(files[f"{trials}_data.csv"])))) == 1 + 2 * 6
     rows = list(csv.DictReader(io.StringIO(files[f"{sessions}_data.csv"])))
@@ -90,9 +90,9 @@ def test_the_study_is_described_in_one_paragraph(store: StudyStore) -> None:
         f"with squeezefilm {__version__}. Assumed."
     )
     assert description(store) == said
-    text = readme(store, "BIDS")
+    text = readme(store)
     assert text.startswith(
-        f"# Gerät\n\n{said}\n\nQuestion: {DESIGN.spoken_question}\n\nThis is a B"
+        f"# Gerät\n\n{said}\n\nQuestion: {DESIGN.spoken_question}\n\nThis is a P"
     )
     assert text.endswith("formula: leave out that apostrophe.\n")
 
@@ -106,4 +106,4 @@ def test_a_study_without_a_title_goes_by_its_name(tmp_path: Path) -> None:
         )
         assert said.endswith(f"seed 8, recorded with squeezefilm {__version__}.")
         assert json.loads(dataset(store)["dataset_description.json"])["name"] == "small-2"
-        assert readme(store, "BIDS").startswith("# small-2\n")
+        assert readme(store).startswith("# small-2\n")

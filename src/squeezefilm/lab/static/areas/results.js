@@ -54,7 +54,7 @@ class ResultsView {
       this.side.replaceChildren(element("h2", { text: "Results" }),
         element("label", { class: "stack" }, "study", this.choice), this.error,
         element("h3", { text: "Export" }),
-        element("div", { class: "row" }, ...[["csv", "CSV"], ["psych-ds", "Psych-DS"], ["bids", "BIDS"]].map(([format, text]) => element("button", { text, onclick: ask(format) }))),
+        element("div", { class: "row" }, ...[["csv", "CSV"], ["psych-ds", "Psych-DS"]].map(([format, text]) => element("button", { text, onclick: ask(format) }))),
         element("button", { text: "Write the report", onclick: () => this.tried(async () => {
           const { pages } = await this.lab.act("report study", { study: this.name });
           this.lab.notify(`Written: ${pages.join(", ")}`);
