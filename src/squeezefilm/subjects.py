@@ -52,7 +52,6 @@ from squeezefilm.study.psychometric.fit import PsychometricFit
 from squeezefilm.study.report import time_figures
 from squeezefilm.study.report.page import FIGURES as FIGURES_OF_STUDY
 from squeezefilm.study.report.page import TASK_FIGURES, write_study
-from squeezefilm.study.report.simulated_page import FIGURES as FIGURES_OF_SIMULATED
 from squeezefilm.study.report.simulated_page import write_simulated
 from squeezefilm.study.simulated.answers import SimulatedStudy
 from squeezefilm.study.simulated.planned_power import PlannedPower
@@ -82,6 +81,13 @@ def _of_session(draw: _Draw) -> _Draw:
     return lambda result: draw(result.session)
 
 
+def _of_first_display(study: SimulatedStudy) -> Figure:
+    """The first figure of the first display's analysis. Raises `InputError` where there is none."""
+    for analysis in study.analyses.values():
+        return plot(analysis)
+    raise InputError("nothing is right or wrong in these answers, and there is no figure of them")
+
+
 _ANALYSIS, _PLAYED = _by_key(FIGURES), _by_key(played.FIGURES)
 
 SUBJECTS: Mapping[type, _Subject] = {
@@ -105,7 +111,7 @@ SUBJECTS: Mapping[type, _Subject] = {
     FolderCalibration: _Subject(_by_key(calibration_figures.FIGURES), write_calibration),
     IdentificationAnalysis: _Subject(_by_key(FIGURES_OF_STUDY), write_study),
     TaskAnalysis: _Subject(_by_key(TASK_FIGURES), write_study),
-    SimulatedStudy: _Subject(_by_key(FIGURES_OF_SIMULATED), write_simulated),
+    SimulatedStudy: _Subject({"answers": _of_first_display}, write_simulated),
     PlannedPower: _Subject({"power": lambda planned: time_figures.power(planned.curve)}),
     PlannedPrecision: _Subject({"precision": time_figures.precision}),
     PsychometricFit: _Subject({"function": time_figures.psychometric_function}),

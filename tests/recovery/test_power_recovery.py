@@ -21,12 +21,11 @@ from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.identification.power import above_0, distinction_scores
 from squeezefilm.study.simulated import planned_contrast, planned_power
-from squeezefilm.study.simulated.chain_tables import Causes, ChainTables
+from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import simulate_matches
 
 PEOPLE = dataclasses.replace(load_observer(), finger_classes=1, candidates=1)
-WHY = Causes(*(1.0,) * 10)
 _ALIKE = dataclasses.replace(
     load_design("period-same-different"), practice=0, repetitions=3, catch=()
 )
@@ -65,7 +64,7 @@ class Tables(ChainTables):
     def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
         here = self.design.stimulus(self.design.reference).period
         period = here * (stimulus.period / here) ** self.stretch[display]
-        return Candidates(np.array([period]), np.array([6.0]))
+        return Candidates(np.array([[period]]), np.array([[6.0]]))
 
 
 def tables(
@@ -80,7 +79,7 @@ def tables(
     if pair:
         logs[here] = logs[here].mean() + closer * (logs[here] - logs[here].mean())
     periods = np.exp(logs)
-    virtual = np.tile(periods[None, None, :, None], (len(stretch), 1, 1, 1))
+    virtual = np.tile(periods[None, None, :, None, None], (len(stretch), 1, 1, 1, 1))
     real = np.array([one.period for one in design.alternatives])[None, :, None]
     return Tables(
         design=design,
@@ -89,9 +88,6 @@ def tables(
         apparatus=(Apparatus(),) * len(stretch),
         virtual=Candidates(virtual, np.full(virtual.shape, 6.0)),
         real=Candidates(real, np.full(real.shape, 6.0)),
-        virtual_rhythm=np.zeros(virtual.shape),
-        real_rhythm=np.zeros(real.shape),
-        causes=(((WHY,),) * len(design.stimuli),) * len(stretch),
         stretch=stretch,
     )
 

@@ -1,4 +1,4 @@
-"""`write_simulated`: answers, confusions, reasons and figures of simulated participants."""
+"""`write_simulated`: answers and confusions of simulated participants, and what they feel."""
 
 from __future__ import annotations
 
@@ -7,25 +7,17 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
-from squeezefilm.core.kit.numbers import printable
-from squeezefilm.core.kit.page_style import (
-    FigureOf,
-    bullets,
-    links,
-    picture_sections,
-    section,
-    text_table,
-)
+from squeezefilm.core.kit.numbers import M, printable, shown
+from squeezefilm.core.kit.page_style import bullets, links, section, text_table
 from squeezefilm.study.record.tables import SURFACES, Column, columns_of, csv_text
-from squeezefilm.study.report import observer_figures
-from squeezefilm.study.report.pictures import pictures, png_files
 from squeezefilm.study.report.words import confusion_rows
 from squeezefilm.study.simulated.answers import SimulatedStudy
+from squeezefilm.study.simulated.chain_tables import ChainTables
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from squeezefilm.study.design.study_design import StudyDesign
 
 REMARK = (
@@ -58,43 +50,23 @@ def simulated_columns(design: StudyDesign) -> list[Column]:
     ]
 
 
-REASONS = ("Simulated", "Hz", "Bandwidth", "Kept", "Lag", "Contact", "Ripple", "d′", "Clearest")
-LEGEND = (
-    "Hz: frequency at which the texture passes the finger. Bandwidth: of the display's envelope "
-    "(Hz). Kept: line of the friction rendered over that asked for; the wave's ripple is in it. "
-    "Lag, Contact: over the period. Ripple: share of the friction's variation that the standing "
-    "wave adds. d′: evidence at the period. Clearest: period of the strongest rhythm (mm). All are "
-    "medians over finger classes."
-)
-
-
-FIGURES = (
-    FigureOf(
-        "percepts", "Evidence before noise", lambda one: observer_figures.percepts(one.tables)
-    ),
-)
-"""The figure of simulated participants."""
-
-
 def write_simulated(
     study: SimulatedStudy, folder: Path, progress: Callable[[str], None] | None = None
 ) -> Path:
-    """Write simulated.json, trials.csv, a figure and a page; the path of index.html.
+    """Write simulated.json, trials.csv and a page; the path of index.html.
 
-    The page has what to read first of each display, whose folder holds the full analysis, what the
-    model sees, and of match-to-sample the confusions, also where nothing is right or wrong.
+    The page has what to read first of each display, whose folder holds the full analysis, what is
+    felt of each stimulus, and of match-to-sample the confusions, also where nothing is right or
+    wrong.
     Raises `InputError` for a folder that cannot be written to.
     """
     from squeezefilm.study.report.page import write_overview
 
     tell = progress or (lambda _: None)
     folder = require_folder(folder)
-    tell("figures")
-    figures = pictures(drawing, FIGURES, study)
     design = study.tables.design
     rows = [{"origin": "simulated", **row} for row in study.rows()]
-    files = {
-        **png_files(figures),
+    files: dict[str, str | bytes] = {
         "simulated.json": json_text(study.summary()),
         "trials.csv": csv_text(rows, simulated_columns(design)),
     }
@@ -105,7 +77,6 @@ def write_simulated(
         f"{escape(printable(study.tables.whose_finger))}; no person answered.</p>"
         + section(about, bullets(remarks(design)))
         + "".join(_seen(study, index) for index in range(len(design.displays)))
-        + picture_sections(figures)
         + section("Files", f"<p>{links(['simulated.json', 'trials.csv'])}</p>")
     )
     page = write_overview(study.analyses, folder, tell, below, named=design.name)
@@ -115,43 +86,40 @@ def write_simulated(
 
 
 def _seen(study: SimulatedStudy, index: int) -> str:
-    """Section of a display: its answers in match-to-sample, and what the model sees."""
-    heading = f"What the model sees on {escape(printable(study.tables.design.displays[index]))}"
-    reasons = text_table(f"Reasons the model sees. {LEGEND}", REASONS, reason_rows(study, index))
+    """Section of a display: its answers in match-to-sample, and what is felt."""
+    tables = study.tables
+    heading = f"What is felt on {escape(printable(tables.design.displays[index]))}"
+    felt = text_table(evidence_said(tables), *evidence_rows(tables, index))
     if study.matches is None:
-        return section(heading, reasons)
-    head, rows = confusion_rows(study.confusion(index))
+        return section(heading, felt)
     right = 100 * study.proportion_correct(index)
     caption = "Simulated answers, per cent of each column; in brackets trials"
-    return section(f"{heading}: {right:.1f} % right", text_table(caption, head, rows) + reasons)
+    matched = text_table(caption, *confusion_rows(study.confusion(index)))
+    return section(f"{heading}: {right:.1f} % right", matched + felt)
 
 
-def drawing(study: SimulatedStudy, key: str) -> Figure:
-    """The figure of simulated participants of that key."""
-    return next(figure for figure in FIGURES if figure.key == key).draw(study)
+def evidence_said(tables: ChainTables) -> str:
+    """Sentence on what `evidence_rows` has."""
+    return (
+        "Evidence (d′) of the clearest rhythm before noise, and its spatial period: medians over "
+        f"finger classes. Below d′ = {tables.observer.detection_criterion:.3g} nothing is felt."
+    )
 
 
-def reason_rows(study: SimulatedStudy, index: int) -> list[list[str]]:
-    """Rows of what the model sees of each stimulus on a display, as texts."""
-    return [
-        [
-            name,
-            *(
-                f"{value:{form}}" if value == value else "–"
-                for value, form in (
-                    (why.texture_frequency, ".3g"),
-                    (why.envelope_bandwidth, ".3g"),
-                    (why.contrast_kept, ".2f"),
-                    (why.lag_over_period, ".2f"),
-                    (why.contact_over_period, ".1f"),
-                    (why.ripple_share, ".2f"),
-                    (why.d_prime, ".2f"),
-                    (1e3 * why.clearest_period, ".3g"),
-                )
-            ),
-        ]
-        for name, why in study.tables.explain(index).items()
-    ]
+def evidence_rows(tables: ChainTables, index: int) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Head and rows of what is felt of each stimulus on a display: evidence and spatial period of
+    its clearest rhythm; along x and along y where surfaces are explored freely."""
+    felt = tables.virtual.d_prime[index, ..., 0], tables.virtual.period[index, ..., 0]
+    evidence, period = (np.median(values, axis=0) for values in felt)
+    ways = ("",) if evidence.shape[1] == 1 else (" along x", " along y")
+    head = ("Stimulus", *(f"{what}{way}" for way in ways for what in ("d′", "Clearest rhythm")))
+    rows = []
+    for stimulus, strengths, periods in zip(tables.design.stimuli, evidence, period, strict=True):
+        cells = [stimulus.name]
+        for strength, length in zip(strengths, periods, strict=True):
+            cells += [f"{strength:.2f}", shown(length, M, 3)] if strength > 0 else ["0", "–"]
+        rows.append(tuple(cells))
+    return head, rows
 
 
 def load_drawing() -> None:

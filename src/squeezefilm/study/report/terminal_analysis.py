@@ -7,12 +7,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.kit.terminal import heading, plain_console, table
-from squeezefilm.study.report.simulated_page import (
-    LEGEND,
-    REASONS,
-    reason_rows,
-    remarks,
-)
+from squeezefilm.study.report.simulated_page import evidence_rows, evidence_said, remarks
 from squeezefilm.study.report.words import (
     PERSON_HEAD,
     SCREENING_HEAD,
@@ -132,14 +127,14 @@ def _rests_on(planned: Planned, studies: int) -> str:
 
 
 def show_simulated(study: SimulatedStudy) -> None:
-    """Print each display's answers and the model's reasons, or what their analysis says."""
+    """Print each display's answers, or what their analysis says, and what is felt."""
     console = plain_console()
     if study.matches is None:
         show_analyses(study.analyses)
         console.print("SIMULATED: nobody answered. What that assumes stands below.")
     for index, name in enumerate(study.tables.design.displays):
         if study.matches is None:
-            heading(console, f"{name}: what the model sees of each stimulus")
+            heading(console, f"{name}: what is felt of each stimulus")
         else:
             heading(
                 console,
@@ -148,8 +143,8 @@ def show_simulated(study: SimulatedStudy) -> None:
             )
             table(console, *confusion_rows(study.confusion(index)))
             console.print("Per cent of each column; rows are what was answered, columns simulated.")
-        table(console, REASONS, reason_rows(study, index))
+        table(console, *evidence_rows(study.tables, index))
     console.print(f"Finger: {printable(study.tables.whose_finger)}.", highlight=False)
-    console.print(LEGEND)
+    console.print(evidence_said(study.tables), highlight=False)
     for said in remarks(study.tables.design):
         console.print(said, highlight=False)

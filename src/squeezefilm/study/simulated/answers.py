@@ -12,7 +12,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.core.results import Result, stamp
 from squeezefilm.physics.perception.observer import NamedObserver
 from squeezefilm.study.design.study_design import NamedDesign
 from squeezefilm.study.identification.confusion import ConfusionMatrix
@@ -125,10 +125,6 @@ class SimulatedStudy(Result):
                     "confusion_percent": np.round(matrices[name].percent, 3).tolist(),
                     "proportion_correct": right[name],
                     "nothing_felt": float(np.mean(~matches.felt[matches.display == index])),
-                    "reasons": {
-                        stimulus: to_json(why)
-                        for stimulus, why in self.tables.explain(index).items()
-                    },
                 }
                 for index, name in enumerate(names)
             },

@@ -1,5 +1,5 @@
-"""Surfaces of a study as every finger class gets them, and why a stimulus is confused: the slow
-part, computed once and kept on disk.
+"""Surfaces of a study as every finger class gets them: the slow part, computed once and kept on
+disk.
 
 Noise and decisions (`participants`, `judgements`) need only these tables, so ten thousand people
 cost seconds.
@@ -7,14 +7,11 @@ cost seconds.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import config_hash
@@ -26,13 +23,10 @@ from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.simulated.felt_surfaces import (
     Asked,
-    Causes,
-    FeltSurface,
     felt_by_strokes,
     felt_freely,
     felt_really,
     felt_surfaces,
-    median_causes,
 )
 
 
@@ -44,16 +38,11 @@ class ChainTables:
         design, observer: the inputs.
         fingers: the finger classes.
         apparatus: how each display was run, by the design's displays.
-        virtual: candidates of shape (displays, fingers, stimuli, candidates).
+        virtual: candidates of shape (displays, fingers, stimuli, directions, candidates): in one
+            direction of strokes, in two (along x and along y) of free exploration.
         real: candidates of shape (fingers, alternatives, candidates); no alternatives but in a
             match-to-sample study.
-        virtual_rhythm: evidence (d′) by period, shape (displays, fingers, stimuli, periods).
-        real_rhythm: likewise, shape (fingers, alternatives, periods).
-        causes: of each display and stimulus, one per finger.
         plates: the displays themselves, by the design's displays.
-        across: of free exploration, candidates along y, in the shape of `virtual`, which are then
-            those along x; None where people explore by strokes.
-        across_rhythm: likewise, in the shape of `virtual_rhythm`.
     """
 
     design: StudyDesign
@@ -62,12 +51,7 @@ class ChainTables:
     apparatus: tuple[Apparatus, ...]
     virtual: Candidates
     real: Candidates
-    virtual_rhythm: si.DimensionlessArray
-    real_rhythm: si.DimensionlessArray
-    causes: tuple[tuple[tuple[Causes, ...], ...], ...]
     plates: tuple[Display, ...] = ()
-    across: Candidates | None = None
-    across_rhythm: si.DimensionlessArray | None = None
 
     @property
     def asked(self) -> str:
@@ -89,39 +73,15 @@ class ChainTables:
 
     def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
         """Candidates of a surface that is not among the design's stimuli, such as a comparison
-        that an adaptive method chose, shape (candidates,); of free exploration (2, candidates),
-        along x and along y."""
+        that an adaptive method chose, shape (directions, candidates)."""
         feel = felt_freely if self.design.exploring == "free" else felt_by_strokes
-        found = feel(
+        return feel(
             stimulus,
             self.plates[display],
             self.observer,
             self.fingers[finger],
             self.apparatus[display],
         )
-        one, other = found.candidates, found.across
-        if other is None:
-            return one
-        return Candidates(
-            np.stack([one.period, other.period]), np.stack([one.d_prime, other.d_prime])
-        )
-
-    @property
-    def directions(self) -> Candidates:
-        """Candidates with an axis for the directions in which they were felt, shape (displays,
-        fingers, stimuli, directions, candidates): one of strokes, two of free exploration."""
-        every = [self.virtual] if self.across is None else [self.virtual, self.across]
-        return Candidates(
-            np.stack([surface.period for surface in every], axis=-2),
-            np.stack([surface.d_prime for surface in every], axis=-2),
-        )
-
-    def explain(self, display: int = 0) -> dict[str, Causes]:
-        """The reasons by stimulus on one of the displays: medians over fingers."""
-        return {
-            stimulus.name: median_causes(found)
-            for stimulus, found in zip(self.design.stimuli, self.causes[display], strict=True)
-        }
 
 
 def chain_tables(
@@ -163,8 +123,7 @@ def chain_tables(
             f"{len(runs)} apparatus were given"
         )
     fingers = observer.fingers()
-    free = design.exploring == "free"
-    feel = felt_freely if free else felt_by_strokes
+    feel = felt_freely if design.exploring == "free" else felt_by_strokes
     pieces: list[Asked] = [
         *(
             Asked(feel, design.stimuli, (plate, observer, one, run))
@@ -174,45 +133,20 @@ def chain_tables(
         *(Asked(felt_really, design.alternatives, (observer, one)) for one in fingers),
     ]
     found = felt_surfaces(pieces, tell)
-    real, found = found[-len(fingers) :], found[: -len(fingers)]
-    virtual = [found[k : k + len(fingers)] for k in range(0, len(found), len(fingers))]
+    real, virtual = found[-len(fingers) :], found[: -len(fingers)]
+    by_display = [virtual[k : k + len(fingers)] for k in range(0, len(virtual), len(fingers))]
     return ChainTables(
         design=design,
         observer=observer,
         fingers=fingers,
         apparatus=tuple(runs),
         plates=plates,
-        virtual=_competing(virtual),
-        real=_competing(real),
-        virtual_rhythm=_gathered(virtual, lambda one: one.rhythm),
-        real_rhythm=_gathered(real, lambda one: one.rhythm),
-        causes=tuple(
-            tuple(tuple(row[s].causes for row in by_finger) for s in range(len(design.stimuli)))
-            for by_finger in virtual
+        virtual=Candidates(
+            np.array([[[felt.period for felt in row] for row in rows] for rows in by_display]),
+            np.array([[[felt.d_prime for felt in row] for row in rows] for rows in by_display]),
         ),
-        across=_competing(virtual, _across) if free else None,
-        across_rhythm=_gathered(virtual, lambda one: one.across_rhythm) if free else None,
+        real=Candidates(
+            np.array([[felt.period for felt in row] for row in real]),
+            np.array([[felt.d_prime for felt in row] for row in real]),
+        ),
     )
-
-
-def _across(felt: FeltSurface) -> Candidates:
-    assert felt.across is not None
-    return felt.across
-
-
-def _competing(
-    tree: Any, which: Callable[[FeltSurface], Candidates] = lambda felt: felt.candidates
-) -> Candidates:
-    return Candidates(
-        _gathered(tree, lambda one: which(one).period),
-        _gathered(tree, lambda one: which(one).d_prime),
-    )
-
-
-def _gathered(tree: Any, part: Callable[[FeltSurface], si.FloatArray | None]) -> si.FloatArray:
-    """An array of every percept in nested lists, which become its first axes."""
-
-    def gather(one: Any) -> Any:
-        return [gather(i) for i in one] if isinstance(one, list) else part(one)
-
-    return np.array(gather(tree), dtype=float)

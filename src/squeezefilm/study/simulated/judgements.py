@@ -119,9 +119,7 @@ class _Room:
         self.display = {name: number for number, name in enumerate(design.displays)}
         self._chosen: dict[tuple[str, float], int] = {}
         self._felt: dict[tuple[int, int, int], tuple[si.FloatArray, si.FloatArray]] = {}
-        free = tables.across is not None
-        self.directions: tuple[int, ...] = (2,) if free else ()
-        self._known = tables.directions if free else tables.virtual
+        self.directions = tables.virtual.period.shape[-2]
 
     def chosen(self, series: str, intensity: float) -> int:
         """The number of what an adaptive series presents at an intensity."""
@@ -133,11 +131,10 @@ class _Room:
         return self._chosen[key]
 
     def felt(self, display: int, finger: int, surface: int) -> tuple[si.FloatArray, si.FloatArray]:
-        """Candidates of a surface under a finger, by direction where it is explored in two:
-        periods (m) and d′."""
+        """Candidates of a surface under a finger, by direction: periods (m) and d′."""
         key = display, finger, surface
         if key not in self._felt:
-            known, shown = self._known, len(self.design.stimuli)
+            known, shown = self.tables.virtual, len(self.design.stimuli)
             if surface < shown:
                 found = known.period[key], known.d_prime[key]
             else:
@@ -149,7 +146,7 @@ class _Room:
     def presented(
         self, display: si.IntArray, finger: si.IntArray, surface: si.IntArray
     ) -> Candidates:
-        """Percepts of everybody, shape (people, candidates) or (people, directions, candidates)."""
+        """Percepts of everybody, shape (people, directions, candidates)."""
         found = [
             self.felt(d, f, s)
             for d, f, s in zip(display.tolist(), finger.tolist(), surface.tolist(), strict=True)
@@ -197,13 +194,12 @@ def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], b
                 shown = list(task.arranges(reference, comparison, *how))
             presented[person, at] = shown
         skill = 1.0 + observer.learning_excess * math.exp(-at / observer.learning_trials)
-        alike = count, *(1 for _ in room.directions)
         felt = [
             perceived(
                 room.presented(display[:, at], people.finger[:count], presented[:, at, place]),
                 observer,
-                np.full(alike, skill),
-                people.spread[:count].reshape(alike),
+                np.full((count, 1), skill),
+                people.spread[:count, None],
                 people.noise[at, place, :count],
                 people.blur[at, place, :count],
             )
@@ -246,14 +242,12 @@ def _judge(room: _Room, people: SimulatedPeople) -> _Judge:
     task = room.design.task
     if task == "magnitude-estimation":
         return functools.partial(_number, room, people)
-    in_plane = task == "same-different" and room.directions
+    in_plane = task == "same-different" and room.directions > 1
     return functools.partial(_alike_in_plane if in_plane else _decided, room, people)
 
 
 def _in_clearest_direction(felt: Perceived) -> Perceived:
-    """Percept in the direction in which it is the more evident; of strokes as it is."""
-    if felt.strength.ndim == 1:
-        return felt
+    """Percept in the direction in which it is the most evident."""
     best = np.arange(felt.strength.shape[0]), np.argmax(felt.strength, axis=-1)
     return Perceived(felt.log_period[best], felt.strength[best], felt.felt[best])
 
@@ -272,7 +266,7 @@ def _remembered(room: _Room, finger: si.IntArray) -> si.FloatArray:
     if room.design.judged != "friction_depth":
         return np.full(finger.shape, room.design.reference_level)
     place = room.place.get(room.design.reference, 0)
-    return np.asarray(room.tables.directions.d_prime[0, finger, place, :, 0].max(axis=-1))
+    return np.asarray(room.tables.virtual.d_prime[0, finger, place, :, 0].max(axis=-1))
 
 
 def _decided(

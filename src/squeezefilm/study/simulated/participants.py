@@ -221,7 +221,8 @@ def _from_gratings(
     """Distance of the perceived period from each real grating's, shape (people, trials, gratings),
     infinite where that was not felt; and whether the surface was."""
     shown, touched = tables.virtual, tables.real
-    places = display, finger[:, None], stimulus
+    # They are explored by strokes: in one direction.
+    places = display, finger[:, None], stimulus, 0
     felt_now = Candidates(shown.period[places], shown.d_prime[places])
     virtual = perceived_anew(felt_now, tables.observer, skill, sigma[:, None], random, CHUNK)
     within = (*display.shape, *touched.period.shape[1:])
@@ -280,7 +281,7 @@ class SimulatedPeople:
         asked: int,
         seed: int,
         chunk: int,
-        directions: tuple[int, ...],
+        directions: int,
         surfaces: int = 2,
     ) -> SimulatedPeople:
         """People of a chunk; nobody depends on how many there are."""
@@ -293,8 +294,8 @@ class SimulatedPeople:
             lapse=observer.lapse_rate * np.exp(observer.lapse_spread * normal(CHUNK)),
             scale=_OWN_MIDDLE * np.exp(_OWN_SCALE * normal(CHUNK)),
             memory=normal(CHUNK),
-            noise=normal((asked, surfaces, CHUNK, *directions, observer.candidates)),
-            blur=normal((asked, surfaces, CHUNK, *directions)),
+            noise=normal((asked, surfaces, CHUNK, directions, observer.candidates)),
+            blur=normal((asked, surfaces, CHUNK, directions)),
             blind=among((asked, CHUNK)),
             guess=among((asked, CHUNK)),
             slowness=normal((asked, CHUNK)),

@@ -71,7 +71,7 @@ def recalled_distances(
         random: of the noise.
         drawn: people whose noise is drawn, so that nobody depends on how many there are.
     """
-    found, observer = tables.directions, tables.observer
+    found, observer = tables.virtual, tables.observer
 
     def felt(rows: tuple[si.IntArray, ...], deep: int) -> Perceived:
         surface = Candidates(found.period[rows], found.d_prime[rows])

@@ -7,37 +7,30 @@ import dataclasses
 import functools
 import html
 import json
-import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit import style
 from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.percepts import Apparatus
-from squeezefilm.physics.perception.senses import Candidates, line_periods
+from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.design.study_design import load_design
-from squeezefilm.study.report import simulated_page
 from squeezefilm.study.report.simulated_page import (
-    LEGEND,
-    REASONS,
     REMARK,
-    reason_rows,
+    evidence_rows,
+    evidence_said,
     simulated_columns,
     write_simulated,
 )
 from squeezefilm.study.report.words import confusion_rows
 from squeezefilm.study.simulated.answers import SimulatedStudy, study_of
 from squeezefilm.study.simulated.chain_tables import ChainTables
-from squeezefilm.study.simulated.felt_surfaces import Causes
 from squeezefilm.study.simulated.participants import Matches
 from squeezefilm.study.tasks import analyze
-
-pytestmark = pytest.mark.usefixtures("figures_as_described")
 
 PAPER = load_design("biet2008-gratings")
 # Answers in another order than what is presented; the second display's name tries to be markup.
@@ -45,20 +38,17 @@ DESIGN = dataclasses.replace(
     PAPER, name="two-gratings", displays=("biet2008-stator", "<b>plate"),
     stimuli=PAPER.stimuli[1:3], alternatives=PAPER.alternatives[2:0:-1],
 )  # fmt: skip
-FIRST = Causes(25.04, 101.2, math.nan, 0.123, 2.54, math.nan, 1e-6, 3.456, 2.0e-3, 4.0)
-SECOND = Causes(12.5, 101.2, 0.876, 0.06, 1.27, 0.254, 1e-6, 1.2, 3.98e-3, 4.0)
+PERIODS = np.array([[[[[2e-3]], [[3.98e-3]]]], [[[[4e-3]], [[2e-3]]]]])
+STRENGTHS = np.array([[[[[3.456]], [[-0.2]]]], [[[[1.0]], [[2.0]]]]])
 
 
 def study(design: Any = DESIGN) -> SimulatedStudy:
     """Two people, each asked two gratings on two displays; on the first one answer is wrong."""
     observer = dataclasses.replace(load_observer(), finger_classes=1, name="<i>made up</i>")
-    periods = line_periods().size
     tables = ChainTables(
         design=design, observer=observer, fingers=observer.fingers(), apparatus=(Apparatus(),) * 2,
-        virtual=Candidates(np.full((2, 1, 2, 1), 2e-3), np.full((2, 1, 2, 1), 3.0)),
+        virtual=Candidates(PERIODS, STRENGTHS),
         real=Candidates(np.full((1, 2, 1), 2e-3), np.full((1, 2, 1), 3.0)),
-        virtual_rhythm=np.ones((2, 1, 2, periods)), real_rhythm=np.ones((1, 2, periods)),
-        causes=(((FIRST,), (SECOND,)), ((SECOND,), (FIRST,))),
     )  # fmt: skip
     return study_of(Matches(
         tables=tables, seed=5,
@@ -116,12 +106,20 @@ def test_confusions_are_shares_of_a_column_with_their_counts() -> None:
     ]
 
 
-def test_reasons_are_in_the_order_of_their_heads_with_a_dash_for_none() -> None:
-    first, second = reason_rows(study(), 0)
-    assert first == ["2 mm", "25", "101", "–", "0.12", "2.5", "–", "3.46", "2"]
-    assert second == ["4 mm", "12.5", "101", "0.88", "0.06", "1.3", "0.25", "1.20", "3.98"]
-    assert reason_rows(study(), 1)[0][1:] == second[1:]
-    assert len(first) == len(REASONS)
+def test_what_is_felt_has_its_period_and_a_dash_for_none() -> None:
+    tables = study().tables
+    head, rows = evidence_rows(tables, 0)
+    assert head == ("Stimulus", "d′", "Clearest rhythm")
+    assert rows == [("2 mm", "3.46", "2 mm"), ("4 mm", "0", "–")]
+    both = Candidates(np.repeat(PERIODS, 2, axis=3), np.repeat(STRENGTHS, 2, axis=3))
+    head, rows = evidence_rows(dataclasses.replace(tables, virtual=both), 1)
+    assert head[1:] == (
+        "d′ along x",
+        "Clearest rhythm along x",
+        "d′ along y",
+        "Clearest rhythm along y",
+    )
+    assert rows[0] == ("2 mm", "1.00", "4 mm", "1.00", "4 mm")
 
 
 def test_each_display_is_analysed_with_the_answer_that_is_right_on_the_diagonal(
@@ -135,7 +133,7 @@ def test_each_display_is_analysed_with_the_answer_that_is_right_on_the_diagonal(
     assert second.matrix.counts.tolist() == [[2, 0], [0, 2]]
     assert first.name == "two-gratings, biet2008-stator"
     assert first.origin == "simulated"
-    assert (told[0], told[-1]) == ("figures", "writing the report")
+    assert told[-1] == "writing the report"
 
 
 def test_numbers_and_figures_are_beside_the_page(
@@ -143,14 +141,13 @@ def test_numbers_and_figures_are_beside_the_page(
 ) -> None:
     folder = written[0]
     assert sorted(one.name for one in folder.iterdir()) == [
-        "index.html", "percepts.png", "simulated.json", "trials.csv",
+        "index.html", "simulated.json", "trials.csv",
     ]  # fmt: skip
     text = (folder / "simulated.json").read_text(encoding="utf-8")
     assert text.endswith("}\n")
     data = json.loads(text)
     assert data["participants"] == 2
     assert data["proportion_correct"] == {"biet2008-stator": 0.75, "<b>plate": 1.0}
-    assert "Least evident" in (folder / "percepts.png").read_text(encoding="utf-8")
 
 
 def test_the_page_says_that_nobody_answered_and_shows_names_as_text(
@@ -169,21 +166,19 @@ def test_the_page_says_that_nobody_answered_and_shows_names_as_text(
         "finger: ; no person answered" in said
     )
     assert REMARK in page
-    assert "<h2>What the model sees on biet2008-stator: 75.0 % right</h2>" in page
-    assert "<h2>What the model sees on &lt;b&gt;plate: 100.0 % right</h2>" in page
+    assert "<h2>What is felt on biet2008-stator: 75.0 % right</h2>" in page
+    assert "<h2>What is felt on &lt;b&gt;plate: 100.0 % right</h2>" in page
     assert (
         '<thead><tr><th scope="col">Answered \\ presented</th><th scope="col">2 mm</th>'
         '<th scope="col">4 mm</th></tr></thead>\n<tbody>\n'
         '<tr><th scope="row">4 mm</th><td>50 % (1)</td><td>100 % (2)</td></tr>\n'
         '<tr><th scope="row">2 mm</th><td>50 % (1)</td><td>0 % (0)</td></tr>\n</tbody>' in page
     )
-    assert page.count(f"<caption>Reasons the model sees. {html.escape(LEGEND)}</caption>") == 2
-    assert '<th scope="col">Clearest</th>' in page
-    assert '<tr><th scope="row">2 mm</th><td>25</td><td>101</td><td>–</td>' in page
+    assert page.count(f"<caption>{html.escape(evidence_said(study().tables))}</caption>") == 2
+    assert '<tr><th scope="row">2 mm</th><td>3.46</td><td>2 mm</td></tr>' in page
     for place in ("biet2008-stator", "&lt;b&gt;plate"):
         link = f'<p><a href="{place}/index.html">All numbers and figures</a></p>'
         assert page.count(link) == 1
-    assert page.count('src="percepts.png"') == 1
 
 
 @pytest.mark.parametrize(
@@ -195,7 +190,6 @@ def test_gratings_that_do_not_pair_up_get_no_analysis_of_right_answers(
     alternatives: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(style, "png", lambda _: b"")
-    monkeypatch.setattr(simulated_page.observer_figures, "percepts", lambda _: Figure())
     design = dataclasses.replace(DESIGN, alternatives=alternatives)
     page = write_simulated(study(design), tmp_path).read_text(encoding="utf-8")
     assert "All numbers and figures" not in page

@@ -1,4 +1,4 @@
-"""A surface felt by a hand that explores freely: both ways, the clearer one explained."""
+"""A surface felt by a hand that explores freely: both ways."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.perception import path_percepts
 from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.simulated import felt_surfaces as module
 from squeezefilm.study.simulated.felt_surfaces import felt_freely, free_path
@@ -20,36 +21,26 @@ PLATE, PEOPLE = load_display("biet2008-plate"), load_observer()
 FINGER = PEOPLE.median_finger()
 
 
-def run(name: str, evidence: float) -> Any:
-    percept = SimpleNamespace(
-        candidates=f"{name}'s candidates", evidence=SimpleNamespace(rhythm=f"{name}'s rhythm")
-    )
-    return SimpleNamespace(percept=percept, clearest_d_prime=evidence)
+def run(*periods: float) -> Any:
+    felt = Candidates(np.array(periods), np.arange(float(len(periods))))
+    return SimpleNamespace(percept=SimpleNamespace(candidates=felt))
 
 
-@pytest.mark.parametrize(("along", "across", "clearer"), [(3.0, 1.0, 3.0), (1.0, 2.0, 2.0)])
-def test_a_free_hand_feels_both_ways_and_the_clearer_one_has_the_causes(
-    along: float, across: float, clearer: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_free_hand_feels_both_ways_once(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Any] = []
     kept: dict[str, Any] = {}
 
     def felt(display: Any, surface: Any, observer: Any, finger: Any, paths: Any, run_: Any) -> Any:
         asked.append((display, surface.title, observer, finger, paths, run_))
-        return SimpleNamespace(
-            along=run("x", along), across=run("y", across), played=("first", "second")
-        )
+        return SimpleNamespace(along=run(4e-3, 2e-3), across=run(5e-3, 1e-3))
 
     monkeypatch.setattr(path_percepts, "path_percept", felt)
-    monkeypatch.setattr(module, "free_causes", lambda *said: said)
     monkeypatch.setattr(module, "_KEPT", SimpleNamespace(get=kept.get, put=kept.__setitem__))
     monkeypatch.setattr(module, "_REMEMBERED", {})
     fine, apparatus = Stimulus("fine", 4e-3, "period"), module.Apparatus()
     found: Any = felt_freely(fine, PLATE, PEOPLE, FINGER, apparatus)
-    assert (found.candidates, found.across) == ("x's candidates", "y's candidates")
-    assert (found.rhythm, found.across_rhythm) == ("x's rhythm", "y's rhythm")
-    stimulus, run_, played, finger = found.causes
-    assert (stimulus, run_.clearest_d_prime, played, finger) == (fine, clearer, "first", FINGER)
+    assert found.period.tolist() == [[4e-3, 2e-3], [5e-3, 1e-3]]
+    assert found.d_prime.tolist() == [[0.0, 1.0], [0.0, 1.0]]
     ((display, title, observer, whose, (path,), how),) = asked
     assert (display, title, observer, whose, how) == (PLATE, "fine", PEOPLE, FINGER, apparatus)
     # Asked again nothing is computed: not in this process, and not in one that has its disk.

@@ -25,7 +25,6 @@ from squeezefilm.study.simulated.answers import (
     simulate_participants,
 )
 from squeezefilm.study.simulated.chain_tables import ChainTables
-from squeezefilm.study.simulated.felt_surfaces import Causes
 from squeezefilm.study.simulated.judgements import _alike_in_plane, simulate_judgements
 
 EXACT = dataclasses.replace(
@@ -37,7 +36,6 @@ EXACT = dataclasses.replace(
     learning_excess=0.0,
 )
 SIGMA = math.log1p(EXACT.period_weber_fraction) / D_PRIME_OF_75
-WHY = Causes(*(1.0,) * 10)
 PERIODS = dataclasses.replace(
     load_design("period-same-different"), task="two-interval", practice=0, repetitions=10, catch=()
 )
@@ -50,18 +48,15 @@ NUMBERS = dataclasses.replace(load_design("coarseness-magnitude"), familiarisati
 
 def tables(design: StudyDesign, d_prime: list[float] | float = 1e6) -> ChainTables:
     """One display, one finger: each period alone, as evident as said."""
-    period = np.array([one.period for one in design.stimuli])[None, None, :, None]
+    period = np.array([one.period for one in design.stimuli])[None, None, :, None, None]
     evidence = np.broadcast_to(np.asarray(d_prime, dtype=float), len(design.stimuli))
     return ChainTables(
         design=design,
         observer=EXACT,
         fingers=EXACT.fingers(),
         apparatus=(Apparatus(),),
-        virtual=Candidates(period, evidence[None, None, :, None].copy()),
+        virtual=Candidates(period, evidence[None, None, :, None, None].copy()),
         real=Candidates(np.empty((1, 0, 1)), np.empty((1, 0, 1))),
-        virtual_rhythm=np.zeros((1, 1, len(design.stimuli), 1)),
-        real_rhythm=np.zeros((1, 0, 1)),
-        causes=(((WHY,),) * len(design.stimuli),),
     )
 
 
@@ -202,7 +197,7 @@ class Varied(ChainTables):
     def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
         """The period that the stimulus has."""
         assert (display, finger) == (0, 0)
-        return Candidates(np.array([stimulus.period]), np.array([1e6]))
+        return Candidates(np.array([[stimulus.period]]), np.array([[1e6]]))
 
 
 def varied(design: StudyDesign) -> ChainTables:

@@ -15,7 +15,6 @@ from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.felt_surfaces import Causes
 from squeezefilm.study.simulated.participants import right_answers, simulate_matches
 
 PERIODS = np.array([0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3])
@@ -28,7 +27,6 @@ EXACT = dataclasses.replace(
     lapse_rate=0.0,
     learning_excess=0.0,
 )
-WHY = Causes(*(1.0,) * 10)
 
 
 def tables(d_prime: float, observer: Observer = EXACT, design: StudyDesign = DESIGN) -> ChainTables:
@@ -39,11 +37,8 @@ def tables(d_prime: float, observer: Observer = EXACT, design: StudyDesign = DES
         observer=observer,
         fingers=observer.fingers(),
         apparatus=(Apparatus(),),
-        virtual=Candidates(period[None], np.full((1, 1, 5, 1), d_prime)),
+        virtual=Candidates(period[None, ..., None], np.full((1, 1, 5, 1, 1), d_prime)),
         real=Candidates(period, np.full((1, 5, 1), 1e6)),
-        virtual_rhythm=np.zeros((1, 1, 5, 1)),
-        real_rhythm=np.zeros((1, 5, 1)),
-        causes=(((WHY,),) * 5,),
     )
 
 

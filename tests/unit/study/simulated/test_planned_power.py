@@ -17,7 +17,6 @@ from squeezefilm.physics.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.simulated import planned_power as module
 from squeezefilm.study.simulated.chain_tables import ChainTables
-from squeezefilm.study.simulated.felt_surfaces import Causes
 from squeezefilm.study.simulated.planned_power import SIZES, PlannedPower, planned_power
 
 PERIODS = np.array([0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3])
@@ -46,11 +45,8 @@ def displays(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, ...]]:
             observer=observer,
             fingers=observer.fingers(),
             apparatus=(Apparatus(),),
-            virtual=Candidates(period[None], np.full((1, 1, 5, 1), felt)),
+            virtual=Candidates(period[None, ..., None], np.full((1, 1, 5, 1, 1), felt)),
             real=Candidates(period, np.full((1, 5, 1), 1e6)),
-            virtual_rhythm=np.zeros((1, 1, 5, 1)),
-            real_rhythm=np.zeros((1, 5, 1)),
-            causes=(((Causes(*(1.0,) * 10),),) * 5,),
         )
 
     monkeypatch.setattr(module, "chain_tables", chain_tables)

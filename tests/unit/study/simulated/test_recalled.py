@@ -43,7 +43,7 @@ def _tables(d_prime: list[list[float]]) -> Any:
     """Surfaces of one rhythm in two directions each, on one display under one finger."""
     strengths = np.array(d_prime)[None, None, :, :, None]
     return SimpleNamespace(
-        directions=Candidates(np.full(strengths.shape, 4e-3), strengths), observer=OBSERVER
+        virtual=Candidates(np.full(strengths.shape, 4e-3), strengths), observer=OBSERVER
     )
 
 
@@ -87,7 +87,7 @@ def test_nobody_depends_on_how_many_there_are() -> None:
 
 
 def test_who_has_which_finger_is_known_again() -> None:
-    people = SimulatedPeople.drawn(OBSERVER, 6, 3, 11, 1, (2,))
+    people = SimulatedPeople.drawn(OBSERVER, 6, 3, 11, 1, 2)
     assert [finger_of(60 + k, 6, 11) for k in range(60)] == people.finger.tolist()
     assert people.noise.shape == (3, 2, 60, 2, OBSERVER.candidates)
 
