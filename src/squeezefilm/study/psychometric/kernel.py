@@ -128,31 +128,3 @@ def grid_log_likelihood(
                         if wrong > 0:
                             out[i, j, a, b] += wrong * math.log(max(lapses[a] + rise * r, _LEAST))
     return out
-
-
-@compiled(error_model="numpy")
-def guessing_log_likelihood(
-    shape: int,
-    thresholds: si.FloatArray,
-    log_widths: si.FloatArray,
-    lapses: si.FloatArray,
-    x: si.FloatArray,
-    k: si.FloatArray,
-    n: si.FloatArray,
-) -> si.FloatArray:
-    """ln likelihood where who lapses says either answer, at every cell of a grid: (lapses,
-    thresholds, widths). Lapse and guess rate are both half of `lapses`, which are below 1."""
-    out = np.zeros((lapses.size, thresholds.size, log_widths.size))
-    for i in range(thresholds.size):
-        for j in range(log_widths.size):
-            narrow = math.exp(-log_widths[j])
-            for at in range(x.size):
-                s, r, _ = sigmoid(shape, (x[at] - thresholds[i]) * narrow)
-                right, wrong = k[at], n[at] - k[at]
-                for a in range(lapses.size):
-                    half, rise = 0.5 * lapses[a], 1.0 - lapses[a]
-                    if right > 0:
-                        out[a, i, j] += right * math.log(max(half + rise * s, _LEAST))
-                    if wrong > 0:
-                        out[a, i, j] += wrong * math.log(max(half + rise * r, _LEAST))
-    return out

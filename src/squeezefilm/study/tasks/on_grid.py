@@ -16,11 +16,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.special import betaln
+from scipy.special import betaln, ndtr
 
 from squeezefilm.core import quantities as si
 from squeezefilm.study.design.tasks.task import DifferenceModel
-from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import PersonEstimate, PersonFunction
@@ -31,8 +30,6 @@ from squeezefilm.study.tasks.population import (
     lapse_weights,
 )
 
-# From 5 to 95 % of a normal distribution, which is what the kernel calls the width.
-_WIDTH = 2 * 1.6448536269514722
 _SPREADS = 101
 _MOST = 600.0
 
@@ -104,11 +101,9 @@ def on_grid(main: Answers, tell: Callable[[str], None] = lambda _: None) -> Peop
     ends = main.design.differences
     edges = np.linspace(math.log(min(ends) / 8), math.log(8 * max(ends)), _SPREADS + 1)
     deviations = np.exp(0.5 * (edges[1:] + edges[:-1]))
-    logs = _by_rate(model, deviations)
-    criteria = model.criteria
-    if model.rate is None:
-        criteria = model.criteria * float(np.abs(apart).max())
-        logs = _by_normal(criteria, deviations)
+    scale = float(np.abs(apart).max()) if model.rate is None else 1.0
+    criteria = model.criteria * scale
+    logs = _logs(model, criteria, deviations)
     prior = lapse_weights()
     thresholds = model.threshold * np.exp(edges)
     thresholds = np.log(thresholds if main.design.in_amounts else np.expm1(thresholds))
@@ -141,24 +136,23 @@ _Logs = Callable[[si.FloatArray, si.FloatArray, si.FloatArray], si.FloatArray]
 """ln likelihood of k counted answers of n at places, shape (lapses, criteria, deviations)."""
 
 
-def _by_normal(biases: si.FloatArray, deviations: si.FloatArray) -> _Logs:
-    """P = λ/2 + (1 − λ) Φ((Δ − b)/s), with s the deviation of what is decided by."""
-    wide = np.log(deviations) + math.log(_WIDTH)
-    return functools.partial(kernel.guessing_log_likelihood, kernel.GAUSSIAN, biases, wide, LAPSES)
+def _logs(model: DifferenceModel, criteria: si.FloatArray, deviations: si.FloatArray) -> _Logs:
+    """P = g λ + (1 − λ) rate(Δ/σ, k), with g the share of such answers among lapses; without a
+    rate Φ((Δ − k)/σ) in its place."""
+    lapses, criterion = LAPSES[:, None, None], criteria[:, None]
 
-
-def _by_rate(model: DifferenceModel, deviations: si.FloatArray) -> _Logs:
-    """P = g λ + (1 − λ) rate(Δ/σ, k), with g the share of such answers among lapses."""
-
-    @functools.cache
+    # Answers to hundreds of differences would fill the memory.
+    @functools.lru_cache(maxsize=256)
     def both(place: float) -> tuple[si.FloatArray, si.FloatArray]:
-        assert model.rate is not None
-        rise = np.minimum(model.rate(place / deviations, model.criteria[:, None]), 1.0)
-        p = model.lapses * LAPSES[:, None, None] + (1 - LAPSES[:, None, None]) * rise
+        if model.rate is None:
+            rise = ndtr((place - criterion) / deviations)
+        else:
+            rise = np.minimum(model.rate(place / deviations, criterion), 1.0)
+        p = model.lapses * lapses + (1 - lapses) * rise
         return np.log(p), np.log1p(-p)
 
     def logs(places: si.FloatArray, k: si.FloatArray, n: si.FloatArray) -> si.FloatArray:
-        total = np.zeros((LAPSES.size, model.criteria.size, deviations.size))
+        total = np.zeros((LAPSES.size, criteria.size, deviations.size))
         for place, hits, trials in zip(places.tolist(), k, n, strict=True):
             said, not_said = both(place)
             total += hits * said + (trials - hits) * not_said
