@@ -154,7 +154,6 @@ export const RESULTS = {
   participants: { name: "participants", text: "Whose answers are counted; practice and catch trials are left out.", source: "the study's file" },
   proportion_correct: { name: "proportion correct", text: "Share of the main trials answered right, with 95 % intervals that differ in what they take as random; the one over participants is for other people.", source: "binomial, bootstrap over participants, Dirichlet posterior" },
   guessing: { name: "guessing", text: "Share that is right by chance alone.", source: "one over the number of answers" },
-  chance_p: { name: "p against guessing", text: "How often guessers would be right at least as often.", source: "exact binomial, one-sided" },
   permutation_p: { name: "p against unrelated answers", text: "How often the same answers in another order would be right at least as often.", source: "permutation within participants" },
   information_transfer: { name: "information transfer", symbol: "I", text: "How much an answer tells of the stimulus, in bit. Few trials bias it upwards; the estimator named beside it corrects for that.", source: "Garner & Hake 1951 (10.1037/h0054482)" },
   total_sensitivity: { name: "total sensitivity", symbol: "Δ′", text: "d′ of the two outermost stimuli, summed over neighbours.", source: "Braida & Durlach 1972 (10.1121/1.1912868)" },

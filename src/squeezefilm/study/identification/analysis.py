@@ -27,7 +27,6 @@ from squeezefilm.study.identification.information import (
     information_transfer,
 )
 from squeezefilm.study.identification.proportions import (
-    chance_test,
     participant_interval,
     permutation_test,
     proportion_interval,
@@ -62,7 +61,6 @@ class IdentificationAnalysis(Result):
             participant bootstrap where there are two people or more.
         by_stimulus: proportion correct of each stimulus.
         participant_correct: proportion correct of each participant, shape (participants,).
-        chance_p: exact binomial test against guessing, one-sided.
         permutation_p: test against answers unrelated to stimuli, preferences kept.
         information: transfer of the answers, with its interval over participants.
         sensitivity: d′ of stimuli in the order of the labels; None where it has none.
@@ -82,7 +80,6 @@ class IdentificationAnalysis(Result):
     intervals: tuple[Estimate, ...]
     by_stimulus: tuple[StimulusCorrect, ...]
     participant_correct: si.DimensionlessArray
-    chance_p: si.Dimensionless
     permutation_p: si.Dimensionless
     information: InformationTransfer
     sensitivity: OrderedSensitivity | None
@@ -140,7 +137,6 @@ class IdentificationAnalysis(Result):
                 "greatest": person.max(),
             },
             "chance": matrix.chance,
-            "chance_p": self.chance_p,
             "permutation_p": self.permutation_p,
             "information_transfer_bit": self.information.estimate,
             "information_transfer_estimator": METHOD,
@@ -260,7 +256,6 @@ def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
         intervals=intervals,
         by_stimulus=_by_stimulus(matrix, level),
         participant_correct=np.trace(counts, axis1=1, axis2=2) / counts.sum(axis=(1, 2)),
-        chance_p=chance_test(matrix),
         permutation_p=permutation_test(counts, resamples, seed),
         information=information,
         sensitivity=sensitivity,

@@ -3,7 +3,6 @@ random unit."""
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,8 +82,6 @@ class ResponseTimeSummary:
         geometric_mean: of participants' geometric means (s).
         low, high: its t interval over participants (s), at `level`; NaN with one participant.
         level: of the interval.
-        spread: standard deviation of ln(time) within participants (1).
-        median: of all trials (s).
     """
 
     name: str
@@ -94,8 +91,6 @@ class ResponseTimeSummary:
     low: si.Second
     high: si.Second
     level: si.Dimensionless
-    spread: si.Dimensionless
-    median: si.Second
 
 
 def response_time_summary(
@@ -128,8 +123,6 @@ def response_time_summary(
         here = taken & (kind == column)
         who, logs = person[here], np.log(given[here])
         (one,) = condition_means(who, np.zeros_like(who), logs, (names[column],), level)
-        own = np.bincount(who, logs) / np.maximum(np.bincount(who), 1)
-        freedom = one.trials - one.participants
         summaries.append(
             ResponseTimeSummary(
                 one.name,
@@ -139,8 +132,6 @@ def response_time_summary(
                 float(np.exp(one.low)),
                 float(np.exp(one.high)),
                 level,
-                math.sqrt(((logs - own[who]) ** 2).sum() / freedom) if freedom else math.nan,
-                float(np.median(given[here])),
             )
         )
     return tuple(summaries)

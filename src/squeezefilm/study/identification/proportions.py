@@ -17,7 +17,7 @@ from scipy import stats
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.confusion import ConfusionMatrix, whole_counts
+from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.psychometric.estimate import Estimate, holding
 
 
@@ -156,22 +156,13 @@ def participant_interval(
     return Estimate(correct, float(low), float(high), level, "participant bootstrap")
 
 
-def chance_test(matrix: ConfusionMatrix) -> si.Dimensionless:
-    """Probability of so many right answers or more from guessing (exact binomial, one-sided).
-
-    It treats trials as independent, which holds under guessing. Raises `InputError` where rows and
-    columns do not pair up.
-    """
-    return float(stats.binom.sf(matrix.correct - 1, matrix.trials, matrix.chance))
-
-
 def permutation_test(
     counts: ArrayLike, permutations: int = 2000, seed: int = 0
 ) -> si.Dimensionless:
     """Probability of so many right answers if answers had nothing to do with what was presented.
 
     Answers are shuffled over the trials of each participant, so preferences for an answer, which
-    the binomial test takes for skill or its lack, stay as they are. One-sided; the data count as
+    a binomial test takes for skill or its lack, stay as they are. One-sided; the data count as
     one of the permutations (Phipson & Smyth 2010, 10.2202/1544-6115.1585). From 201 participants
     on the normal limit is taken, with the exact mean and variance, instead of shuffles.
 

@@ -1,9 +1,9 @@
-"""Figures of an identification study: confusions, right answers, d′."""
+"""Figures of an identification study: confusions and d′."""
 
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -85,53 +85,6 @@ def _worst(matrix: ConfusionMatrix) -> str:
         f"{style.plain(matrix.stimuli[j], 16)} is most often taken for "
         f"{style.plain(matrix.answers[i], 16)} ({wrong[i, j]:.0f} %)"
     )
-
-
-@style.drawn
-def proportion_correct(analysis: IdentificationAnalysis) -> Figure:
-    """Right answers by stimulus and over all, with intervals; the people themselves beside."""
-    bounds = analysis.main_number
-    p = analysis.permutation_p
-    said = "better than" if p < 0.05 else "not shown to be better than"
-    figure = style.new_figure(
-        f"{100 * analysis.proportion_correct:.3g} % right "
-        f"({100 * bounds.low:.3g} to {100 * bounds.high:.3g} %), {said} unrelated answers "
-        f"(p {_p(p)})",
-        f"{data_of(analysis)}; by stimulus Wilson's {100 * bounds.level:g} % intervals over trials",
-        4.3,
-    )
-    left, right = figure.subplots(1, 2, width_ratios=[1.6, 1], sharey=True)
-    chance = 100 * analysis.matrix.chance
-    by = analysis.by_stimulus
-    style.estimates(left, ((100 * s.proportion_correct, 100 * s.low, 100 * s.high) for s in by))
-    named_ticks(left, [s.stimulus for s in by])
-    left.set(ylabel="right answers (%)", ylim=(0, 104), xlabel="stimulus")
-    scores = 100 * analysis.participant_correct
-    right.hist(scores, bins=_bins(analysis), orientation="horizontal", **style.BARS)
-    right.set(xlabel="participants")
-    ground = {"facecolor": style.PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
-    words: dict[str, Any] = {"rotation": 90, "ha": "center", "va": "top", "fontsize": 8.5}
-    for k, interval in enumerate(analysis.intervals):
-        x = (0.6 + 0.11 * k) * right.get_xlim()[1]
-        low, high = 100 * interval.low, 100 * interval.high
-        right.plot([x, x], [low, high], color=style.ORANGE, lw=2, zorder=4)
-        right.text(x, low - 2, interval.method, bbox=ground, **words)
-    for axes in (left, right):
-        axes.axhline(chance, **style.GUIDE)
-    said = f"guessing: {chance:.3g} %"
-    left.annotate(
-        said, (0, chance), (-8, 4), textcoords="offset points", fontsize=9, color=style.MUTED
-    )
-    left.set_title("each stimulus")
-    right.set_title("people, and the mean's intervals")
-    return figure
-
-
-def _bins(analysis: IdentificationAnalysis) -> list[float]:
-    """Bins that put every possible score of the people in the middle of one."""
-    most = int(analysis.counts.sum(axis=(1, 2)).max())
-    step = 100 / min(most, 20)
-    return [step * (k - 0.5) for k in range(min(most, 20) + 2)]
 
 
 def _p(p: float) -> str:

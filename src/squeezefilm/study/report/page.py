@@ -53,7 +53,6 @@ _TIMES = FigureOf(
 )
 FIGURES = (
     FigureOf("confusion", "Confusion matrix", draw.confusion),
-    FigureOf("correct", "Right answers", draw.proportion_correct),
     FigureOf("sensitivity", "Sensitivity along the stimuli", draw.sensitivity),
     _TIMES,
 )
@@ -212,21 +211,13 @@ def _screening(analysis: StudyAnalysis) -> str:
 
 
 def _worked(analysis: StudyAnalysis) -> str:
-    """Sections on exploration and attention, and the methods section."""
+    """Section on exploration, and the methods section."""
     found = ""
     if head := _exploration_head(analysis):
         caption = "Means over people by stimulus; in brackets the t interval over people"
         found += section(
             "Exploration in numbers", text_table(caption, head, exploration_rows(analysis))
         )
-    if analysis.course is not None and analysis.course.attention:
-        rows = [
-            (one.person, f"{one.right} of {one.asked}", f"{one.p_value:.2g}", _judged(one.attended))
-            for one in analysis.course.attention
-        ]
-        caption = "Catch trials; p of no more right answers from a person who gets 95 % right"
-        head = ("Participant", "Right", "p", "Judged")
-        found += section("Attention", text_table(caption, head, rows))
     if analysis.methods:
         found += section("Methods, for a paper", f"<p>{as_html(analysis.methods)}</p>")
     return found
@@ -264,10 +255,6 @@ def _key_words(key: str) -> str:
         if key.endswith(suffix):
             return f"{key.removesuffix(suffix).replace('_', ' ')} ({unit})"
     return key.replace("_", " ")
-
-
-def _judged(attended: bool) -> str:
-    return "attended" if attended else "doubtful"
 
 
 def _confusion(analysis: IdentificationAnalysis) -> str:

@@ -279,7 +279,6 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
             for interval in analysis.intervals
         ),
         ("Guessing", f"{100 * analysis.matrix.chance:.3g} %", ""),
-        ("p against guessing", f"{analysis.chance_p:.2g}", "exact binomial, one-sided"),
         (
             "p against unrelated answers",
             f"{analysis.permutation_p:.2g}",

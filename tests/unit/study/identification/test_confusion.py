@@ -19,7 +19,6 @@ from squeezefilm.study.identification.confusion import (
 )
 from squeezefilm.study.identification.proportions import (
     METHODS,
-    chance_test,
     expansion,
     participant_interval,
     permutation_test,
@@ -134,11 +133,6 @@ def test_coverage_is_computed_exactly(p: float) -> None:
     assert coverage(CLOPPER_PEARSON) >= 0.95
     assert 0.92 < coverage(WILSON) < 0.98
     assert 0.92 < coverage(JEFFREYS) < 0.98
-
-
-def test_chance_by_hand() -> None:
-    matrix = ConfusionMatrix(np.diag([1, 1]), ("a", "b"), ("a", "b"))
-    assert chance_test(matrix) == pytest.approx(0.25)
 
 
 def test_permutations_agree_with_all_of_them() -> None:

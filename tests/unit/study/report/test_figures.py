@@ -12,7 +12,6 @@ from tests.unit.drawn import words
 from squeezefilm.study.report.figures import (
     confusion,
     data_of,
-    proportion_correct,
     sensitivity,
 )
 
@@ -113,55 +112,6 @@ def test_a_stimulus_that_was_not_shown_has_no_shares() -> None:
     assert [one.get_text() for one in axes.texts if one.get_position()[0] == 1] == ["–"] * 3
     assert not axes.patches
     assert {one.get_weight() for one in axes.texts} == {"normal"}
-
-
-def test_right_answers_stand_with_their_intervals() -> None:
-    figure = proportion_correct(analysis())
-    assert words(figure.get_suptitle()) == (
-        "64.3 % right (50 to 75 %), better than unrelated answers (p < 0.001)"
-    )
-    assert "by stimulus Wilson's 95 % intervals over trials" in words(figure.get_supxlabel())
-    left, right = figure.axes
-    assert upright(left) == [(0, 62.5, 87.5), (1, 37.5, 62.5), (2, 50, 75)]
-    points = [data(one) for one in left.get_lines() if one.get_marker() == "o"]
-    assert points == [[[0], [75]], [[1], [50]], [[2], [62.5]]]
-    assert [one.get_text() for one in left.get_xticklabels()] == list(NAMES)
-    assert left.get_ylim() == (0, 104)
-    # Of seventeen possible scores each has a bin of its own around it (28 trials: twenty steps).
-    edges = np.array([(one.get_y(), one.get_height()) for one in right.patches])
-    assert edges[:, 0] == pytest.approx(5 * (np.arange(21) - 0.5))
-    assert edges[:, 1] == pytest.approx(np.full(21, 5))
-    held = {
-        round(y + 2.5): one.get_width() for (y, _), one in zip(edges, right.patches, strict=True)
-    }
-    assert {place: count for place, count in held.items() if count} == {50: 1, 75: 2, 100: 1}
-    means = upright(right)
-    assert [one[1:] for one in means] == [(50, 75), (40, 80)]
-    assert 0 < means[0][0] < means[1][0]
-    assert [one.get_text() for one in right.texts] == ["bootstrap"] * 2
-    for text, (x, low, _) in zip(right.texts, means, strict=True):
-        assert text.get_position()[0] == x
-        assert low - 5 < text.get_position()[1] < low
-    for axes in (left, right):
-        flat = [data(one)[1] for one in axes.get_lines() if data(one)[0] == [0, 1]]
-        assert [pytest.approx([100 / 3] * 2)] == flat[-1:]
-    assert "guessing: 33.3 %" in [one.get_text() for one in left.texts]
-
-
-@pytest.mark.parametrize(("p", "said"), [(0.049, "), better than"), (0.05, "), not shown to be")])
-def test_what_chance_makes_one_time_in_twenty_is_not_shown(p: float, said: str) -> None:
-    title = words(proportion_correct(analysis(permutation_p=p)).get_suptitle())
-    assert said in title
-    assert title.endswith(f"(p = {p:.2g})")
-
-
-def test_few_trials_have_a_bin_for_each_score() -> None:
-    few = np.array([np.diag([1, 1, 1]), np.diag([1, 1, 2])])
-    _, right = proportion_correct(analysis(counts=few)).axes
-    # Four trials: 0, 25, 50, 75 and 100 %.
-    assert [one.get_y() + one.get_height() / 2 for one in right.patches] == pytest.approx(
-        [0, 25, 50, 75, 100]
-    )
 
 
 def test_stimuli_and_criteria_lie_on_the_decision_axis() -> None:

@@ -10,7 +10,7 @@ export async function show(place, lab) {
 
 const EXPLAINED = [
   ["Participants", "participants"], ["Proportion correct", "proportion_correct"], ["Guessing", "guessing"],
-  ["p against guessing", "chance_p"], ["p against unrelated", "permutation_p"], ["Information transfer", "information_transfer"],
+  ["p against unrelated", "permutation_p"], ["Information transfer", "information_transfer"],
   ["Weber fraction", "weber_fraction"], ["Threshold", "threshold"], ["Exponent", "exponent"], ["Drift", "drift"], ["Catch trials", "catch_trials"], ["Total sensitivity", "total_sensitivity"], ["d′", "d_prime"], ["Sensitivity d′", "d_prime"], ["Response time", "response_time"],
 ];
 
