@@ -44,7 +44,6 @@ class Matches:
         number: of the trial within the participant.
         felt: whether anything was felt.
         response_time: (s); assumed.
-        finger: class of each participant, shape (participants,).
     """
 
     tables: ChainTables
@@ -55,7 +54,6 @@ class Matches:
     number: si.IntArray
     felt: NDArray[np.bool_]
     response_time: si.SecondArray
-    finger: si.IntArray
 
     @property
     def participants(self) -> int:
@@ -125,10 +123,8 @@ def simulate_matches(
         count = min(CHUNK, participants - first)
         random = np.random.default_rng([seed, _STREAM, first // CHUNK])
         chunks.append(_answers(chain, display, stimulus, number, random, count))
-    choice, felt, times, finger = (np.concatenate([chunk[i] for chunk in chunks]) for i in range(4))
-    return Matches(
-        chain, seed, display[rows], stimulus[rows], choice, number[rows], felt, times, finger
-    )
+    choice, felt, times = (np.concatenate([chunk[i] for chunk in chunks]) for i in range(3))
+    return Matches(chain, seed, display[rows], stimulus[rows], choice, number[rows], felt, times)
 
 
 def require_people(design: StudyDesign, participants: int, seed: int) -> None:
@@ -174,8 +170,8 @@ def _answers(
     number: si.IntArray,
     random: np.random.Generator,
     count: int,
-) -> tuple[si.IntArray, NDArray[np.bool_], si.SecondArray, si.IntArray]:
-    """Choice, whether felt, response time (people, trials) and finger class (people,).
+) -> tuple[si.IntArray, NDArray[np.bool_], si.SecondArray]:
+    """Choice, whether felt and response time, shape (people, trials).
 
     Noise is drawn for a whole chunk whatever `count` is, so that people do not depend on it.
     """
@@ -206,7 +202,7 @@ def _answers(
     times = (observer.response_time + observer.doubt_time * doubt) * np.exp(
         observer.response_time_spread * spread
     )
-    return choice.astype(np.int64), felt, times, finger
+    return choice.astype(np.int64), felt, times
 
 
 def _from_gratings(
@@ -285,7 +281,7 @@ class SimulatedPeople:
         surfaces: int = 2,
     ) -> SimulatedPeople:
         """People of a chunk; nobody depends on how many there are."""
-        random = _random(seed, chunk)
+        random = np.random.default_rng([seed, _PEOPLE_STREAM, chunk])
         normal, among = random.standard_normal, random.random
         clear = percept_deviation(observer.period_weber_fraction)
         return cls(
@@ -300,12 +296,3 @@ class SimulatedPeople:
             guess=among((asked, CHUNK)),
             slowness=normal((asked, CHUNK)),
         )
-
-
-def _random(seed: int, chunk: int) -> np.random.Generator:
-    return np.random.default_rng([seed, _PEOPLE_STREAM, chunk])
-
-
-def finger_of(person: int, fingers: int, seed: int) -> int:
-    """Finger class that a simulated person of these tasks has, of so many."""
-    return int(_random(seed, person // CHUNK).integers(0, fingers, CHUNK)[person % CHUNK])

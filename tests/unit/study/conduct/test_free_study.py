@@ -34,7 +34,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
-def test_answers_are_analysed_with_how_they_explored(place: Path) -> None:
+def test_answers_are_analysed(place: Path) -> None:
     done = program("study", "analyze", "s.sqlite", "--out", "pages", cwd=place)
     assert done.returncode == 0, done.stderr
     found = json.loads((place / "pages/biet2008-plate/identification.json").read_text())
@@ -42,17 +42,15 @@ def test_answers_are_analysed_with_how_they_explored(place: Path) -> None:
     assert found["trials"] == 72
     assert found["sensitivity"] is None
     assert any("no order" in note for note in found["notes"])
-    for key in ("coverage", "passes", "peak_speed_m_per_s", "time_in_touch_s", "along_x_share"):
-        assert len(found["exploration"][key]) == 6, key
-    assert found["exploration"]["passes"][0]["mean"] == 16
+    # Nothing is known of how they explored.
+    assert found["exploration"] == {}
     page = (place / "pages/biet2008-plate/index.html").read_text()
-    assert "Exploration in numbers" in page
     assert "surfaces known from before" in page
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("form", ["csv", "psych-ds"])
-def test_exports_name_surfaces_and_measures(place: Path, form: str) -> None:
+def test_exports_name_surfaces(place: Path, form: str) -> None:
     done = program("study", "export", "s.sqlite", "--format", form, "--out", form, cwd=place)
     assert done.returncode == 0, done.stderr
     pattern = {
@@ -67,7 +65,7 @@ def test_exports_name_surfaces_and_measures(place: Path, form: str) -> None:
     assert {len(one) for one in hashes.values()} == {64}
     disc = next(row for row in rows if row["stimulus"] == "disc")
     assert disc["stimulus_period_m"] == ""
-    assert float(disc["coverage"]) > 0.2
+    assert disc["coverage"] == ""
 
 
 @pytest.mark.slow

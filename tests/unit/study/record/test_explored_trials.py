@@ -3,24 +3,21 @@
 from __future__ import annotations
 
 import csv
-import dataclasses
 import io
-import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 from tests.unit.study.design.test_matching import shapes
 
-from squeezefilm.core.formats.traces import Table, csv_text, table_from_csv
+from squeezefilm.core.formats.traces import Table, csv_text
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.perception.observer import load_observer
-from squeezefilm.study.conduct.rehearsal import path_of, rehearsed
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
 from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
 from squeezefilm.study.record.answers import recorded_answers
-from squeezefilm.study.record.exploration import MEASURES, ExploredTrials, explored_table
+from squeezefilm.study.record.exploration import MEASURES, ExploredTrials
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import columns_of, trial_table
 from squeezefilm.study.record.tables import csv_text as trials_csv
@@ -91,21 +88,3 @@ def test_a_display_that_is_no_plane_or_nowhere_has_no_face(tmp_path: Path) -> No
         assert found.face("biet2008-plate") == (0.083, 0.049)
         assert found.face("biet2008-stator") is None
         assert found.face("nowhere.toml") is None
-
-
-@pytest.mark.parametrize(("exploring", "passes", "share"), [("strokes", 4, 1.0), ("free", 16, 0.5)])
-def test_the_simulated_hand_leaves_what_its_model_says(
-    exploring: str, passes: int, share: float, tmp_path: Path
-) -> None:
-    path = path_of(exploring, PLATE, OBSERVER, FINGER)  # type: ignore[arg-type]
-    found = rehearsed(path, exploring, shapes().stimuli[0], 0.5)  # type: ignore[arg-type]
-    (tmp_path / "path.csv").write_text(found.trace)
-    table = table_from_csv(tmp_path / "path.csv")
-    assert "simulated" in table.metadata["device"]
-    assert table.metadata["surface_sha256"] == shapes().stimuli[0].surface_sha256
-    measured = explored_table(table, PLATE.actuator.extent)  # type: ignore[union-attr]
-    assert (measured.passes, found.mean_normal_force, found.touch) == (passes, 0.5, 1.0)
-    assert measured.along_x_share == pytest.approx(share, abs=0.02)
-    assert found.mean_speed == pytest.approx(FINGER.speed, rel=0.01)
-    assert dataclasses.asdict(measured)["coverage"] > 0.04
-    assert math.isfinite(measured.peak_speed)

@@ -59,7 +59,6 @@ def study(design: Any = DESIGN) -> SimulatedStudy:
         number=np.array([[0, 1, 2, 3], [0, 1, 2, 3]]),
         felt=np.array([[True, False, True, True], [True, True, True, True]]),
         response_time=np.array([[1.5, 2.0, 2.5, 3.0], [0.5, 0.75, 1.0, 1.25]]),
-        finger=np.array([0, 3]),
     ))  # fmt: skip
 
 

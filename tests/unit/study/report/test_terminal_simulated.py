@@ -35,9 +35,7 @@ def study() -> SimulatedStudy:
     choice = np.array([[0, 1, 1, 0, 1, 2, 2]] * 2)
     number = np.array([np.arange(7)] * 2)
     felt, times = number >= 0, 1.0 * number
-    return study_of(
-        Matches(tables, 5, display, stimulus, choice, number, felt, times, np.array([0, 0]))
-    )
+    return study_of(Matches(tables, 5, display, stimulus, choice, number, felt, times))
 
 
 def test_each_display_has_its_answers_and_what_is_felt() -> None:

@@ -13,7 +13,7 @@ from scipy import stats
 from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.perceived import Perceived
 from squeezefilm.physics.perception.senses import Candidates
-from squeezefilm.study.simulated.participants import SimulatedPeople, finger_of
+from squeezefilm.study.simulated.participants import SimulatedPeople
 from squeezefilm.study.simulated.recalled import assumed, difference, recalled_distances
 
 OBSERVER = dataclasses.replace(load_observer(), candidates=1)
@@ -86,9 +86,8 @@ def test_nobody_depends_on_how_many_there_are() -> None:
     assert np.array_equal(few, many[:3])
 
 
-def test_who_has_which_finger_is_known_again() -> None:
+def test_everybody_has_noise_in_each_direction() -> None:
     people = SimulatedPeople.drawn(OBSERVER, 6, 3, 11, 1, 2)
-    assert [finger_of(60 + k, 6, 11) for k in range(60)] == people.finger.tolist()
     assert people.noise.shape == (3, 2, 60, 2, OBSERVER.candidates)
 
 
