@@ -42,7 +42,7 @@ class DirichletParticipants:
 
 def distinction(counts: IntArray, first: int, second: int) -> float:
     """p of the test over people that they tell two stimuli apart."""
-    return above_0(distinction_scores(counts, first, second))[1]
+    return above_0(distinction_scores(counts, first, second))
 
 
 def even_errors(proportion_correct: float, stimuli: int = 5) -> np.ndarray:

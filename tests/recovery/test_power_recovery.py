@@ -104,7 +104,7 @@ def significant(task: str, closer: float, studies: int, seed: int) -> float:
     else:
         answers = simulate_judgements(design, PEOPLE, people, seed, felt)
         scores = planned_power.pair_scores(answers, first, second)
-    return float(np.mean([above_0(one)[1] < 0.05 for one in scores.reshape(studies, SIZE)]))
+    return float(np.mean([above_0(one) < 0.05 for one in scores.reshape(studies, SIZE)]))
 
 
 def planned(task: str, studies: int, pool: int, patch: pytest.MonkeyPatch) -> float:

@@ -26,14 +26,13 @@ ParticipantSimulator = Callable[[int, np.random.Generator], NDArray[Any]]
 whose first axis is theirs; all randomness from the generator."""
 
 
-def above_0(scores: si.FloatArray) -> tuple[si.Dimensionless, si.Dimensionless]:
-    """t and p of Student's one-sided test that people's mean score is above 0; p is 1 where all
-    have 0, and 0 where all have the same above it, with t NaN."""
+def above_0(scores: si.FloatArray) -> si.Dimensionless:
+    """p of Student's one-sided test that people's mean score is above 0; 1 where all have 0, and 0
+    where all have the same above it."""
     people, mean, spread = scores.size, float(scores.mean()), float(scores.std(ddof=1))
     if spread == 0.0:
-        return float("nan"), 0.0 if mean > 0 else 1.0
-    t = float(mean / spread * np.sqrt(people))
-    return t, float(stats.t.sf(t, people - 1))
+        return 0.0 if mean > 0 else 1.0
+    return float(stats.t.sf(mean / spread * np.sqrt(people), people - 1))
 
 
 def distinction_scores(counts: ArrayLike, first: int, second: int) -> si.DimensionlessArray:
@@ -57,14 +56,15 @@ def distinction_scores(counts: ArrayLike, first: int, second: int) -> si.Dimensi
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PowerCurve:
-    """Power against the number of people; arrays of shape (numbers,).
+    """Power against the number of people, or the share of studies that are precise enough; arrays
+    of shape (numbers,).
 
     Attributes:
         participants: numbers of people simulated, rising.
-        power: share of simulated studies with p below `alpha`.
+        power: share of simulated studies with p below `alpha`, or that are precise enough.
         low, high: 95 % Clopper–Pearson bounds of it, from the finite number of studies.
         studies: simulated per number.
-        alpha: of the test.
+        alpha: of the test, or what the intervals leave out.
         target: power asked for.
         needed: fewest people from which on every number simulated reaches the target; None if the
             greatest does not.
@@ -113,13 +113,24 @@ def power_curve(
     require_within(STUDIES, studies, "studies")
     si.require("alpha", alpha, above=0.0, below=1.0)
     si.require("target", target, above=0.0, below=1.0)
-    shares = []
+    counts = []
     for done, people in enumerate(sizes):
-        shares.append(_significant(simulate, test, people, studies, alpha, seed))
+        counts.append(_significant(simulate, test, people, studies, alpha, seed))
         if progress is not None:
             progress(done + 1, len(sizes))
-    bounds = [proportion_interval(number, studies, method="Clopper–Pearson") for number in shares]
-    power = np.array(shares) / studies
+    return curve_of(sizes, counts, studies, alpha, target)
+
+
+def curve_of(
+    sizes: tuple[int, ...],
+    counts: list[int],
+    studies: int,
+    alpha: si.Dimensionless,
+    target: si.Dimensionless,
+) -> PowerCurve:
+    """The curve of so many studies of each size, out of `studies`."""
+    bounds = [proportion_interval(count, studies, method="Clopper–Pearson") for count in counts]
+    power = np.array(counts) / studies
     low, high = np.array([b.low for b in bounds]), np.array([b.high for b in bounds])
     return PowerCurve(
         np.array(sizes),

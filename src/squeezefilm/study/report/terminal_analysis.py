@@ -23,7 +23,7 @@ from squeezefilm.study.report.words import (
 from squeezefilm.study.tasks.findings import PARTS, TaskAnalysis
 
 if TYPE_CHECKING:
-    from squeezefilm.core.quantities import DimensionlessArray, IntArray
+    from squeezefilm.study.identification.power import PowerCurve
     from squeezefilm.study.simulated.answers import SimulatedStudy
     from squeezefilm.study.simulated.planned_power import Planned, PlannedPower
     from squeezefilm.study.simulated.planned_precision import PlannedPrecision
@@ -63,9 +63,7 @@ def show_power(power: PlannedPower) -> None:
         where, sides, own = f" by {power.design}", "Two-sided", f"difference of {power.measure}"
     heading(console, f"{power.first} against {power.second}{where}, SIMULATED")
     head = ("people", "studies that find it", "95 % bounds of the simulation")
-    table(
-        console, head, _by_size(curve.participants, curve.power, curve.low, curve.high), fixed=(0,)
-    )
+    table(console, head, _by_size(curve), fixed=(0,))
     if curve.needed is None:
         console.print(f"{curve.participants[-1]} people do not reach {100 * curve.target:.0f} %.")
     else:
@@ -79,23 +77,22 @@ def show_power(power: PlannedPower) -> None:
 
 def show_precision(precision: PlannedPrecision) -> None:
     """Print how many people make an answer precise."""
-    console = plain_console()
+    console, curve = plain_console(), precision.curve
     scale, unit = (100, " %") if precision.measure in PARTS else (1, "")
     wanted = f"± {scale * precision.precision:g}{unit}"
     heading(console, f"{precision.measure} of {precision.design} on {precision.display}, SIMULATED")
     head = ("people", f"studies within {wanted}", "95 % bounds", "intervals that hold the value")
-    rows = _by_size(precision.participants, precision.reached, precision.low, precision.high)
     held = [f"{100 * share:.0f} %" for share in precision.held]
-    with_held = [(*row, share) for row, share in zip(rows, held, strict=True)]
-    table(console, head, with_held, fixed=(0,))
-    target = f"{100 * precision.target:.0f} % of the studies"
-    if precision.needed is None:
-        console.print(f"{precision.participants[-1]} people do not give it in {target}.")
+    rows = [(*row, share) for row, share in zip(_by_size(curve), held, strict=True)]
+    table(console, head, rows, fixed=(0,))
+    target = f"{100 * curve.target:.0f} % of the studies"
+    if curve.needed is None:
+        console.print(f"{curve.participants[-1]} people do not give it in {target}.")
     else:
-        console.print(f"{precision.needed} people give it in {target}.")
+        console.print(f"{curve.needed} people give it in {target}.")
     # Beyond what so many studies scatter.
-    scatter = 2 * (0.95 * 0.05 / precision.studies) ** 0.5
-    short = precision.participants[precision.held < 0.95 - scatter]
+    scatter = 2 * (0.95 * 0.05 / curve.studies) ** 0.5
+    short = curve.participants[precision.held < 0.95 - scatter]
     if short.size:
         normal = "normal in the logarithm" if precision.measure in PARTS else "normal"
         console.print(
@@ -105,17 +102,18 @@ def show_precision(precision: PlannedPrecision) -> None:
             highlight=False,
         )
     console.print(
-        f"The people's own value is {precision.truth:.3g}; "
-        f"{_rests_on(precision, precision.studies)}",
+        f"The people's own value is {precision.truth:.3g}; {_rests_on(precision, curve.studies)}",
         highlight=False,
     )
 
 
-def _by_size(people: IntArray, *shares: DimensionlessArray) -> list[tuple[str, str, str]]:
+def _by_size(curve: PowerCurve) -> list[tuple[str, str, str]]:
     """Rows of people, share of the studies and its bounds."""
     return [
         (f"{size}", f"{100 * share:.0f} %", f"{100 * low:.0f} to {100 * high:.0f} %")
-        for size, share, low, high in zip(people, *shares, strict=True)
+        for size, share, low, high in zip(
+            curve.participants, curve.power, curve.low, curve.high, strict=True
+        )
     ]
 
 

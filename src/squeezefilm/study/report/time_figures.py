@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from squeezefilm.core.quantities import DimensionlessArray, IntArray
     from squeezefilm.study.identification.power import PowerCurve
     from squeezefilm.study.psychometric.fit import PsychometricFit
     from squeezefilm.study.simulated.planned_precision import PlannedPrecision
@@ -48,12 +47,17 @@ def response_times(analysis: StudyAnalysis) -> Figure:
     return figure
 
 
-def _by_people(axes: Axes, people: IntArray, *shares: DimensionlessArray) -> None:
-    """Shares of studies with their bounds against the number of people."""
-    share, low, high = (100 * part for part in shares)
+def _by_people(figure: Figure, curve: PowerCurve, said: str) -> Axes:
+    """Shares of studies with their bounds against the number of people, and how many are needed."""
+    axes, people, share = figure.subplots(), curve.participants, 100 * curve.power
     axes.plot(people, share, color=style.BLUE, lw=1.3)
-    axes.vlines(people, low, high, **style.INTERVAL)
+    axes.vlines(people, 100 * curve.low, 100 * curve.high, **style.INTERVAL)
     axes.plot(people, share, **style.ESTIMATE)
+    axes.axhline(100 * curve.target, color=style.ORANGE, lw=1.1, ls=(0, (4, 2)))
+    if curve.needed is not None:
+        axes.axvline(curve.needed, color=style.ORANGE, lw=1.1, ls=(0, (1.4, 1.2)))
+    axes.set(xlabel="participants", ylabel=said, xlim=(0, None), ylim=(0, 103))
+    return axes
 
 
 @style.drawn
@@ -72,35 +76,28 @@ def power(curve: PowerCurve) -> Figure:
         "are 95 % Clopper–Pearson bounds of the simulation",
         4.0,
     )
-    axes = figure.subplots()
-    _by_people(axes, curve.participants, curve.power, curve.low, curve.high)
-    axes.axhline(100 * curve.target, color=style.ORANGE, lw=1.1, ls=(0, (4, 2)))
-    if needed is not None:
-        axes.axvline(needed, color=style.ORANGE, lw=1.1, ls=(0, (1.4, 1.2)))
-    axes.set(xlabel="participants", ylabel="studies that find it (%)")
-    axes.set(xlim=(0, None), ylim=(0, 103))
+    _by_people(figure, curve, "studies that find it (%)")
     return figure
 
 
 @style.drawn
 def precision(found: PlannedPrecision) -> Figure:
     """Share of studies that are precise enough against the number of people."""
+    curve = found.curve
     wanted = f"± {100 * found.precision:g} %" if found.measure in PARTS else ""
     wanted = wanted or f"± {found.precision:g}"
-    said = f"{found.needed} people give the {found.measure} within {wanted}"
-    if found.needed is None:
-        said = f"{int(found.participants[-1])} people do not give the {found.measure} to {wanted}"
+    said = f"{curve.needed} people give the {found.measure} within {wanted}"
+    if curve.needed is None:
+        said = f"{int(curve.participants[-1])} people do not give the {found.measure} to {wanted}"
     figure = style.new_figure(
-        f"{said} in {100 * found.target:g} % of studies",
-        f"simulated studies, {found.studies} per size; bars are 95 % Clopper–Pearson bounds of the "
-        "simulation; dashed: intervals that hold the value of all people (95 % are promised)",
+        f"{said} in {100 * curve.target:g} % of studies",
+        f"simulated studies, {curve.studies} per size; bars are 95 % Clopper–Pearson bounds of the "
+        "simulation; dotted: intervals that hold the value of all people (95 % are promised)",
         4.0,
     )
-    axes = figure.subplots()
-    _by_people(axes, found.participants, found.reached, found.low, found.high)
-    axes.plot(found.participants, 100 * found.held, color=style.ORANGE, ls=(0, (4, 2)), lw=1.1)
+    axes = _by_people(figure, curve, "studies (%)")
+    axes.plot(curve.participants, 100 * found.held, color=style.MUTED, ls=":", lw=1.1)
     axes.axhline(95, **style.GUIDE)
-    axes.set(xlabel="participants", ylabel="studies (%)", xlim=(0, None), ylim=(0, 103))
     return figure
 
 

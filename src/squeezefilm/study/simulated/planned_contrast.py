@@ -104,5 +104,4 @@ def within_people(answers: Answers) -> tuple[str, si.FloatArray]:
 def otherwise_than_0(scores: NDArray[Any]) -> float:
     """p of Student's two-sided test of people's mean; 1 where all are 0, 0 where all have the same
     other value."""
-    _, p = above_0(scores if scores.mean() >= 0.0 else -scores)
-    return min(2.0 * p, 1.0)
+    return min(2.0 * above_0(scores if scores.mean() >= 0.0 else -scores), 1.0)

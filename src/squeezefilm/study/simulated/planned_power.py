@@ -174,7 +174,7 @@ def planned_power(asked: PairAsked) -> PlannedPower:
         origin="simulated",
         first=first,
         second=second,
-        curve=asked.power(scores, lambda drawn: above_0(drawn)[1], asked.alpha),
+        curve=asked.power(scores, above_0, asked.alpha),
         difference=float(scores.mean()),
         measure="score",
     )

@@ -17,8 +17,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept
-from squeezefilm.study.identification.power import first_lasting, sizes_of
-from squeezefilm.study.identification.proportions import proportion_interval
+from squeezefilm.study.identification.power import PowerCurve, curve_of, sizes_of
 from squeezefilm.study.psychometric.estimate import t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.answers import answers_of
@@ -45,32 +44,21 @@ Interval = Callable[[si.IntArray], Ends]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PlannedPrecision(Planned):
-    """Precision against the number of people; arrays of shape (numbers,).
+    """Precision against the number of people.
 
     Attributes:
         measure: "Weber fraction", "threshold", "exponent" or "proportion correct".
         precision: half the interval asked for: of one of `PARTS` in parts of it, else absolute.
         truth: the value of all simulated people.
-        participants: numbers of people.
-        reached: share of studies whose interval is that narrow, with `low` and `high`, its 95 %
-            Clopper–Pearson bounds from the finite number of studies.
-        held: share whose interval holds `truth`.
-        target: share asked for.
-        needed: fewest people that reach it, and all larger numbers too; None if none does.
-        studies: simulated per number.
+        curve: share of the studies whose interval is that narrow, against the number of people.
+        held: share whose interval holds `truth`, shape (numbers,).
     """
 
     measure: str
     precision: si.Dimensionless
     truth: float
-    participants: si.IntArray
-    reached: si.DimensionlessArray
-    low: si.DimensionlessArray
-    high: si.DimensionlessArray
+    curve: PowerCurve
     held: si.DimensionlessArray
-    target: si.Dimensionless
-    needed: int | None
-    studies: int
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,16 +116,14 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
         holds = [low <= truth <= high for _, low, high in each]
         return float(np.mean([precise(ends) for ends in each])), float(np.mean(holds))
 
-    reached, held = np.zeros(len(sizes)), np.zeros(len(sizes))
-    bounds = []
-    for at, size in enumerate(sizes):
+    counts, held = [], []
+    for size in sizes:
         asked.tell(f"studies of {size} people")
-        reached[at], held[at] = _SHARES.found(
+        reached, holds = _SHARES.found(
             f"{of_people} {precision} {studies} {size}", functools.partial(shares, size)
         )
-        bounds.append(
-            proportion_interval(round(reached[at] * studies), studies, method="Clopper–Pearson")
-        )
+        counts.append(round(reached * studies))
+        held.append(holds)
     return PlannedPrecision(
         design=asked.design.name,
         display=alone.displays[0],
@@ -148,14 +134,8 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
         measure=measure,
         precision=precision,
         truth=truth,
-        participants=np.array(sizes),
-        reached=reached,
-        low=np.array([bound.low for bound in bounds]),
-        high=np.array([bound.high for bound in bounds]),
-        held=held,
-        target=asked.target,
-        needed=first_lasting(sizes, reached >= asked.target),
-        studies=studies,
+        curve=curve_of(sizes, counts, studies, 0.05, asked.target),
+        held=np.array(held),
     )
 
 

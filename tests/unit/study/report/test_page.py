@@ -137,11 +137,12 @@ def test_more_or_fewer_people_than_were_simulated_are_needed() -> None:
 @pytest.mark.parametrize("measure", ["Weber fraction", "exponent"])
 def test_precision_says_how_many_people_give_it(measure: str, needed: int | None) -> None:
     reached = np.array([0.2, 0.9])
-    found: Any = SimpleNamespace(
-        precision=0.1, measure=measure, needed=needed, target=0.8, studies=40,
-        participants=np.array([4, 12]), reached=reached, low=reached - 0.1, high=reached + 0.05,
-        held=np.array([0.94, 0.96]),
+    curve = SimpleNamespace(
+        needed=needed, target=0.8, studies=40, participants=np.array([4, 12]), power=reached,
+        low=reached - 0.1, high=reached + 0.05,
     )  # fmt: skip
+    held = np.array([0.94, 0.96])
+    found: Any = SimpleNamespace(precision=0.1, measure=measure, curve=curve, held=held)
     figure = study_time_figures.precision(found)
     said = words(figure.get_suptitle())
     within = "± 10 %" if measure == "Weber fraction" else "± 0.1"

@@ -73,15 +73,15 @@ def test_more_people_are_more_precise(design: Any) -> None:
     found = planned_precision(
         design, EXACT, 0.15, participants=(2, 12, 40), studies=20, people=60, seed=1
     )
-    assert found.reached[0] <= found.reached[1] <= found.reached[2]
-    assert np.all(found.low <= found.reached)
+    assert found.curve.power[0] <= found.curve.power[1] <= found.curve.power[2]
+    assert np.all(found.curve.low <= found.curve.power)
     assert np.all(found.held > 0.8)
     data = found.summary()
     assert data["origin"] == "simulated"
     again = planned_precision(
         design, EXACT, 0.15, participants=(2, 12, 40), studies=20, people=60, seed=1
     )
-    assert again.reached.tolist() == found.reached.tolist()
+    assert again.curve.power.tolist() == found.curve.power.tolist()
 
 
 def test_intervals_that_hold_too_seldom_are_named(capsys: pytest.CaptureFixture[str]) -> None:
@@ -135,6 +135,6 @@ def test_scores_are_nought_of_people_who_cannot_tell() -> None:
         ALIKE, sharp, 20, 2, dataclasses.replace(tables(ALIKE), observer=sharp)
     )
     assert pair_scores(seen, "4 mm", "6 mm").mean() > 0.5
-    assert above_0(np.zeros(4))[1] == 1.0
-    assert above_0(np.full(4, 0.5))[1] == 0.0
-    assert above_0(np.array([1.0, 2.0, 3.0]))[1] == pytest.approx(0.0371, abs=1e-3)
+    assert above_0(np.zeros(4)) == 1.0
+    assert above_0(np.full(4, 0.5)) == 0.0
+    assert above_0(np.array([1.0, 2.0, 3.0])) == pytest.approx(0.0371, abs=1e-3)
