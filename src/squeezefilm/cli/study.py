@@ -1,6 +1,5 @@
 """Verbs of the lab, and of a study up to its answers: plan, simulate, rehearse, run."""
 
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
@@ -138,14 +137,6 @@ def presets(as_json: AsJson = False) -> None:
             typer.echo(f"{entry['name']}: {entry['title']}")
 
 
-def drawing_by_two(out: Path | None) -> AbstractContextManager[object]:
-    """A second process that draws its share of the pages in `out`; none where nothing is drawn."""
-    from squeezefilm.core.second_process import second_process
-    from squeezefilm.study.report.simulated_page import load_drawing
-
-    return nullcontext() if out is None else second_process(load_drawing)
-
-
 @study.command()
 def simulate(
     design: Design,
@@ -172,7 +163,7 @@ def simulate(
         from squeezefilm.study.simulated.planned_power import on_one_display
 
         planned = on_one_display(planned, display)
-    with drawing_by_two(out), working(as_json) as step:
+    with working(as_json) as step:
         tables = chain_tables(planned, people, finger=finger, progress=step)
         found = simulate_participants(planned, people, participants, seed, tables, step)
         written = None

@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from squeezefilm.cli.app import AsJson, print_json, working, written_to
-from squeezefilm.cli.study import Store, drawing_by_two, study
+from squeezefilm.cli.study import Store, study
 
 
 @study.command()
@@ -126,7 +126,7 @@ def analyze(
             f"{store} is analysed as answers of another program; say to which study they were "
             "given by --design NAME|FILE"
         )
-    with drawing_by_two(out), working(as_json) as step:
+    with working(as_json) as step:
         analyses = analyze_study(
             store,
             design=None if design is None else load_design(design),

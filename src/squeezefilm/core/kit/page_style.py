@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import zip_longest
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core.kit import read_out, style
 from squeezefilm.core.kit.numbers import printable, unit_stays
@@ -219,15 +219,7 @@ def picture_files(figures: Mapping[str, tuple[str, Figure]]) -> dict[str, str | 
     return {f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()}
 
 
-class Titled(Protocol):
-    """A figure, or what is left of it once it is drawn."""
-
-    def get_suptitle(self) -> str:
-        """The message at its top."""
-        ...
-
-
-def picture_sections(figures: Mapping[str, tuple[str, Titled]]) -> str:
+def picture_sections(figures: Mapping[str, tuple[str, Figure]]) -> str:
     """A section for each picture NAME.png beside the page: its heading; its message is read out."""
     return "".join(
         section(

@@ -12,12 +12,12 @@ from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.kit.page_style import (
     FigureOf,
-    Titled,
     as_html,
     bullets,
     drawn_figures,
     links,
     page,
+    picture_files,
     picture_sections,
     section,
     stamped,
@@ -26,7 +26,6 @@ from squeezefilm.core.kit.page_style import (
 from squeezefilm.study.report import figures as draw
 from squeezefilm.study.report import task_figures
 from squeezefilm.study.report import time_figures as times
-from squeezefilm.study.report.pictures import pictures, png_files
 from squeezefilm.study.report.words import (
     PERSON_HEAD,
     SCREENING_HEAD,
@@ -83,8 +82,8 @@ def write_study(
     tell = progress or (lambda _: None)
     folder = require_folder(folder)
     tell("figures")
-    figures = pictures(drawing, _figures_of(analysis), analysis, "study-")
-    files = png_files(figures)
+    figures = drawn_figures(_figures_of(analysis), analysis, "study-")
+    files = picture_files(figures)
     summary = analysis.summary()
     files[_numbers_file(analysis)] = json_text(summary)
     files["index.html"] = study_page(analysis, figures, summary["provenance"])
@@ -135,11 +134,6 @@ def study_figures(analysis: StudyAnalysis) -> dict[str, tuple[str, Figure]]:
     return drawn_figures(_figures_of(analysis), analysis)
 
 
-def drawing(analysis: StudyAnalysis, key: str) -> Figure:
-    """The figure of a study's analysis of that key."""
-    return next(figure for figure in _figures_of(analysis) if figure.key == key).draw(analysis)
-
-
 def _figures_of(analysis: StudyAnalysis) -> tuple[FigureOf, ...]:
     return TASK_FIGURES if isinstance(analysis, TaskAnalysis) else FIGURES
 
@@ -150,7 +144,7 @@ def _numbers_file(analysis: StudyAnalysis) -> str:
 
 def study_page(
     analysis: StudyAnalysis,
-    figures: Mapping[str, tuple[str, Titled]],
+    figures: Mapping[str, tuple[str, Figure]],
     provenance: dict[str, Any],
 ) -> str:
     """The page as text; `figures` lie beside it, by the names of their files."""

@@ -120,11 +120,3 @@ def evidence_rows(tables: ChainTables, index: int) -> tuple[tuple[str, ...], lis
             cells += [f"{strength:.2f}", shown(length, M, 3)] if strength > 0 else ["0", "–"]
         rows.append(tuple(cells))
     return head, rows
-
-
-def load_drawing() -> None:
-    """Load what drawing takes, in a program, before there is anything to draw."""
-    import matplotlib.backends.backend_agg
-    import matplotlib.figure  # noqa: F401
-
-    from squeezefilm.study.report import page  # noqa: F401
