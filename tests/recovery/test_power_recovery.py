@@ -23,7 +23,7 @@ from squeezefilm.study.identification.power import above_0, distinction_scores
 from squeezefilm.study.simulated import planned_contrast, planned_power
 from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.judgements import simulate_judgements
-from squeezefilm.study.simulated.participants import simulate_matches
+from squeezefilm.study.simulated.participants import match_counts, simulate_matches
 
 PEOPLE = dataclasses.replace(load_observer(), finger_classes=1, candidates=1)
 _ALIKE = dataclasses.replace(
@@ -98,7 +98,7 @@ def significant(task: str, closer: float, studies: int, seed: int) -> float:
     felt = tables(design, (first, second), closer)
     people = studies * SIZE
     if task == "match-to-sample":
-        counts = simulate_matches(design, PEOPLE, people, seed, felt).participant_counts()
+        counts = match_counts(simulate_matches(design, PEOPLE, people, seed, felt))
         a, b = (design.stimuli.index(design.stimulus(name)) for name in (first, second))
         scores = distinction_scores(counts, a, b)
     else:

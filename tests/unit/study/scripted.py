@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
@@ -17,7 +20,9 @@ from squeezefilm.study.conduct.study_device import (
 from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.design.special_trials import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.record.store import StudyStore
+from squeezefilm.study.simulated.participants import right_answers
 
 LOUD = Exposure("biet2008-plate", 33e3, 0.5, 124.0, 1200.0, 100.0, "somebody 1984", "estimated")
 CONSENT = SessionConditions(consent=True, room="quiet room")
@@ -141,3 +146,20 @@ def run_through(path: Path, design: StudyDesign, people: int = 2, seed: int = 7)
         while any(p["uuid"] == who and p["answered"] < p["planned"] for p in store.participants()):
             conduct(session(store, who), NoDevice(), Script())
     return store
+
+
+def matched(
+    design: StudyDesign, display: Any, stimulus: Any, choice: Any, number: Any, times: Any
+) -> Answers:
+    """Simulated matches, each of shape (people, trials)."""
+    people, asked = choice.shape
+    nothing = np.full(choice.size, np.nan)
+    return Answers(
+        design=design, origin="simulated",
+        people=tuple(f"simulated-{person + 1}" for person in range(people)),
+        surfaces=design.stimuli, participant=np.repeat(np.arange(people), asked),
+        number=number.ravel() + 1, phase=np.full(choice.size, "main"), display=display.ravel(),
+        series=np.full(choice.size, -1), presented=stimulus.reshape(1, -1), intensity=nothing,
+        choice=choice.ravel(), right=right_answers(design)[stimulus.ravel()], estimate=nothing,
+        response_time=times.ravel(),
+    )  # fmt: skip

@@ -104,7 +104,7 @@ def _responses(study: SimulatedStudy, person: int) -> dict[int, Response]:
     for at in np.flatnonzero(mine):
         number = int(answers.number[at])
         # What was matched is numbered among the trials that ask.
-        number = number if study.matches is None else asked[number - 1]
+        number = asked[number - 1] if study.is_matching else number
         estimate = float(answers.estimate[at])
         responses[number] = Response(
             choice=names[answers.choice[at]] if answers.choice[at] >= 0 else "",

@@ -90,7 +90,7 @@ def _seen(study: SimulatedStudy, index: int) -> str:
     tables = study.tables
     heading = f"What is felt on {escape(printable(tables.design.displays[index]))}"
     felt = text_table(evidence_said(tables), *evidence_rows(tables, index))
-    if study.matches is None:
+    if not study.is_matching:
         return section(heading, felt)
     right = 100 * study.proportion_correct(index)
     caption = "Simulated answers, per cent of each column; in brackets trials"

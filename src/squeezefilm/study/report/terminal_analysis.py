@@ -127,11 +127,11 @@ def _rests_on(planned: Planned, studies: int) -> str:
 def show_simulated(study: SimulatedStudy) -> None:
     """Print each display's answers, or what their analysis says, and what is felt."""
     console = plain_console()
-    if study.matches is None:
+    if not study.is_matching:
         show_analyses(study.analyses)
         console.print("SIMULATED: nobody answered. What that assumes stands below.")
     for index, name in enumerate(study.tables.design.displays):
-        if study.matches is None:
+        if not study.is_matching:
             heading(console, f"{name}: what is felt of each stimulus")
         else:
             heading(

@@ -20,9 +20,8 @@ from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.record.tables import SURFACES, columns_of
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.participants import (
-    Matches,
+    match_counts,
     require_people,
-    right_answers,
     simulate_matches,
 )
 from squeezefilm.study.simulated.recalled import assumed
@@ -40,13 +39,11 @@ class SimulatedStudy(Result):
         answers: every trial that asks, practice and catch trials too; of match-to-sample the main
             trials, numbered among those that ask.
         seed: of orders, people and noise.
-        matches: what was matched, in match-to-sample; else None.
     """
 
     tables: ChainTables
     answers: Answers
     seed: int
-    matches: Matches | None = None
     _shown: ClassVar[str] = "tables.design.name tables.observer.name participants seed"
 
     @property
@@ -61,30 +58,40 @@ class SimulatedStudy(Result):
         from squeezefilm.study.tasks.analyze import analyze_answers
 
         design = self.tables.design
-        about = assumed(design) if self.matches is None else ()
+        about = () if self.is_matching else assumed(design)
         try:
             return analyze_answers(self.answers, design.name, assumed=about, seed=self.seed)
         except InputError:
-            if self.matches is None:
-                raise
-            return {}
+            if self.is_matching:
+                return {}
+            raise
 
     def confusion(self, display: int = 0) -> ConfusionMatrix:
         """The confusion matrix on a display: rows gratings, columns simulated periods.
 
         Raises `InputError` for another task than match-to-sample.
         """
-        return self._matched().confusion(display)
+        self._require_matching()
+        design = self.tables.design
+        names = tuple(stimulus.name for stimulus in design.stimuli)
+        counts = match_counts(self.answers, display).sum(axis=0)
+        return ConfusionMatrix(counts, design.answers, names)
 
     def proportion_correct(self, display: int = 0) -> si.Dimensionless:
         """Share of right matches on a display (1). Raises as `confusion` does."""
-        return self._matched().proportion_correct(display)
+        self._require_matching()
+        main = self.answers.main(display)
+        return float(np.mean(main.choice == main.right))
 
-    def _matched(self) -> Matches:
-        if self.matches is None:
+    @property
+    def is_matching(self) -> bool:
+        """True of match-to-sample, which has confusions."""
+        return self.tables.design.task == "match-to-sample"
+
+    def _require_matching(self) -> None:
+        if not self.is_matching:
             task = self.tables.design.task
             raise InputError(f"task = '{task}' has no confusions; its `analyses` say what it has")
-        return self.matches
 
     def summary(self) -> dict[str, Any]:
         """Mapping of plain JSON values; keys carry units."""
@@ -102,8 +109,8 @@ class SimulatedStudy(Result):
         }
 
     def _by_display(self) -> dict[str, Any]:
-        matches, names = self.matches, self.tables.design.displays
-        if matches is None:
+        names = self.tables.design.displays
+        if not self.is_matching:
             analysed = {name: analysis.summary() for name, analysis in self.analyses.items()}
             return {"displays": analysed}
         matrices = {name: self.confusion(index) for index, name in enumerate(names)}
@@ -124,9 +131,8 @@ class SimulatedStudy(Result):
                     "confusion": counts[name],
                     "confusion_percent": np.round(matrices[name].percent, 3).tolist(),
                     "proportion_correct": right[name],
-                    "nothing_felt": float(np.mean(~matches.felt[matches.display == index])),
                 }
-                for index, name in enumerate(names)
+                for name in names
             },
         }
 
@@ -188,40 +194,10 @@ def simulate_participants(
     if chain.design != design or chain.observer != observer:
         raise InputError("the tables are of another design or observer; leave them out")
     if design.task == "match-to-sample":
-        return study_of(simulate_matches(design, observer, participants, seed, chain))
+        matched = simulate_matches(design, observer, participants, seed, chain)
+        return SimulatedStudy(chain, matched, seed)
     # Its psychometric functions are compiled, which a match-to-sample study need not wait for.
     from squeezefilm.study.simulated.judgements import simulate_judgements
 
     answers = simulate_judgements(design, observer, participants, seed, chain, progress)
     return SimulatedStudy(chain, answers, seed)
-
-
-def study_of(matches: Matches) -> SimulatedStudy:
-    """The study that people matched in."""
-    return SimulatedStudy(matches.tables, answers_of(matches), matches.seed, matches)
-
-
-def answers_of(study: Matches) -> Answers:
-    """Matches of people in main trials, as analyses take them."""
-    design = study.tables.design
-    asked = study.choice.shape[1]
-    size = study.choice.size
-    nothing: si.FloatArray = np.full(size, np.nan)
-    none = np.full(size, -1, dtype=np.int64)
-    return Answers(
-        design=design,
-        origin="simulated",
-        people=tuple(f"simulated-{person + 1}" for person in range(study.participants)),
-        surfaces=design.stimuli,
-        participant=np.repeat(np.arange(study.participants), asked),
-        number=study.number.ravel() + 1,
-        phase=np.full(size, "main"),
-        display=study.display.ravel(),
-        series=none,
-        presented=study.stimulus.reshape(1, -1),
-        intensity=nothing,
-        choice=study.choice.ravel(),
-        right=right_answers(design)[study.stimulus.ravel()],
-        estimate=nothing,
-        response_time=study.response_time.ravel(),
-    )

@@ -24,64 +24,13 @@ from squeezefilm.physics.perception.perceived import perceived_anew
 from squeezefilm.physics.perception.senses import Candidates, percept_deviation
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
-from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
+from squeezefilm.study.identification.confusion import participant_counts
+from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.recalled import recalled_distances
 
 _MOST_PEOPLE = 1_000_000
 _STREAM = 29
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Matches:
-    """Matches of simulated participants in main trials; arrays of shape (participants, trials).
-
-    Attributes:
-        tables: the chain behind them.
-        seed: of orders, people and noise.
-        display, stimulus: numbers of what was presented, in the design's order.
-        choice: number of the alternative answered.
-        number: of the trial within the participant.
-        felt: whether anything was felt.
-        response_time: (s); assumed.
-    """
-
-    tables: ChainTables
-    seed: int
-    display: si.IntArray
-    stimulus: si.IntArray
-    choice: si.IntArray
-    number: si.IntArray
-    felt: NDArray[np.bool_]
-    response_time: si.SecondArray
-
-    @property
-    def participants(self) -> int:
-        """Number of people."""
-        return int(self.choice.shape[0])
-
-    def participant_counts(self, display: int = 0) -> si.IntArray:
-        """Counts of each person on a display, shape (participants, answers, stimuli)."""
-        design = self.tables.design
-        answers, stimuli = len(design.answers), len(design.stimuli)
-        here = self.display == display
-        who = np.broadcast_to(np.arange(self.participants)[:, None], self.choice.shape)[here]
-        return participant_counts(who, self.stimulus[here], self.choice[here], answers, stimuli)[1]
-
-    def confusion(self, display: int = 0) -> ConfusionMatrix:
-        """The confusion matrix on a display: rows gratings, columns simulated periods."""
-        design = self.tables.design
-        return ConfusionMatrix(
-            self.participant_counts(display).sum(axis=0),
-            design.answers,
-            tuple(stimulus.name for stimulus in design.stimuli),
-        )
-
-    def proportion_correct(self, display: int = 0) -> si.Dimensionless:
-        """Share of right answers on a display (1)."""
-        right = right_answers(self.tables.design)
-        here = self.display == display
-        return float(np.mean(self.choice[here] == right[self.stimulus[here]]))
 
 
 def simulate_matches(
@@ -90,8 +39,9 @@ def simulate_matches(
     participants: int,
     seed: int,
     tables: ChainTables | None = None,
-) -> Matches:
-    """Answers of simulated participants to the main trials of a match-to-sample design.
+) -> Answers:
+    """Answers of simulated participants to the main trials of a match-to-sample design, numbered
+    among those that ask.
 
     A participant's answers depend on the seed and their number alone, not on how many there are.
     Orders are those of `trials`; from the sixty-first person on they repeat. Practice and catch
@@ -123,8 +73,34 @@ def simulate_matches(
         count = min(CHUNK, participants - first)
         random = np.random.default_rng([seed, _STREAM, first // CHUNK])
         chunks.append(_answers(chain, display, stimulus, number, random, count))
-    choice, felt, times = (np.concatenate([chunk[i] for chunk in chunks]) for i in range(3))
-    return Matches(chain, seed, display[rows], stimulus[rows], choice, number[rows], felt, times)
+    asked = display.shape[1]
+    size = participants * asked
+    nothing: si.FloatArray = np.full(size, np.nan)
+    shown = stimulus[rows].ravel()
+    return Answers(
+        design=design,
+        origin="simulated",
+        people=tuple(f"simulated-{person + 1}" for person in range(participants)),
+        surfaces=design.stimuli,
+        participant=np.repeat(np.arange(participants), asked),
+        number=number[rows].ravel() + 1,
+        phase=np.full(size, "main"),
+        display=display[rows].ravel(),
+        series=np.full(size, -1, dtype=np.int64),
+        presented=shown.reshape(1, -1),
+        intensity=nothing,
+        choice=np.concatenate([choice for choice, _ in chunks]).ravel(),
+        right=right_answers(design)[shown],
+        estimate=nothing,
+        response_time=np.concatenate([times for _, times in chunks]).ravel(),
+    )
+
+
+def match_counts(answers: Answers, display: int = 0) -> si.IntArray:
+    """Matches of each person on a display, shape (participants, answers, stimuli)."""
+    main, design = answers.main(display), answers.design
+    names, stimuli = len(design.answers), len(design.stimuli)
+    return participant_counts(main.participant, main.presented[0], main.choice, names, stimuli)[1]
 
 
 def require_people(design: StudyDesign, participants: int, seed: int) -> None:
@@ -170,8 +146,8 @@ def _answers(
     number: si.IntArray,
     random: np.random.Generator,
     count: int,
-) -> tuple[si.IntArray, NDArray[np.bool_], si.SecondArray]:
-    """Choice, whether felt and response time, shape (people, trials).
+) -> tuple[si.IntArray, si.SecondArray]:
+    """Choice and response time, shape (people, trials).
 
     Noise is drawn for a whole chunk whatever `count` is, so that people do not depend on it.
     """
@@ -202,7 +178,7 @@ def _answers(
     times = (observer.response_time + observer.doubt_time * doubt) * np.exp(
         observer.response_time_spread * spread
     )
-    return choice.astype(np.int64), felt, times
+    return choice.astype(np.int64), times
 
 
 def _from_gratings(

@@ -28,7 +28,7 @@ from squeezefilm.study.identification.power import (
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import chain_tables
 from squeezefilm.study.simulated.judgements import simulate_judgements
-from squeezefilm.study.simulated.participants import right_answers, simulate_matches
+from squeezefilm.study.simulated.participants import match_counts, right_answers, simulate_matches
 
 SIZES = (2, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32, 48)
 POOL = 4000
@@ -161,7 +161,7 @@ def planned_power(asked: PairAsked) -> PlannedPower:
         asked.tell(f"{POOL} simulated participants")
         people = alone, asked.observer, POOL, asked.seed, tables
         if design.task == "match-to-sample":
-            return distinction_scores(simulate_matches(*people).participant_counts(), a, b)
+            return distinction_scores(match_counts(simulate_matches(*people)), a, b)
         return pair_scores(simulate_judgements(*people, asked.tell), first, second)
 
     scores = _SCORES.found(f"{tables.asked} {first!r} {second!r} {asked.seed}", simulated)

@@ -20,7 +20,6 @@ from squeezefilm.core.kept.store import Kept
 from squeezefilm.study.identification.power import PowerCurve, curve_of, sizes_of
 from squeezefilm.study.psychometric.estimate import t_interval
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.simulated.answers import answers_of
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import simulate_matches
@@ -146,7 +145,7 @@ def simulated_answers(
     tell(f"{people} simulated participants")
     design, observer = tables.design, tables.observer
     if design.task == "match-to-sample":
-        return answers_of(simulate_matches(design, observer, people, seed, tables))
+        return simulate_matches(design, observer, people, seed, tables)
     return simulate_judgements(design, observer, people, seed, tables, tell)
 
 

@@ -27,10 +27,11 @@ from squeezefilm.study.report.simulated_page import (
     write_simulated,
 )
 from squeezefilm.study.report.words import confusion_rows
-from squeezefilm.study.simulated.answers import SimulatedStudy, study_of
+from squeezefilm.study.simulated.answers import SimulatedStudy
 from squeezefilm.study.simulated.chain_tables import ChainTables
-from squeezefilm.study.simulated.participants import Matches
 from squeezefilm.study.tasks import analyze
+
+from ..scripted import matched
 
 PAPER = load_design("biet2008-gratings")
 # Answers in another order than what is presented; the second display's name tries to be markup.
@@ -50,16 +51,16 @@ def study(design: Any = DESIGN) -> SimulatedStudy:
         virtual=Candidates(PERIODS, STRENGTHS),
         real=Candidates(np.full((1, 2, 1), 2e-3), np.full((1, 2, 1), 3.0)),
     )  # fmt: skip
-    return study_of(Matches(
-        tables=tables, seed=5,
+    answers = matched(
+        design,
         display=np.array([[0, 0, 1, 1], [1, 1, 0, 0]]),
         stimulus=np.array([[0, 1, 0, 1], [1, 0, 1, 0]]),
         # Alternative 1 is the 2 mm of stimulus 0: only the very first answer is wrong.
         choice=np.array([[0, 0, 1, 0], [0, 1, 0, 1]]),
         number=np.array([[0, 1, 2, 3], [0, 1, 2, 3]]),
-        felt=np.array([[True, False, True, True], [True, True, True, True]]),
-        response_time=np.array([[1.5, 2.0, 2.5, 3.0], [0.5, 0.75, 1.0, 1.25]]),
-    ))  # fmt: skip
+        times=np.array([[1.5, 2.0, 2.5, 3.0], [0.5, 0.75, 1.0, 1.25]]),
+    )
+    return SimulatedStudy(tables, answers, 5)
 
 
 @pytest.fixture(scope="module")

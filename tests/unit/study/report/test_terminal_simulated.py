@@ -10,11 +10,10 @@ from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.report.simulated_page import REMARK, evidence_said
 from squeezefilm.study.report.terminal_analysis import show_simulated
-from squeezefilm.study.simulated.answers import SimulatedStudy, study_of
+from squeezefilm.study.simulated.answers import SimulatedStudy
 from squeezefilm.study.simulated.chain_tables import ChainTables
-from squeezefilm.study.simulated.participants import Matches
 
-from ...study.scripted import gratings
+from ...study.scripted import gratings, matched
 
 DESIGN = gratings(displays=("biet2008-plate", "biet2008-stator"))
 NONE = np.zeros(0)
@@ -34,8 +33,8 @@ def study() -> SimulatedStudy:
     stimulus = np.array([[0, 1, 2, 0, 1, 2, 2]] * 2)
     choice = np.array([[0, 1, 1, 0, 1, 2, 2]] * 2)
     number = np.array([np.arange(7)] * 2)
-    felt, times = number >= 0, 1.0 * number
-    return study_of(Matches(tables, 5, display, stimulus, choice, number, felt, times))
+    answers = matched(DESIGN, display, stimulus, choice, number, 1.0 * number)
+    return SimulatedStudy(tables, answers, 5)
 
 
 def test_each_display_has_its_answers_and_what_is_felt() -> None:

@@ -138,9 +138,9 @@ def test_a_simulated_match_has_its_answers_too() -> None:
     period = np.array([one.period for one in alone.stimuli])[None, None, :, None]
     table = dataclasses.replace(tables(alone), real=Candidates(period[0], np.full((1, 5, 1), 1e6)))
     study = simulate_participants(alone, EXACT, 3, 0, table)
-    assert study.matches is not None
     answers = study.answers
-    assert answers.trials == study.matches.choice.size
+    assert study.is_matching
+    assert answers.trials == 3 * alone.most_main_trials
     assert [row["trial"] for row in study.rows()] == answers.number.tolist()
     assert np.nanmean(answers.correct) == pytest.approx(study.proportion_correct())
 

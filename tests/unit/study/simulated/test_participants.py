@@ -14,8 +14,13 @@ from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.study.design.study_design import StudyDesign, load_design
+from squeezefilm.study.simulated.answers import simulate_participants
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.participants import right_answers, simulate_matches
+from squeezefilm.study.simulated.participants import (
+    match_counts,
+    right_answers,
+    simulate_matches,
+)
 
 PERIODS = np.array([0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3])
 DESIGN = dataclasses.replace(load_design("biet2008-gratings"), displays=("biet2008-stator",))
@@ -43,7 +48,7 @@ def tables(d_prime: float, observer: Observer = EXACT, design: StudyDesign = DES
 
 
 def run(d_prime: float, people: int = 600, seed: int = 3, observer: Observer = EXACT):  # type: ignore[no-untyped-def]
-    return simulate_matches(DESIGN, observer, people, seed, tables(d_prime, observer))
+    return simulate_participants(DESIGN, observer, people, seed, tables(d_prime, observer))
 
 
 def test_8_against_10_mm_as_three_independent_percepts_have_it() -> None:
@@ -59,41 +64,34 @@ def test_8_against_10_mm_as_three_independent_percepts_have_it() -> None:
     assert found[0, 0] == 1.0
 
 
-@pytest.mark.parametrize("d_prime", [0.0, 1.0, 2.0])
-def test_how_often_something_is_felt(d_prime: float) -> None:
-    share = ndtr(d_prime - EXACT.detection_criterion)
-    felt = run(d_prime).felt
-    assert felt.mean() == pytest.approx(share, abs=4 * math.sqrt(share * (1 - share) / felt.size))
-
-
 def test_lapses_and_nothing_felt_are_guesses() -> None:
     nothing = run(-np.inf)
-    assert not nothing.felt.any()
     blind = run(1e6, observer=dataclasses.replace(EXACT, lapse_rate=1.0, lapse_spread=0.0))
     for study in (nothing, blind):
-        error = math.sqrt(0.16 / study.choice.size)
+        error = math.sqrt(0.16 / study.answers.trials)
         assert study.proportion_correct() == pytest.approx(0.2, abs=4 * error)
 
 
 def test_the_seed_gives_the_same_answers_and_people_do_not_depend_on_their_number() -> None:
     few, many, other = run(2.0, 12), run(2.0, 150), run(2.0, 12, seed=4)
-    for name in ("display", "stimulus", "choice", "number", "felt", "response_time"):
-        assert np.array_equal(getattr(few, name), getattr(many, name)[:12])
-    assert not np.array_equal(few.choice, other.choice)
+    first = many.answers.take(many.answers.participant < 12)
+    for name in ("display", "presented", "choice", "number", "response_time"):
+        assert np.array_equal(getattr(few.answers, name), getattr(first, name))
+    assert not np.array_equal(few.answers.choice, other.answers.choice)
 
 
 def test_every_stimulus_comes_as_often_as_designed() -> None:
-    counts = run(2.0, 30).participant_counts()
+    counts = match_counts(run(2.0, 30).answers)
     assert np.all(counts.sum(axis=1) == DESIGN.blocks * DESIGN.repetitions)
 
 
 def test_people_learn_and_doubt_takes_time() -> None:
     slow = dataclasses.replace(EXACT, learning_excess=3.0, learning_trials=5.0)
-    study = run(1e6, observer=slow)
-    right = study.choice == study.stimulus
+    answers = run(1e6, observer=slow).answers
+    right = answers.correct.reshape(len(answers.people), -1)
     assert right[:, :10].mean() < right[:, -10:].mean() - 0.02
-    times = study.response_time
-    assert times[study.stimulus == 4].mean() > times[study.stimulus == 1].mean()
+    times, stimulus = answers.response_time, answers.presented[0]
+    assert times[stimulus == 4].mean() > times[stimulus == 1].mean()
 
 
 def test_right_answers_are_the_designs() -> None:

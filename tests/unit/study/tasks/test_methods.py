@@ -44,7 +44,6 @@ def test_surfaces_that_are_no_gratings_are_named() -> None:
 def test_a_simulated_study_of_another_task_has_no_confusions() -> None:
     study = object.__new__(SimulatedStudy)
     tables = dataclasses.make_dataclass("Tables", ["design"])(load_design("friction-jnd"))
-    object.__setattr__(study, "matches", None)
     object.__setattr__(study, "tables", tables)
     for ask in (study.confusion, study.proportion_correct):
         with pytest.raises(InputError, match="'two-interval' has no confusions"):

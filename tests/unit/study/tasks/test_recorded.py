@@ -18,7 +18,7 @@ from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import SIMULATED, origin_of, trial_table
-from squeezefilm.study.simulated.participants import simulate_matches
+from squeezefilm.study.simulated.answers import simulate_participants
 from squeezefilm.study.tasks.analyze import analyze_study
 
 from ..scripted import CONSENT, Script, gratings, staircase
@@ -55,7 +55,7 @@ def test_a_rehearsal_answers_everything_and_says_that_nobody_did(tmp_path: Path)
         assert all(one["planned"] == one["answered"] for one in store.participants())
         assert {one["uuid"] for one in store.participants()} == set(people)
         (found,) = analyze_study(store, resamples=50).values()
-        expected = simulate_matches(design, observer, 2, 4).confusion(0)
+        expected = simulate_participants(design, observer, 2, 4).confusion(0)
     assert found.origin == SIMULATED
     assert np.array_equal(found.matrix.counts, expected.counts)
     with StudyStore.create(tmp_path / "p.sqlite", design, 4) as store:
