@@ -19,9 +19,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.psychometric import kernel
 
-Shape = Literal[
-    "logistic", "gaussian", "gumbel", "reversed-gumbel", "hyperbolic-secant", "weibull", "quick"
-]
+Shape = Literal["logistic", "gaussian", "gumbel", "weibull"]
 Axis = Literal["linear", "log"]
 
 SHAPES: tuple[Shape, ...] = get_args(Shape)
@@ -31,11 +29,8 @@ _CODES: dict[Shape, int] = {
     "logistic": kernel.LOGISTIC,
     "gaussian": kernel.GAUSSIAN,
     "gumbel": kernel.GUMBEL,
-    "reversed-gumbel": kernel.REVERSED_GUMBEL,
-    "hyperbolic-secant": kernel.HYPERBOLIC_SECANT,
-    # With the threshold at ½ Weibull's and Quick's functions are the same, Gumbel's of ln x.
+    # Weibull's function is Gumbel's of ln x; with the threshold at ½ it is Quick's too.
     "weibull": kernel.GUMBEL,
-    "quick": kernel.GUMBEL,
 }
 
 
@@ -43,12 +38,12 @@ def shape_code(shape: Shape, axis: Axis) -> int:
     """The kernel's number of a shape.
 
     Raises:
-        InputError: an unknown shape or axis, or Weibull's or Quick's function, which are
-            defined on a logarithmic axis, on a linear one.
+        InputError: an unknown shape or axis, or Weibull's function, which is defined on a
+            logarithmic axis, on a linear one.
     """
     si.require_one_of("shape", shape, SHAPES)
     si.require_one_of("axis", axis, AXES)
-    if shape in ("weibull", "quick") and axis != "log":
+    if shape == "weibull" and axis != "log":
         raise InputError(
             f"shape = '{shape}' is defined for the logarithm of intensity; give axis = 'log', or "
             "take shape = 'gumbel' for a linear axis",
@@ -75,9 +70,8 @@ class PsychometricFunction:
     """A psychometric function: ψ(x) = γ + (1 − γ − λ) S((x − threshold)/width).
 
     Args:
-        shape: of S: "logistic", "gaussian", "gumbel", "reversed-gumbel", "hyperbolic-secant",
-            and on a logarithmic axis "weibull" or "quick" (the same function, 1 − 2^−(x/m)^β
-            with β = 4.0674/width).
+        shape: of S: "logistic", "gaussian", "gumbel", and on a logarithmic axis "weibull"
+            (1 − 2^−(x/m)^β with β = 4.0674/width).
         threshold: intensity at which S = ½, in the unit of the stimulus.
         width: from S = 5 % to S = 95 %, above 0: in the unit of the stimulus, or on a
             logarithmic axis the natural logarithm of the ratio of the two intensities.
@@ -151,11 +145,7 @@ def _standard_quantile(code: int, share: float) -> float:
     if code == kernel.GAUSSIAN:
         return float(ndtri(share) / (2 * ndtri(1 - tail)))
     reach = np.log(-np.log(tail)) - np.log(-np.log(1 - tail))
-    if code == kernel.GUMBEL:
-        return float((np.log(-np.log1p(-share)) - np.log(np.log(2))) / reach)
-    if code == kernel.REVERSED_GUMBEL:
-        return float(-(np.log(-np.log(share)) - np.log(np.log(2))) / reach)
-    return float(np.log(np.tan(np.pi / 2 * share)) / (2 * np.log(np.tan(np.pi / 2 * (1 - tail)))))
+    return float((np.log(-np.log1p(-share)) - np.log(np.log(2))) / reach)
 
 
 LARGEST_RATE: si.Dimensionless = 0.5

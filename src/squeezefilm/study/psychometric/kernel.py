@@ -15,7 +15,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 
-LOGISTIC, GAUSSIAN, GUMBEL, REVERSED_GUMBEL, HYPERBOLIC_SECANT = range(5)
+LOGISTIC, GAUSSIAN, GUMBEL = range(3)
 THRESHOLD, LOG_WIDTH, LAPSE, GUESS = range(4)
 
 # The share of the rise left out on either side of the width.
@@ -23,7 +23,6 @@ _TAIL = 0.05
 _K_LOGISTIC = 2 * math.log(1 / _TAIL - 1)
 _K_GAUSSIAN = 2 * 1.6448536269514722
 _K_GUMBEL = math.log(-math.log(_TAIL)) - math.log(-math.log(1 - _TAIL))
-_K_SECANT = 4 / math.pi * math.log(math.tan(math.pi / 2 * (1 - _TAIL)))
 _LN_LN_2 = math.log(math.log(2.0))
 # Probabilities nearer to 0 or 1 than this are not told apart; they occur only where the data
 # are impossible under the parameters anyway.
@@ -31,31 +30,19 @@ _LEAST = 1e-12
 
 
 @compiled(error_model="numpy")
-def sigmoid(shape: int, z: float) -> tuple[float, float, float]:
-    """S, 1 − S and dS/dz of a shape at z = (x − m)/width; S(0) = ½, from 5 to 95 % over Δz = 1."""
+def sigmoid(shape: int, z: float) -> tuple[float, float]:
+    """S and 1 − S of a shape at z = (x − m)/width; S(0) = ½, from 5 to 95 % over Δz = 1."""
     if shape == 0:
         t = _K_LOGISTIC * z
         e = math.exp(-abs(t))
         small, large = e / (1.0 + e), 1.0 / (1.0 + e)
-        slope = _K_LOGISTIC * small * large
-        return (large, small, slope) if t > 0 else (small, large, slope)
+        return (large, small) if t > 0 else (small, large)
     if shape == 1:
         t = _K_GAUSSIAN * z
-        slope = _K_GAUSSIAN * math.exp(-0.5 * t * t) / math.sqrt(2 * math.pi)
         half = math.sqrt(0.5)
-        return 0.5 * math.erfc(-half * t), 0.5 * math.erfc(half * t), slope
-    if shape == 2:
-        t = min(_K_GUMBEL * z + _LN_LN_2, 700.0)
-        e = math.exp(t)
-        return -math.expm1(-e), math.exp(-e), _K_GUMBEL * math.exp(t - e)
-    if shape == 3:
-        t = min(-_K_GUMBEL * z + _LN_LN_2, 700.0)
-        e = math.exp(t)
-        return math.exp(-e), -math.expm1(-e), _K_GUMBEL * math.exp(t - e)
-    t = 0.5 * math.pi * _K_SECANT * min(max(z, -200.0), 200.0)
-    up, down = math.atan(math.exp(t)), math.atan(math.exp(-t))
-    slope = 0.5 * _K_SECANT / math.cosh(t)
-    return 2 / math.pi * up, 2 / math.pi * down, slope
+        return 0.5 * math.erfc(-half * t), 0.5 * math.erfc(half * t)
+    e = math.exp(min(_K_GUMBEL * z + _LN_LN_2, 700.0))
+    return -math.expm1(-e), math.exp(-e)
 
 
 @compiled(error_model="numpy")
@@ -64,7 +51,7 @@ def probabilities(shape: int, theta: si.FloatArray, x: si.FloatArray) -> si.Floa
     out = np.empty(x.size)
     width = math.exp(theta[1])
     for i in range(x.size):
-        s, _, _ = sigmoid(shape, (x[i] - theta[0]) / width)
+        s, _ = sigmoid(shape, (x[i] - theta[0]) / width)
         out[i] = theta[3] + (1.0 - theta[3] - theta[2]) * s
     return out
 
@@ -82,7 +69,7 @@ def log_density(
     width = math.exp(theta[1])
     total = 0.0
     for i in range(x.size):
-        s, r, _ = sigmoid(shape, (x[i] - theta[0]) / width)
+        s, r = sigmoid(shape, (x[i] - theta[0]) / width)
         rise = 1.0 - theta[3] - theta[2]
         if k[i] > 0:
             total += k[i] * math.log(max(theta[3] + rise * s, _LEAST))
@@ -115,7 +102,7 @@ def grid_log_likelihood(
         for j in range(log_widths.size):
             narrow = math.exp(-log_widths[j])
             for at in range(x.size):
-                s, r, _ = sigmoid(shape, (x[at] - thresholds[i]) * narrow)
+                s, r = sigmoid(shape, (x[at] - thresholds[i]) * narrow)
                 right, wrong = k[at], n[at] - k[at]
                 for a in range(lapses.size):
                     for b in range(guesses.size):
