@@ -23,7 +23,6 @@ from squeezefilm.core.results import write_whole
 from squeezefilm.study.record.erasure import erase_file, require_plain
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import (
-    COLUMNS,
     SESSION_COLUMNS,
     Column,
     columns_of,
