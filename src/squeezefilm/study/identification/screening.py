@@ -242,7 +242,8 @@ def _follows(mine: Answers, models: _Models | tuple[()]) -> float:
 def _changed(mine: Answers, models: _Models) -> list[str]:
     """Doubts of a part of the session, from its begin or to its end, guessed or mixed up; or
     all of it has more lapses than the rule allows."""
-    rule, one_for_all, said = rule_of(mine.design), max(_best(model) for model in models), []
+    rule, said = rule_of(mine.design), []
+    whole = max(_best(model) for model in models)
     least = max(_LEAST_PART, mine.trials // 4)
     at = np.arange(least, mine.trials - least + 1)
     if at.size:
@@ -252,6 +253,10 @@ def _changed(mine: Answers, models: _Models) -> list[str]:
         ]
         before = [values[at].max(axis=1) for values in sums]
         after = [(values[-1] - values[at]).max(axis=1) for values in sums]
+        # Who shifts a criterion on the way is as sharp as before.
+        sharp = sums[0].reshape(len(sums[0]), _SPREADS, -1)
+        shifted = sharp[at].max(axis=2) + (sharp[-1] - sharp[at]).max(axis=2)
+        one_for_all = np.maximum(whole, shifted.max(axis=1))
         gains = {
             words.format(part): gain - one_for_all
             for kind, words in (
@@ -271,7 +276,7 @@ def _changed(mine: Answers, models: _Models) -> list[str]:
             max(_best(_models(mine, times * rule.lapses)[0]) for times in pair)
             for pair in ((0.5, 1.0), (1.5, 2.0))
         )
-        if many - max(one_for_all, usual) > _SURE:
+        if many - max(whole, usual) > _SURE:
             said.append(f"lapses in more than {si.percent(rule.lapses)} of the trials")
     return said
 
