@@ -99,11 +99,10 @@ def line_periods() -> si.MetreArray:
     return periods
 
 
-def line_amplitudes(passes: si.MetreArray, wanted: slice = slice(None)) -> si.MetreArray:
+def line_amplitudes(passes: si.MetreArray) -> si.MetreArray:
     """Amplitudes of lines at `line_periods` (m), of displacements (m) along one or more passes.
 
     Args:
-        wanted: of those periods; all, unless said.
         passes: sampled at `SPACING` along the way, shape (passes, samples). A line in the way is
             taken out, a Hann window laid over each; powers are averaged over the passes.
     """
@@ -114,7 +113,7 @@ def line_amplitudes(passes: si.MetreArray, wanted: slice = slice(None)) -> si.Me
     level = passes @ window
     tilt = (passes @ (window * along)) / np.sum(window * along**2)
     changing = passes - level[:, None] - tilt[:, None] * along
-    lines = (changing * window) @ _waves(-(-count // _BLOCK) * _BLOCK)[:count, wanted]
+    lines = (changing * window) @ _waves(-(-count // _BLOCK) * _BLOCK)[:count]
     amplitude: si.MetreArray = 2.0 * np.sqrt(np.mean(np.abs(lines) ** 2, axis=0))
     return amplitude
 

@@ -15,7 +15,6 @@ from squeezefilm.core import second_process
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.physics.perception.observer import Observer, load_observer
-from squeezefilm.physics.perception.senses import line_amplitudes, line_periods
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.simulated import felt_surfaces as felt
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
@@ -88,14 +87,6 @@ def test_what_is_remembered_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in "abcde":
         felt._remember(name, None)  # type: ignore[arg-type]
     assert list(felt._REMEMBERED) == ["c", "d", "e"]
-
-
-def test_a_line_by_itself_is_that_of_the_whole_spectrum() -> None:
-    passes = np.random.default_rng(1).normal(size=(2, 400))
-    whole = line_amplitudes(passes)
-    near = slice(100, 102)
-    np.testing.assert_allclose(line_amplitudes(passes, near), whole[near], rtol=1e-12)
-    assert whole.shape == line_periods().shape
 
 
 @pytest.mark.slow
