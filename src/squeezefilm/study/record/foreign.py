@@ -11,6 +11,7 @@ from __future__ import annotations
 import csv
 import itertools
 import math
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -39,6 +40,8 @@ WORDS = (
 COUNT = "count"
 MILLISECONDS = "response_time_ms"
 _NOT_SET_ASIDE = ("0", "false", "no", "n/a", "none")
+# A loop of PsychoPy that is named for what comes before the trials.
+_PRACTICE_LOOP = re.compile(r"(?i).*(practi[cs]e|training|warm).*\.this(Trial)?N$")
 _MEASURED = (*NUMBERS, MILLISECONDS, COUNT)
 SUFFIXES = (".csv", ".tsv", ".json")
 """Ends of the names of files with answers."""
@@ -62,6 +65,7 @@ def read_answers(
     (a number), "response_time_s" or "response_time_ms", "display" (the design's first, if left
     out), "phase" ("main", if left out), "count" (how many trials a row stands for) and others of
     `study export`. A row without an answer is left out: programs write such for what is no trial.
+    One of a loop of PsychoPy that is named for practice is practice.
     What is right follows from the stimuli, and from the "intensity" of an "adaptive_series", unless
     "answer" says it.
     Rows are taken to be in each person's order, and so are a person's files. `values` maps the
@@ -149,10 +153,13 @@ def _rows(
     names, lines = (_json if Path(path).suffix.lower() == ".json" else _csv)(path)
     of_file = {"participant_id": Path(path).stem} if named else {}
     places = _places(path, design, names, columns, of_file)
+    practised = [at for at, name in enumerate(names) if _PRACTICE_LOOP.match(name)]
     for number, cells in lines:
         words = of_file | {key: unguarded(cells[at].strip()) for key, at in places.items()}
         if not words.get("choice") and not words.get("estimate"):
             continue
+        if "phase" not in places and any(cells[at].strip() for at in practised):
+            words["phase"] = "practice"
         for key in ("choice", *SURFACES, "answer"):
             if key in words:
                 words[key] = values.get(words[key], words[key])
@@ -225,6 +232,9 @@ def _places(
         if names.count(name) > 1:
             said = f"{path} has {names.count(name)} columns '{name}'; keep one"
             raise InputError(said, quantity="columns")
+    if {"response_time_s", MILLISECONDS} <= {key for key in ours if columns.get(key, key) in names}:
+        said = f"{path} has response_time_s and {MILLISECONDS}; keep one of the two columns"
+        raise InputError(said, quantity="columns")
     places = {
         key: names.index(columns.get(key, key)) for key in ours if columns.get(key, key) in names
     }

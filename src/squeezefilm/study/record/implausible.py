@@ -7,7 +7,7 @@ import re
 import unicodedata
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
+from itertools import combinations, pairwise
 from pathlib import Path
 from statistics import median
 
@@ -22,7 +22,9 @@ Numbered = Sequence[tuple[int, Mapping[str, Cell]]]
 LONGEST_USUAL = 100.0
 """Median response time of somebody (s) above which it is held to be in milliseconds."""
 _FACTOR = 300.0
-_FEWEST = 12
+_FEWEST, _FEWEST_SURFACES = 12, 4
+_OFF_SCALE = math.log(30.0)
+"""Logarithm of the factor beyond which a number is of another unit."""
 _ANSWERED = ("display", "phase", *SURFACES, "choice", "estimate")
 _TIMED = (*_ANSWERED, "response_time_s")
 
@@ -38,9 +40,9 @@ def require_plausible_rows(
     `known` has the answers of people in other files, and takes up those of this one.
 
     Raises `ConfigError` for times below 0, in milliseconds or that are moments, a pair without the
-    reference, an intensity outside its series, a number a thousand times another of the same person
-    and stimulus, a trial that is there twice, a part that was pasted twice, a person without a name
-    or with two ways to write it, and two people with the same answers.
+    reference, an intensity outside its series, numbers of another unit than the same person's
+    others, a trial that is there twice, a part that was pasted twice, a person without a name or
+    with two ways to write it, and two people with the same answers.
     """
     people: dict[str, list[tuple[int, Mapping[str, Cell]]]] = defaultdict(list)
     for line, row in rows:
@@ -53,7 +55,7 @@ def require_plausible_rows(
     for who, mine in people.items():
         _require_seconds(path, who, mine)
         _require_once(path, who, mine)
-        _require_one_scale(path, who, mine)
+        _require_one_scale(path, design, who, mine)
         _require_own_name(path, who, mine[0][0], known)
         _require_own_answers(path, who, mine, known)
 
@@ -163,18 +165,39 @@ def _require_once(path: str | Path, who: str, mine: Numbered) -> None:
         )
 
 
-def _require_one_scale(path: str | Path, who: str, mine: Numbered) -> None:
-    numbers = [one for _, row in mine if (one := _value_of(row, "estimate")) > 0]
-    if len(numbers) < _FEWEST:
+def _require_one_scale(path: str | Path, design: StudyDesign, who: str, mine: Numbered) -> None:
+    """Refuse a number far from the others to its surface, and numbers to a surface that are far
+    from the person's power law (through the median of all slopes between two surfaces)."""
+    of_surface: dict[str, list[tuple[int, float]]] = defaultdict(list)
+    for line, row in mine:
+        if (number := _value_of(row, "estimate")) > 0:
+            of_surface[str(row["stimulus"])].append((line, math.log(number)))
+    if sum(map(len, of_surface.values())) < _FEWEST:
         return
-    for name in {str(row["stimulus"]) for _, row in mine}:
-        here = [(line, row) for line, row in mine if row["stimulus"] == name]
-        middle = median([_value_of(row, "estimate") for _, row in here])
-        for line, row in here:
-            ratio = _value_of(row, "estimate") / middle
-            if len(here) > 2 and not 1 / _FACTOR < ratio < _FACTOR:
+    middles = {name: median(log for _, log in here) for name, here in of_surface.items()}
+    for name, here in of_surface.items():
+        for line, log in here:
+            if len(here) > 2 and abs(log - middles[name]) > _OFF_SCALE:
+                ratio = math.exp(log - middles[name])
                 said = f"'{who}' gave '{name}' {ratio:.3g} times the usual; is a unit another?"
                 raise _refused(path, line, "estimate", said)
+    levels = {name: design.level(design.stimulus(name)) for name in middles}
+    slopes = [
+        (middles[one] - middles[other]) / (levels[one] - levels[other])
+        for one, other in combinations(middles, 2)
+        if levels[one] != levels[other]
+    ]
+    if len(middles) < _FEWEST_SURFACES or not slopes:
+        return
+    off = {name: middles[name] - median(slopes) * levels[name] for name in middles}
+    usual = median(off.values())
+    for name, here in of_surface.items():
+        if abs(off[name] - usual) > _OFF_SCALE:
+            said = (
+                f"'{who}' gave '{name}' {math.exp(off[name] - usual):.3g} times what the other "
+                "surfaces say; is a unit another?"
+            )
+            raise _refused(path, here[0][0], "estimate", said)
 
 
 def _value_of(row: Mapping[str, Cell], key: str) -> float:

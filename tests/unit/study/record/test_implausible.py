@@ -161,25 +161,66 @@ def test_other_words_units_and_commas_are_read_on_request(tmp_path: Path) -> Non
     assert found.response_time == pytest.approx(plain.response_time)
 
 
-def estimates(values: list[float], stimulus: str = "a") -> Any:
+MAGNITUDES = load_design("coarseness-magnitude")
+NAMES = [stimulus.name for stimulus in MAGNITUDES.stimuli]
+
+
+def estimates(values: list[float], stimulus: str = NAMES[0], first: int = 2) -> Any:
     return [
         (line, {"stimulus": stimulus, "estimate": str(value)})
-        for line, value in enumerate(values, 2)
+        for line, value in enumerate(values, first)
     ]
 
 
 def test_one_number_in_another_unit_is_refused_with_its_line() -> None:
     usual = [1.0, 2.0, 3.0] * 4
-    for odd in (2.0 * 299, 2.0 / 299, 0.5):
-        _require_one_scale("f", "p", estimates([*usual, odd]))
-    for odd, said in ((2.0 * 301, "602|301"), (2.0 / 301, "0.00332")):
-        with pytest.raises(ConfigError, match=f"'p' gave 'a' ({said}) times the usual") as found:
-            _require_one_scale("f", "p", estimates([*usual, odd]))
+    for odd in (2.0 * 29, 2.0 / 29, 0.5):
+        _require_one_scale("f", MAGNITUDES, "p", estimates([*usual, odd]))
+    for odd, said in ((2.0 * 31, "31"), (2.0 / 31, "0.0323")):
+        with pytest.raises(ConfigError, match=f"gave '{NAMES[0]}' {said} times the us") as found:
+            _require_one_scale("f", MAGNITUDES, "p", estimates([*usual, odd]))
         assert found.value.line == 14
     # Of few numbers, or two of a surface, nothing can be told.
-    _require_one_scale("f", "p", estimates([1.0, 1.0, 1.0, 1000.0]))
-    other = [(20, {"stimulus": "b", "estimate": "1e6"}), (21, {"stimulus": "b", "estimate": "1"})]
-    _require_one_scale("f", "p", [*estimates(usual), *other])
+    _require_one_scale("f", MAGNITUDES, "p", estimates([1.0, 1.0, 1.0, 1000.0]))
+    other = estimates([1e6, 1.0], NAMES[1], 20)
+    _require_one_scale("f", MAGNITUDES, "p", [*estimates(usual), *other])
+
+
+@pytest.mark.parametrize("factor", [1e3, 1e-3, 100.0])
+@pytest.mark.parametrize("which", [0, 2, len(NAMES) - 1])
+def test_a_surface_whose_numbers_are_of_another_unit_is_named(factor: float, which: int) -> None:
+    """Beside the power law of the others, by a person whose numbers scatter by a factor of 1.5."""
+    random = np.random.default_rng(4)
+    mine = []
+    for k, stimulus in enumerate(MAGNITUDES.stimuli):
+        values = 1e4 * stimulus.period**1.2 * np.exp(0.4 * random.standard_normal(4))
+        mine += estimates(values.tolist(), stimulus.name, 2 + 4 * k)
+    _require_one_scale("f", MAGNITUDES, "p", mine)
+    spoilt = [
+        (line, {**row, "estimate": str(factor * float(row["estimate"]))})
+        if row["stimulus"] == NAMES[which]
+        else (line, row)
+        for line, row in mine
+    ]
+    with pytest.raises(ConfigError, match=f"gave '{NAMES[which]}'.*what the other") as found:
+        _require_one_scale("f", MAGNITUDES, "p", spoilt)
+    assert found.value.line == 2 + 4 * which
+
+
+def test_rows_of_a_loop_for_practice_are_practice(tmp_path: Path) -> None:
+    made = [
+        [*row, str(k) if k < 6 else "", "" if k < 6 else str(k)] for k, row in enumerate(rows())
+    ]
+    path = write(tmp_path, made, f"{HEAD},practice_trials.thisN,trials.thisN")
+    phases = read_answers(path, DESIGN).phase
+    assert (phases == "practice").sum() == 6
+    assert (phases == "main").sum() == 34
+
+
+def test_times_in_two_units_are_refused(tmp_path: Path) -> None:
+    path = write(tmp_path, [[*row, "700"] for row in rows()], f"{HEAD},response_time_ms")
+    with pytest.raises(InputError, match="keep one of the two columns"):
+        read_answers(path, DESIGN)
 
 
 @pytest.mark.parametrize(
