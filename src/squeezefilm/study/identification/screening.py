@@ -31,6 +31,8 @@ _SPREADS, _PLACES, _GUESSES = 24, 21, 13
 _LEAST_PART, _LEAST_TRIALS, _LEAST_PEOPLE = 10, 12, 3
 _ABOVE_CHANCE = 1.6448536269514722
 _BY_CHANCE = 0.05
+# Of honest people 1 % have less, of guessers at most 10 % more (tests/recovery/task_people.py).
+_OF_MEDIAN = 1 / 3
 _SURE = 3.0
 """Least ln ratio by which lapses beyond the rule's must be likelier."""
 
@@ -103,7 +105,7 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
     """Judgements of all who answered main trials on a display (number in the design's order), by
     the design's rule, and what must be said of all of them; empty for nothing.
 
-    Somebody is at chance whose z is below what the rule asks, or below half of the median over
+    Somebody is at chance whose z is below what the rule asks, or below a third of the median over
     people where that is less: few trials, or small differences, tell nobody so surely. Where the
     median itself is not above chance, where there are fewer than three people, or where the task is
     match-to-sample, being at chance may be what there is to be found out about the display: it is
@@ -134,7 +136,7 @@ def judged_people(answers: Answers, display: int) -> tuple[tuple[PersonJudgement
             "file, which values can say"
         )
     if not excused:
-        asked = min(asked, 0.5 * abs(middle))
+        asked = min(asked, _OF_MEDIAN * abs(middle))
     whole = min(max(mine.trials for mine in people), answers.design.most_main_trials)
     judgements = []
     for mine, model, z in zip(people, models, follows, strict=True):

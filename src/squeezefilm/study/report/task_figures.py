@@ -131,18 +131,19 @@ def _share(analysis: TaskAnalysis, person: PersonFunction, x: FloatArray) -> Flo
 
 def _adaptive(axes: Axes, analysis: TaskAnalysis) -> None:
     """Shares of everybody's trials in classes of equal size, and everybody's function."""
-    places = np.array([c.value for c in analysis.conditions if c.value > 0])
-    x = np.geomspace(places.min() / 1.2, places.max() * 1.2, 161)
+    places = np.array([c.value for c in analysis.conditions])
+    is_signed, above = bool(places.min() < 0), places[places > 0]
+    x = np.geomspace(above.min() / 1.2, above.max() * 1.2, 161)
+    if is_signed:
+        x = np.linspace(places.min(), places.max(), 161)
     in_parts = analysis.measure == "Weber fraction"
     amounts = analysis.standard * (1 + x) if in_parts else analysis.standard + x
     thin = _thin(axes, analysis, 100 * x, amounts)
-    _shares(axes, analysis, [100 * (c.value or x[0]) for c in analysis.conditions])
-    axes.set(
-        xscale="log",
-        xlabel="difference from the reference (%)",
-        ylabel=f"{condition_head(analysis)[4].lower()} (%)",
-    )
-    style.plain_log(axes.xaxis)
+    _shares(axes, analysis, [100 * (place or x[0]) for place in places])
+    axes.set(xlabel="difference from the reference (%)")
+    if not is_signed:
+        axes.set(xscale="log")
+        style.plain_log(axes.xaxis)
     axes.set_title(f"{thin}dots: eighths of all trials, Wilson's intervals")
 
 

@@ -333,11 +333,10 @@ def whose(origin: str) -> str:
 
 def condition_head(analysis: TaskAnalysis) -> tuple[str, ...]:
     """Head of `condition_rows`: what is counted depends on the task."""
-    model = TASKS[analysis.task].model
+    task = TASKS[analysis.task]
     if analysis.is_adaptive and analysis.conditions and analysis.conditions[0].share is None:
         return ("Runs", "Value", "Ended", "People", "Mean of their ends", "d′")
-    is_right = analysis.is_adaptive and model is not None and model.rate is None
-    counted = "Right" if is_right else TASKS[analysis.task].counted
+    counted = "Right" if analysis.is_adaptive and task.right_is_enough else task.counted
     return ("Stimulus", "Value", "Trials", "People", counted, "d′")
 
 

@@ -70,7 +70,7 @@ def _eighths(main: Answers, level: si.Dimensionless) -> tuple[ConditionFinding, 
     whose mean is in parts of the reference, as a series has it."""
     order = np.argsort(main.intensity, kind="stable")
     same = int(np.count_nonzero(main.intensity == 0.0))
-    hit = main.told if main.model.rate is not None else main.correct == 1
+    hit = main.correct == 1 if main.design.described.right_is_enough else main.told
     parts = {"the same": order[:same]} if same else {}
     parts |= {
         f"eighth {k + 1} of the differences": part

@@ -88,12 +88,14 @@ def test_at_chance_is_below_the_rule_or_half_of_the_median(monkeypatch: pytest.M
     found, said = judged(monkeypatch, [3.2, 3.0, -3.2, 8.0, 9.0])
     assert said == ""
     assert found[0] == found[3] == found[4] == ((), ())
-    # Half of the median of 3.2 is asked, so nobody but who mixes up the answers is told.
+    # A third of the median of 3.2 is asked, so nobody but who mixes up the answers is told.
     assert found[1] == ((), ())
     assert found[2] == (("answers are mixed up (z = -3.2)",), ())
-    found, _ = judged(monkeypatch, [8.0, 2.7, 3.2, 9.0])
-    assert found[1] == (("answers do not follow the surfaces (z = 2.7; 2.8 is asked)",), ())
-    found, _ = judged(monkeypatch, [8.0, 3.0, 7.0, 9.0, -3.0])
+    found, _ = judged(monkeypatch, [8.1, 2.6, 7.9, 9.0])
+    assert found[1] == (("answers do not follow the surfaces (z = 2.6; 2.7 is asked)",), ())
+    found, _ = judged(monkeypatch, [9.0, 3.0, 9.5, 9.6, -3.0])
+    assert found[1] == ((), ())
+    found, _ = judged(monkeypatch, [12.0, 3.0, 11.0, 12.0, -3.0])
     assert found[1] == (("answers do not follow the surfaces (z = 3.0; 3.1 is asked)",), ())
     assert found[4] == (("answers do not follow the surfaces (z = -3.0; 3.1 is asked)",), ())
 

@@ -17,13 +17,19 @@ from squeezefilm.study.report import page as report
 from squeezefilm.study.report.page import TASK_FIGURES, study_figures, write_overview, write_study
 from squeezefilm.study.report.task_figures import answers, persons
 from squeezefilm.study.report.terminal_analysis import show_analyses
-from squeezefilm.study.report.words import condition_rows, key_rows, person_rows, read_first
+from squeezefilm.study.report.words import (
+    condition_head,
+    condition_rows,
+    key_rows,
+    person_rows,
+    read_first,
+)
 from squeezefilm.study.tasks.findings import TaskAnalysis
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 
 
-@pytest.fixture(scope="module", params=list(DESIGNS))
+@pytest.fixture(scope="module", params=[*DESIGNS, "direction, adaptive"])
 def found(request: pytest.FixtureRequest) -> TaskAnalysis:
     random = np.random.default_rng(4)
     return analysed(request.param, [somebody(random) for _ in range(4)], random)
@@ -60,6 +66,15 @@ def test_the_page_holds_everything(
     text = write_overview({"plate": found}, tmp_path / "all").read_text(encoding="utf-8")
     assert read_first(found)[0] in text
     assert (tmp_path / "all" / "plate" / "index.html").exists()
+
+
+def test_a_series_about_a_reference_counts_answers_on_both_sides() -> None:
+    random = np.random.default_rng(6)
+    found = analysed("direction, adaptive", [somebody(random) for _ in range(3)], random)
+    assert condition_head(found)[4] == "More"
+    shares = [one.share.value for one in found.conditions if one.share is not None]
+    assert found.conditions[0].value < 0 < found.conditions[-1].value
+    assert shares[0] < 0.1 < 0.9 < shares[-1]
 
 
 def test_displays_of_one_name_have_folders_of_their_own(
