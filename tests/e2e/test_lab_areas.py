@@ -20,10 +20,7 @@ pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
 SIZES = ((360, 740), (412, 915), (640, 450), (768, 1024), (960, 700), (1280, 900), (1920, 1080))
 """CSS pixels; 640 × 450 is a screen of 1280 × 900 at 200 %."""
-COMPUTED = (
-    "compute design", "load texture", "parity", "analyze study", "field limits",
-    "check requirements",
-)  # fmt: skip
+COMPUTED = ("compute design", "load texture", "parity", "analyze study", "check requirements")
 """What takes as long as the machine lets it."""
 FRAMES = """(() => {
   const ask = requestAnimationFrame.bind(window), drop = cancelAnimationFrame.bind(window);

@@ -13,7 +13,6 @@ from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import write_whole
 from squeezefilm.lab.designing import form as description
 from squeezefilm.lab.designing import numbers as design
-from squeezefilm.lab.designing.field_limits import allowed
 from squeezefilm.lab.files import existing, fresh
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request, as_text
 from squeezefilm.lab.worker import PAGE
@@ -51,13 +50,6 @@ class ComputeDesign(Request):
     value: str | None = Field(None, max_length=description.LONGEST_VALUE)
 
 
-class FieldLimits(Request):
-    """A value of a display's text by its dotted path."""
-
-    text: str = Field(max_length=LONGEST_TEXT)
-    path: str = Field(max_length=200)
-
-
 class SaveDisplay(Request):
     """A display's text under a name in the lab's folder."""
 
@@ -76,7 +68,6 @@ class DesignArea:
         add("displays", Request, self._listing)
         add("open display", OpenDisplay, self._open_display)
         add("edit display", EditDisplay, self._edit)
-        add("field limits", FieldLimits, self._limits)
         add("compute design", ComputeDesign, self._compute)
         add("cancel design", Request, self._cancel)
         add("save display", SaveDisplay, self._save)
@@ -103,10 +94,6 @@ class DesignArea:
 
     async def _edit(self, asked: EditDisplay) -> Answer:
         return await self._display(design.changed, asked.text, asked.path, asked.value)
-
-    async def _limits(self, asked: FieldLimits) -> Answer:
-        words = await self._lab.workers.quick.do("limits", allowed, asked.text, asked.path)
-        return {"type": "field limits", "path": asked.path, "allowed": words}
 
     async def _compute(self, asked: ComputeDesign) -> Answer:
         point = design.DesignPoint(**asked.model_dump(exclude={"id", "type", "quality", "of"}))

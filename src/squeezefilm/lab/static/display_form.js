@@ -13,7 +13,7 @@ const TITLES = {
 const OPEN = new Set(["actuator", "drive", "finger"]);
 
 /** Fill `place` from the rows of `form`; sections that were open stay open, focus stays. */
-export function displayForm(place, rows, { write, forget, slide, limits, unwritten, refused, notes }) {
+export function displayForm(place, rows, { write, forget, slide, unwritten, refused, notes }) {
   const opened = new Map([...place.querySelectorAll("details")].map((one) => [one.dataset.section, one.open]));
   const focus = document.activeElement?.dataset?.path, kind = document.activeElement?.type;
   const sections = new Map();
@@ -24,7 +24,7 @@ export function displayForm(place, rows, { write, forget, slide, limits, unwritt
   place.replaceChildren();
   for (const [section, members] of [...sections].sort(([a], [b]) => rank(a) - rank(b))) {
     const box = element("details", { "data-section": section, open: opened.get(section) ?? OPEN.has(section) },
-      element("summary", { text: title(section, rows) }), ...members.map((row) => field(row, { write, forget, slide, limits })));
+      element("summary", { text: title(section, rows) }), ...members.map((row) => field(row, { write, forget, slide })));
     place.append(box);
   }
   for (const [path, note] of notes) place.querySelector(`[data-path="${CSS.escape(path)}"]`)?.closest(".field").append(note);
@@ -53,7 +53,7 @@ function title(section, rows) {
   return section.replace("actuator.", "").replaceAll("_", " ").replaceAll(".", " ");
 }
 
-function field(row, { write, forget, slide, limits }) {
+function field(row, { write, forget, slide }) {
   const id = `f-${row.path.replaceAll(".", "-")}`;
   const mark = { assumed: " *", unstated: " ?" }[row.evidence];
   const tip = row.name in GLOSSARY || row.source ? row.name : null;
@@ -85,17 +85,7 @@ function field(row, { write, forget, slide, limits }) {
     });
     range.addEventListener("change", commit);
   }
-  const allowed = row.unit === null && !row.whole ? null : element("small", { class: "limits", id: `${id}-limits`, text: "allowed: …" });
-  const box = element("div", { class: "field" }, label, text, range, wrong, allowed, source);
-  if (allowed) {
-    text.setAttribute("aria-describedby", `${wrong.id} ${allowed.id}`);
-    // Asked for when somebody is here: they depend on the other values.
-    box.addEventListener("focusin", async () => {
-      const found = await limits(row.path);
-      if (found) allowed.textContent = `allowed, with the other values as they are: ${found}`;
-    });
-  }
-  return box;
+  return element("div", { class: "field" }, label, text, range, wrong, source);
 }
 
 /** What writes a control's value, and where a refusal is said: beside it, until it holds what may be. */

@@ -15,7 +15,6 @@ from squeezefilm.lab.areas.design import (
     ComputeDesign,
     DesignArea,
     EditDisplay,
-    FieldLimits,
     OpenDisplay,
     SaveDisplay,
 )
@@ -63,17 +62,12 @@ def test_a_display_is_opened_by_name_by_file_or_as_a_text(lab: Talk) -> None:
     assert "there is no file other.toml" in lab.refused("open display", file="other")
 
 
-def test_an_edit_and_its_limits(lab: Talk) -> None:
+def test_an_edit(lab: Talk) -> None:
     found = lab.say("edit display", text=STATOR, path="drive.voltage", value="99 V")
     assert found["type"] == "display"
     (row,) = [one for one in found["form"] if one["path"] == "drive.voltage"]
     assert row["value"] == 99.0
-    assert lab.say("field limits", text=STATOR, path="drive.voltage") == {
-        "type": "field limits", "path": "drive.voltage", "allowed": "from 0 V up to 2 kV",
-    }  # fmt: skip
-    assert lab.asked == [
-        ("quick", None, "changed", False), ("quick", "limits", "allowed", False),
-    ]  # fmt: skip
+    assert lab.asked == [("quick", None, "changed", False)]
 
 
 @pytest.mark.slow
@@ -171,8 +165,6 @@ def test_a_display_is_saved_once_unless_it_may_be_replaced(lab: Talk) -> None:
         (ComputeDesign, "force", 100, {"text": "", "quality": "band"}),
         (ComputeDesign, "path", 200, {"text": "", "quality": "band"}),
         (ComputeDesign, "value", 2000, {"text": "", "quality": "band"}),
-        (FieldLimits, "text", 400_000, {"path": ""}),
-        (FieldLimits, "path", 200, {"text": ""}),
         (SaveDisplay, "text", 400_000, {"name": ""}),
         (SaveDisplay, "name", 64, {"text": ""}),
     ],

@@ -157,7 +157,6 @@ class DesignView {
       refused: this.store.refused,
       notes: Object.entries(current.covered).map(([path, said]) => [path, this.bare(path, said)]),
       slide: (path, value) => this.compute({ path, value }),
-      limits: (path) => this.limits(path),
     });
     this.calibrated.set(current.calibration);
     this.compute({});
@@ -167,15 +166,6 @@ class DesignView {
   bare(path, said) {
     return element("p", { class: "warning" }, `${said} `,
       element("button", { text: "Stretch them", onclick: () => this.tried(this.store.edit(path, "stretch the ceramics")) }));
-  }
-
-  /** What a value may be, in words; none where newer work took its place. */
-  async limits(path) {
-    try {
-      return (await this.lab.socket.ask("field limits", { text: this.store.current.text, path })).allowed;
-    } catch {
-      return "";
-    }
   }
 
   async tried(work) {
