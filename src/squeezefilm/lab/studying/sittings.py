@@ -14,11 +14,9 @@ from typing import Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.conduct.again import COUNTED
 from squeezefilm.study.conduct.sessions import SessionConditions
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.sittings import Sitting
-from squeezefilm.study.record.store import StudyStore
 
 
 class SurfacesByHand:
@@ -90,31 +88,6 @@ def _si(name: str, value: Any, hint: Any) -> Any:
         return value
     si.require_typed(name, value, hint)
     return si.parse_quantity(value, unit)
-
-
-def confusion_counts(store: StudyStore) -> list[dict[str, Any]]:
-    """Counts per display, rows answers and columns stimuli; main trials that count only.
-
-    Empty for another task than match-to-sample. Raises `RecordError` if the file cannot be read.
-    """
-    design = store.design
-    if design.task != "match-to-sample":
-        return []
-    rows, columns = list(design.answers), [stimulus.name for stimulus in design.stimuli]
-    counted = store.rows(
-        "SELECT t.display, t.stimuli, r.choice, count(*) AS n FROM response r "
-        "JOIN trial t ON t.uuid = r.trial WHERE t.phase = 'main' "
-        f"AND {COUNTED} GROUP BY t.display, t.stimuli, r.choice"
-    )
-    tables = []
-    for display in design.displays:
-        counts = [[0] * len(columns) for _ in rows]
-        for row in counted:
-            stimulus = row["stimuli"][2:-2]
-            if row["display"] == display and row["choice"] in rows and stimulus in columns:
-                counts[rows.index(row["choice"])][columns.index(stimulus)] += row["n"]
-        tables.append({"display": display, "rows": rows, "columns": columns, "counts": counts})
-    return tables
 
 
 def described(design: StudyDesign) -> dict[str, Any]:

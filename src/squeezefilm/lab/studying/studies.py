@@ -18,7 +18,6 @@ from squeezefilm.lab.files import existing, fresh, zipped
 from squeezefilm.lab.studying.sittings import (
     SurfacesByHand,
     conditions_of,
-    confusion_counts,
     described,
     shown_sitting,
 )
@@ -99,7 +98,7 @@ class Studies:
         return self._open[name]
 
     def status(self, study: str) -> dict[str, Any]:
-        """Design, participants with their progress, sittings, and the answers so far as counts."""
+        """Design, participants with their progress, and sittings."""
         store = self.store(study)
         design = store.design
         return {
@@ -124,7 +123,6 @@ class Studies:
                 }
                 for held in self.sittings.of_study(study)
             ],
-            "confusion": confusion_counts(store),
             "origin": origin_of(store),
             "devices": devices(),
         }

@@ -2,7 +2,6 @@
 
 import { Age } from "../age.js";
 import { element } from "../numbers.js";
-import { confusionCard } from "./study.js";
 
 export async function show(place, lab) {
   await new ResultsView(place, lab).start();
@@ -133,10 +132,7 @@ class ResultsView {
     const tables = one.tables.map(({ title, head, rows }) => element("section", { class: "card" }, element("h2", { text: `${title}, ${one.display}` }),
       element("div", { class: "scroll" }, element("table", {}, element("tr", {}, ...head.map((text) => element("th", { text }))),
         ...rows.map((row) => element("tr", {}, ...row.map((text, place) => element(place ? "td" : "th", { text }))))))));
-    if (one.confusion) {
-      tables.push(confusionCard(one.confusion));
-      tables.at(-1).querySelector("h2").textContent = `Confusions, ${one.display}`;
-    }
+    if (one.confusion) tables.push(confusionCard(one.confusion));
     const methods = one.methods ? [element("section", { class: "card" }, element("h2", { text: "Methods, for a paper" }), element("p", { text: one.methods }))] : [];
     return [first, ...tables,
       element("section", { class: "card" }, element("h2", { text: `Numbers, ${one.display}` }),
@@ -167,4 +163,21 @@ class ResultsView {
     }));
     if (!study.participants.length) this.people.append(element("p", { class: "muted", text: "nobody yet" }));
   }
+}
+
+/** A confusion table in the paper's layout: rows the gratings chosen, columns what was presented. */
+function confusionCard({ display, rows, columns, counts }) {
+  const sums = columns.map((_, j) => counts.reduce((sum, row) => sum + row[j], 0));
+  const total = sums.reduce((a, b) => a + b, 0);
+  const body = rows.map((name, i) => element("tr", {}, element("th", { scope: "row", text: name }), ...columns.map((column, j) => {
+    const share = sums[j] ? counts[i][j] / sums[j] : null;
+    const cell = element("td", { text: share === null ? "–" : `${Math.round(100 * share)} %`, title: `${counts[i][j]} of ${sums[j]}` });
+    if (share !== null) cell.style.setProperty("--share", `${Math.round(share * 100)}%`);
+    cell.className = name === column ? "cell right" : "cell";
+    return cell;
+  })));
+  return element("section", { class: "card confusion" }, element("h2", { text: `Confusions, ${display}` }),
+    element("p", { class: "muted", text: `Rows: grating chosen. Columns: period presented. ${total} answers.` }),
+    element("div", { class: "scroll" }, element("table", {},
+      element("tr", {}, element("td", {}), ...columns.map((name) => element("th", { scope: "col", text: name }))), ...body)));
 }

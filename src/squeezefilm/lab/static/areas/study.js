@@ -136,8 +136,6 @@ class StudyView {
     }
     this.study = study;
     this.age.now();
-    for (const card of this.main.querySelectorAll(".confusion")) card.remove();
-    this.main.append(...study.confusion.map((table) => confusionCard(table)));
     return true;
   }
 
@@ -152,8 +150,7 @@ class StudyView {
         element("p", { class: "muted", text: `${study.title}. Seed ${study.seed}.` }), this.age.box,
         element("div", { class: "scroll" }, element("table", { class: "participants" },
           element("tr", {}, ...["participant", "answered", "now on", "sitting", ""].map((text) => element("th", { text }))), ...rows)),
-        this.rehearsal(), element("button", { class: "main", text: "Enrol a participant", onclick: () => this.tried(async () => this.take(await this.lab.act("enrol", { study: study.name }))) })),
-      ...study.confusion.map((table) => confusionCard(table)));
+        this.rehearsal(), element("button", { class: "main", text: "Enrol a participant", onclick: () => this.tried(async () => this.take(await this.lab.act("enrol", { study: study.name }))) })));
   }
 
   /** The main part drawn anew. Focus and a number half typed stay where they were: it is a participant,
@@ -306,21 +303,4 @@ function conditionsOf(inputs) {
   }
   for (const key of ["hand", "finger"]) if (inputs[key].value) found[key] = inputs[key].value;
   return found;
-}
-
-/** A confusion table in the paper's layout: rows the gratings chosen, columns what was presented. */
-export function confusionCard({ display, rows, columns, counts }) {
-  const sums = columns.map((_, j) => counts.reduce((sum, row) => sum + row[j], 0));
-  const total = sums.reduce((a, b) => a + b, 0);
-  const body = rows.map((name, i) => element("tr", {}, element("th", { scope: "row", text: name }), ...columns.map((column, j) => {
-    const share = sums[j] ? counts[i][j] / sums[j] : null;
-    const cell = element("td", { text: share === null ? "–" : `${Math.round(100 * share)} %`, title: `${counts[i][j]} of ${sums[j]}` });
-    if (share !== null) cell.style.setProperty("--share", `${Math.round(share * 100)}%`);
-    cell.className = name === column ? "cell right" : "cell";
-    return cell;
-  })));
-  return element("section", { class: "card confusion" }, element("h2", { text: `Answers so far, ${display}` }),
-    element("p", { class: "muted", text: `Rows: grating chosen. Columns: period presented. ${total} answers.` }),
-    element("div", { class: "scroll" }, element("table", {},
-      element("tr", {}, element("td", {}), ...columns.map((name) => element("th", { scope: "col", text: name }))), ...body)));
 }
