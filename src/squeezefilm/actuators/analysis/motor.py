@@ -36,7 +36,7 @@ from squeezefilm.core.results import Result, to_json
 # Where the mean over a period is off by more than this of µ times the preload, it is warned of.
 _APART = 0.05
 _MAP, _RESOLVED = 10, 5
-_PERIODS, _TRACED = 600, 3
+_PERIODS = 600
 _DETUNED, _POINTS = 0.04, 29
 _FREE, _FREE_STEPS = 4000, 64
 _STEP = (0.3, 0.7)
@@ -219,7 +219,7 @@ def analyze_motor(
     curve = speed_force_curve(motor, working)
     best = max(curve, key=lambda point: point.efficiency)
     tell("in time")
-    motion = simulate(motor, working, speed=best.speed, periods=_PERIODS, traced=_TRACED)
+    motion = simulate(motor, working, speed=best.speed, periods=_PERIODS, traced=0)
     resolved = _resolved(motor, working, curve)
     tell("preload and amplitude")
     cradle, amplitude = described.motor.cradle, curve[0].amplitude

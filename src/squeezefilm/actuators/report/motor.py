@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from squeezefilm.actuators.motor.averaged import AveragedMotor
     from squeezefilm.actuators.motor.closed_loop import TrackedForce
     from squeezefilm.actuators.motor.curves import MotorMap
-    from squeezefilm.actuators.motor.in_time import MotorMotion
     from squeezefilm.actuators.motor.plane import PlaneMotion
 
 _ANSWERS = {"stall_force_N": "stall force", "no_load_speed_m_per_s": "speed without a load"}
@@ -115,7 +114,6 @@ def write_motor(analysis: MotorAnalysis, folder: Path) -> Path:
 
 
 def _figures(analysis: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
-    feet = analysis.motor.feet
     figures = {
         "speed-force": (
             "Speed against force",
@@ -130,10 +128,6 @@ def _figures(analysis: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
         "frequency-and-place": (
             "Frequency, and the place of the feet",
             tuning_figure(analysis),
-        ),
-        "foot": (
-            "The way of a foot",
-            foot_figure((analysis.motion, feet.across[0], feet.along[0])),
         ),
     }
     if analysis.plane is not None:
@@ -212,29 +206,6 @@ def map_figure(known: tuple[MotorMap, si.Newton, si.Metre]) -> Figure:
         axes.set(xlabel="amplitude (µm)", yscale="log")
         style.plain_log(axes.yaxis)
     figure.axes[0].set_ylabel("preload (N)")
-    return figure
-
-
-@style.drawn
-def foot_figure(motion: tuple[MotorMotion, si.FloatArray, si.FloatArray]) -> Figure:
-    """The way of the first foot's tip over a few periods, across against along, and when it is in
-    contact: a motion, and what a foot moves across and along for 1 m of each mode."""
-    moved, across, along = motion
-    w, u = moved.deflection @ across, moved.deflection @ along
-    figure = style.new_figure("The way of a foot", moved.model, 4.0)
-    left, right = figure.subplots(1, 2)
-    touching = moved.contact[:, 0] > 0
-    left.plot(1e6 * u, 1e6 * w, color=style.BLUE, lw=0.8)
-    left.plot(
-        1e6 * u[touching], 1e6 * w[touching], ".", ms=3, color=style.ORANGE, label="in contact"
-    )
-    left.set(xlabel="along the face (µm)", ylabel="across it (µm)")
-    time = 1e6 * (moved.time - moved.time[0])
-    right.plot(time, 1e6 * w, color=style.BLUE, label="foot")
-    right.plot(time, 1e6 * moved.height, color="black", label="slider")
-    right.plot(time[touching], 1e6 * w[touching], ".", ms=3, color=style.ORANGE)
-    right.set(xlabel="time (µs)", ylabel="height (µm)")
-    style.legend_below(right, columns=2)
     return figure
 
 

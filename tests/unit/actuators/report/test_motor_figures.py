@@ -14,11 +14,9 @@ from tests.unit.actuators.test_motor import WORKING, motor
 
 from squeezefilm.actuators.motor.closed_loop import TrackedForce
 from squeezefilm.actuators.motor.curves import motor_map, speed_force_curve
-from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.actuators.motor.plane import simulate_plane
 from squeezefilm.actuators.report import motor as report
 from squeezefilm.actuators.report.motor import (
-    foot_figure,
     force_step_figure,
     map_figure,
     plane_figure,
@@ -33,13 +31,10 @@ def words(figure: Figure) -> str:
     return " ".join(drawn.words(one.get_text()) for one in figure.findobj(Text))
 
 
-def test_curves_map_and_foot_are_drawn() -> None:
+def test_curves_and_map_are_drawn() -> None:
     curve = speed_force_curve(motor(), WORKING, 4)
     found = motor_map(motor(), np.array([5.0, 60.0]), np.array([0.5e-6, 2e-6]))
     assert "no-load speed (mm/s)" in words(map_figure((found, 20.0, 1e-6)))
-    feet = motor().feet
-    moved = simulate(motor(), WORKING, periods=20, traced=2)
-    assert "across it (µm)" in words(foot_figure((moved, feet.across[0], feet.along[0])))
     assert f"Stalls at {curve[0].force:.3g} N" in words(
         speed_force_figure((curve, np.array([[0.0, 1.0]])))
     )
@@ -99,5 +94,5 @@ def test_the_page_has_a_figure_of_all_that_was_computed(
     (given, folder), shown = stand_ins["write_page"].call_args
     assert (given, folder) == (found, Path("out"))
     assert (shown["key_numbers"], shown["more"]) == ("motor_rows", "how_sure")
-    always = ["speed-force", "map", "frequency-and-place", "foot"]
+    always = ["speed-force", "map", "frequency-and-place"]
     assert list(shown["figures"]) == [*always, *names]
