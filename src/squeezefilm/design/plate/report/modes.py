@@ -1,4 +1,4 @@
-"""The driven modes of a display in the terminal, and as figures."""
+"""The driven modes of a display in the terminal, and the shapes of those that move most."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from squeezefilm.core.kit.folder import json_text, write_folder
 from squeezefilm.core.kit.numbers import HZ, shown
 from squeezefilm.core.kit.page_style import FigureOf, drawn_figures, picture_files
 from squeezefilm.core.kit.terminal import bullets, heading, plain_console, table
-from squeezefilm.design.plate.listed_modes import HEARING
 from squeezefilm.physics.chain.pad_place import place_words
 
 if TYPE_CHECKING:
@@ -31,8 +30,6 @@ _PER_VOLT, _SPEED = si.Unit("m/V"), si.Unit("m/s")
 _HEAD = ("mode", "frequency", "per volt", "neighbour", "away", "adds", "")
 # So many shapes are drawn: those that move most.
 _SHAPES = 12
-# So many labels have room side by side; between two, the higher mode gets its own.
-_LABELS = 30
 
 
 def mode_list_rows(result: ModeList) -> list[tuple[str, ...]]:
@@ -164,50 +161,6 @@ def show_pair(console: Console, pair: RingPair) -> None:
 
 
 @style.drawn
-def spectrum(result: ModeList) -> Figure:
-    """Amplitude per volt of every driven mode over frequency; the display's own and the suggested
-    one marked."""
-    own, best = result.working_mode, result.suggestion.mode
-    said = f"{len(result.modes)} driven modes"
-    if own is not None:
-        said += f"; {own.label} at {own.frequency / 1e3:.2f} kHz is the display's"
-    if best is not None and best is not own:
-        said += f", {best.label} at {best.frequency / 1e3:.2f} kHz is suggested"
-    figure = style.new_figure(said, f"{result.model}; each mode alone, at its antinode", 4.4)
-    axes = figure.subplots()
-    f = np.array([mode.frequency for mode in result.modes]) / 1e3
-    per_volt = np.array([mode.alone_per_volt for mode in result.modes]) * 1e9
-    floor = 0.5 * float(per_volt.min())
-    low, high = result.band[0] / 1e3, max(result.band[1] / 1e3, 1.02 * float(f.max()))
-    if low < HEARING / 1e3:
-        axes.axvspan(low, min(HEARING / 1e3, high), color=style.BAND, lw=0, label="audible")
-    axes.vlines(f, floor, per_volt, color=style.MUTED, lw=1.2)
-    axes.plot(f, per_volt, "o", color=style.MUTED, ms=4)
-    marked = (
-        [(own, style.BLUE, "the display's mode, which is the one suggested")]
-        if own is best
-        else [(own, style.BLUE, "the display's mode"), (best, style.ORANGE, "suggested")]
-    )
-    for mode, color, name in marked:
-        if mode is not None:
-            at = mode.frequency / 1e3, mode.alone_per_volt * 1e9
-            axes.vlines(at[0], floor, at[1], color=color, lw=2.2)
-            axes.plot(*at, "o", color=color, ms=8, label=name, mec=style.PAPER)
-    room = (high - low) / _LABELS
-    for mode in result.modes:
-        beside = np.abs(f - mode.frequency / 1e3) < room
-        highest = mode.alone_per_volt * 1e9 >= per_volt[beside].max()
-        if highest and mode.alone_per_volt * 1e9 > 0.05 * per_volt.max():
-            at = mode.frequency / 1e3, mode.alone_per_volt * 1e9
-            axes.annotate(mode.label, at, (0, 6), textcoords="offset points", **style.SLANTED)
-    axes.set(xlabel="frequency (kHz)", ylabel="amplitude (nm/V)", xlim=(low, high), yscale="log")
-    axes.set_ylim(floor, 4 * float(per_volt.max()))
-    style.plain_log(axes.yaxis)
-    style.legend_below(axes, columns=3, gap=0.2)
-    return figure
-
-
-@style.drawn
 def shapes(result: ModeList) -> Figure:
     """The modes of a plate that move most, from above, in the order of frequency."""
     strongest = sorted(result.screened, key=lambda mode: -mode.alone_per_volt)[:_SHAPES]
@@ -237,14 +190,11 @@ def shapes(result: ModeList) -> Figure:
     return figure
 
 
-FIGURES = (
-    FigureOf("spectrum", "Driven modes", spectrum, has=lambda listed: listed.modes),
-    FigureOf("shapes", "Shapes", shapes, has=lambda listed: listed.screened),
-)
+FIGURES = (FigureOf("shapes", "Shapes", shapes, has=lambda listed: listed.screened),)
 
 
 def write_modes(result: ModeList, folder: Path) -> Path:
-    """Write modes.json and one PNG a figure into a folder; the folder."""
+    """Write modes.json, and shapes.png where shapes are known, into a folder; the folder."""
     files = picture_files(drawn_figures(FIGURES, result))
     files["modes.json"] = json_text(result.summary())
     write_folder(folder, files)

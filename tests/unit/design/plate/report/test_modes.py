@@ -16,7 +16,6 @@ from squeezefilm.design.plate.report.modes import (
     pair_rows,
     shapes,
     show_mode_list,
-    spectrum,
     write_modes,
 )
 from squeezefilm.design.plate.ring_pair import PairAtSplit, RingPair
@@ -79,27 +78,14 @@ def test_a_pair_has_its_table(paper: ModeList) -> None:
 
 
 def test_numbers_are_written_without_figures_too(paper: ModeList, tmp_path: Path) -> None:
+    # A ring has no shapes seen from above.
     write_modes(dataclasses.replace(paper, modes=(), screened=()), tmp_path)
     (file,) = tmp_path.iterdir()
     assert file.name == "modes.json"
     assert json.loads(file.read_text(encoding="utf-8"))["modes"] == []
 
 
-def test_each_mode_stands_at_its_frequency_and_the_displays_own_is_marked(
-    paper: ModeList,
-) -> None:
-    (axes,) = spectrum(paper).axes
-    x, y = axes.lines[0].get_data()
-    assert list(x) == [mode.frequency / 1e3 for mode in paper.modes]
-    assert list(y) == [mode.alone_per_volt * 1e9 for mode in paper.modes]
-    assert axes.lines[1].get_xdata()[0] == paper.working_mode.frequency / 1e3
-    assert axes.get_xlim() == (15, 45)
-    other = dataclasses.replace(paper.suggestion, mode=paper.modes[0])
-    figure = spectrum(dataclasses.replace(paper, suggestion=other))
-    assert "is suggested" in figure.get_suptitle()
-    assert [text.get_text() for text in figure.axes[0].get_legend().get_texts()] == [
-        "audible", "the display's mode", "suggested",
-    ]  # fmt: skip
+def test_shapes_stand_in_the_order_of_frequency(paper: ModeList) -> None:
     titles = [axes.get_title(loc="left") for axes in shapes(paper).axes]
     shown = [float(title.split("  ")[1].split(" kHz")[0]) for title in titles if title]
     assert shown == sorted(shown)
@@ -109,17 +95,6 @@ def test_each_mode_stands_at_its_frequency_and_the_displays_own_is_marked(
 def test_figures_and_numbers_are_written(paper: ModeList, tmp_path: Path) -> None:
     assert write_modes(paper, tmp_path / "a") == tmp_path / "a"
     names = sorted(file.name for file in (tmp_path / "a").iterdir())
-    assert names == ["modes.json", "shapes.png", "spectrum.png"]
+    assert names == ["modes.json", "shapes.png"]
     said = json.loads((tmp_path / "a" / "modes.json").read_text(encoding="utf-8"))
     assert len(said["modes"]) == len(paper.modes)
-    # A ring has no shapes seen from above; another mode may be suggested than the display's.
-    ring = dataclasses.replace(
-        paper,
-        screened=(),
-        suggestion=dataclasses.replace(paper.suggestion, mode=paper.modes[0]),
-    )
-    write_modes(ring, tmp_path / "b")
-    assert sorted(file.name for file in (tmp_path / "b").iterdir()) == [
-        "modes.json",
-        "spectrum.png",
-    ]
