@@ -1,4 +1,4 @@
-"""The figures of a design search: the front, and what was chosen along it."""
+"""The figure of a design search: the front."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.page_style import FigureOf
 from squeezefilm.design.search.criteria import criterion_of
-from squeezefilm.design.search.report.words import front_words, setting_words
-from squeezefilm.design.search.space import Choice, Variable
+from squeezefilm.design.search.report.words import front_words
 from squeezefilm.design.search.worth_solving import objectives_of
 from squeezefilm.design.sweep.report.words import labelled, scaled
 
@@ -33,7 +32,6 @@ _MOST_POINTS = 1500
 _SOLVED = "three-dimensional solves of plates as drawn, quality factor assumed"
 # An axis on which the largest is more than so many times the smallest is logarithmic.
 _WIDE = 12.0
-_SHAPES = "osD^"
 _BROKEN: dict[str, Any] = {"color": style.MUTED, "ls": "", "marker": "x", "ms": 4, "mew": 0.8}
 _SOLVED_LOOK: dict[str, Any] = {
     "ls": "",
@@ -192,81 +190,6 @@ def _thinned(designs: Sequence[Evaluated]) -> Sequence[Evaluated]:
     return designs[:: 1 + len(designs) // (_MOST_POINTS + 1)]
 
 
-@style.drawn
-def settings(search: DesignSearch) -> Figure:
-    """Figure of what was chosen along the front: each variable over the first objective."""
-    spaces = search.requirements.spaces
-    of_front = sorted({member.evaluated.design.shape for member in search.front})
-    free = {variable.name: variable for shape in of_front for variable in spaces[shape].free}
-    if not search.front or not free:
-        return style.message_figure(
-            "What was chosen", "The front is empty." if not search.front else "Nothing was free."
-        )
-    goal = criterion_of(search.requirements.objectives[0])
-    columns = min(3, len(free))
-    lines = -(-len(free) // columns)
-    figure = style.new_figure(
-        f"What the front has in common, and what it trades: each choice over {goal.said}",
-        _SOLVED,
-        1.0 + 2.4 * lines,
-    )
-    places = figure.subplots(lines, columns, squeeze=False).ravel()
-    for axes, variable in zip(places, free.values(), strict=False):
-        _settings_axes(axes, search, variable)
-    for spare in places[len(free) :]:
-        spare.set_axis_off()
-    factor, symbol = scaled(search.objectives[:, 0], goal.unit)
-    for axes in places[: len(free)]:
-        axes.set_xlim(_ends(factor * search.objectives[:, 0], logarithmic=False))
-        axes.locator_params(axis="x", nbins=4)
-    for axes in places[max(len(free) - columns, 0) : len(free)]:
-        axes.set_xlabel(labelled(goal.said, symbol))
-    return figure
-
-
-def _settings_axes(axes: Axes, search: DesignSearch, variable: Variable) -> None:
-    requirements = search.requirements
-    goal = criterion_of(requirements.objectives[0])
-    factor, _ = scaled(search.objectives[:, 0], goal.unit)
-    members = [
-        (factor * float(x), member)
-        for x, member in zip(search.objectives[:, 0], search.front, strict=True)
-        if variable.name in member.evaluated.design.settings
-    ]
-    if isinstance(variable, Choice):
-        names = {
-            str(member.evaluated.design.settings[variable.name]): setting_words(
-                variable, member.evaluated.design, requirements
-            )
-            for _, member in members
-        }
-        rows = list(names)
-        y = [rows.index(str(o.evaluated.design.settings[variable.name])) for _, o in members]
-        axes.set_yticks(range(len(rows)), [style.plain(names[row], 22) for row in rows])
-        axes.set_ylim(-0.6, len(rows) - 0.4)
-        symbol = ""
-    else:
-        values = np.array([float(o.evaluated.design.settings[variable.name]) for _, o in members])
-        scale, symbol = scaled(values, variable.unit)
-        y = (scale * values).tolist()
-        axes.set_ylim(_ends(scale * values, logarithmic=False))
-        if variable.name.startswith("nodal_"):
-            axes.locator_params(axis="y", integer=True)
-    chosen = search.chosen
-    for number, (value, (x, member)) in enumerate(zip(y, members, strict=True)):
-        shape = member.evaluated.design.shape
-        look: dict[str, Any] = {
-            "color": style.BLUE,
-            "marker": _SHAPES[shape % 4],
-            "ms": 6,
-            "mec": style.PAPER,
-        }
-        axes.plot([x], [value], ls="", **look, zorder=3 + number / 100)
-        if member is chosen:
-            axes.plot([x], [value], **_RING, zorder=5)
-    axes.set_title(labelled(variable.name.replace("_", " "), symbol))
-
-
 FIGURES = (
     FigureOf(
         "front",
@@ -276,12 +199,5 @@ FIGURES = (
         "three dimensions; the blue points are beaten by no other. Point at one for its numbers, "
         "follow it to its row in the table.",
         has=lambda search: search.front or any(each.is_feasible for each in search.screened),
-    ),
-    FigureOf(
-        "settings",
-        "What was chosen along the front",
-        settings,
-        "A panel for each thing that could be chosen; the ring is the plate to build.",
-        has=lambda search: search.front,
     ),
 )

@@ -88,20 +88,19 @@ def design_page(search: DesignSearch, *, fabrication: str = "") -> str:
     """The page of a search as text; it is complete but for the files that it links to."""
     requirements = search.requirements
     notes = [requirements.note] if requirements.note else []
-    drawn = {
-        item.key: figure_section(item, item.heading, _svg(search, item)) if item.has(search) else ""
-        for item in FIGURES
-    }
     parts = [
         section("To read first", verdict_list(first_sentences(search))),
         section("What was asked for", bullets([*asked_sentences(requirements), *notes])),
-        drawn["front"],
+        *(
+            figure_section(item, item.heading, _svg(search, item))
+            for item in FIGURES
+            if item.has(search)
+        ),
         section("The plates of the front", _front_table(search)),
         *_chosen_sections(search, fabrication),
         *_reference_section(search),
         section("What each limit does and costs", bullets(limit_sentences(search))),
         section("Where nothing keeps the limits", _corners(search)),
-        drawn["settings"],
         section("How far the screening is off", _errors(search)),
         section("What all of this assumes", bullets(requirements.assumed)),
         section("Files", _files(search)),

@@ -61,12 +61,6 @@ def test_three_objectives_are_drawn_in_pairs() -> None:
     assert sum("mass" in one for one in names) == 2
 
 
-def test_a_panel_for_each_thing_that_could_be_chosen(found: DesignSearch) -> None:
-    free = [one.name.replace("_", " ") for one in found.requirements.spaces[0].free]
-    titles = [axes.get_title(loc="left") for axes in figures.settings(found).axes]
-    assert [one.partition(" (")[0] for one in titles if one] == free
-
-
 def test_a_large_cloud_is_thinned() -> None:
     few = made_search(screened=6, solved=1).screened
     assert figures._thinned(few * 250) == few * 250

@@ -154,5 +154,5 @@ def test_a_file_in_place_of_the_folder_is_refused(found: DesignSearch, tmp_path:
 
 def test_its_figures_are_plotted_by_name(found: DesignSearch) -> None:
     assert "front" in sf.plot(found).get_suptitle()
-    with pytest.raises(InputError, match="It has: front, settings"):
+    with pytest.raises(InputError, match="It has: front"):
         sf.plot(found, "pareto")
