@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError, optional
+from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import Result
 from squeezefilm.design.sweep.axes import Axis
 from squeezefilm.design.sweep.followed import FollowedMode
@@ -121,37 +121,6 @@ class Sweep(Result):
         return {**self.settings(), **values, "reason": list(self.reasons)}
 
     _table = table
-
-    def to_xarray(self) -> Any:
-        """The columns as a `xarray.Dataset` on the grid of the axes, with units as attributes; an
-        axis that varies several values together is numbered and has each as a coordinate.
-
-        Raises `MissingPackageError` without xarray, which comes with the extra `design`.
-        """
-        with optional("design", "a dataset of a sweep"):
-            import xarray
-
-        names = [
-            axis.columns[0] if len(axis.columns) == 1 else f"step_{number}"
-            for number, axis in enumerate(self.axes, 1)
-        ]
-        coordinates = {
-            column: (name, [step[number] for step in axis.steps])
-            for name, axis in zip(names, self.axes, strict=True)
-            for number, column in enumerate(axis.columns)
-        }
-        return xarray.Dataset(
-            {
-                column.name: (
-                    names,
-                    column.values.reshape(self.shape),
-                    {"units": column.unit.symbol},
-                )
-                for column in self.columns
-            },
-            coords=coordinates,
-            attrs={"title": self.title, **self.provenance},
-        )
 
     def summary(self) -> dict[str, Any]:
         """Mapping of plain JSON values."""

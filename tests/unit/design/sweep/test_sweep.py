@@ -145,18 +145,6 @@ def test_several_displays_are_an_axis_and_answers_of_one_question_are_shared() -
     assert first.tolist() == second.tolist()
 
 
-def test_it_becomes_a_dataset_on_its_axes_with_units() -> None:
-    found = sweep(
-        "biet2008-stator",
-        vary={"voltage": "20 V..60 V:2", "normal_force": ["0.3 N", "0.6 N", "0.9 N"]},
-        ask="relative_friction,vibration_amplitude",
-    )
-    data = found.to_xarray()
-    assert data.relative_friction.dims == ("voltage_V", "normal_force_N")
-    assert data.relative_friction.values.tolist() == found.grid("relative_friction").tolist()
-    assert data.vibration_amplitude_m.attrs["units"] == "m"
-
-
 def test_a_file_gives_the_points(tmp_path: Path) -> None:
     file = tmp_path / "points.csv"
     file.write_text("voltage,finger.normal_force\n60 V,0.4 N\n100 V,0.5 N\n")
