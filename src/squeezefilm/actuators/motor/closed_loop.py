@@ -117,14 +117,13 @@ def track_force(
     period = 2 * np.pi / stator.omega[0]
     count = max(1, round(law.interval / period))
     J, totals = stator.mass.size, 2 * stator.mass.size + 4 + motor.feet.mu.size
-    state, command, force = ForceState(), 0.0, 0.0
+    state, force = ForceState(), 0.0
     rows = np.zeros((4, wanted.size))
     guide = slider.guide * np.sign(speed)
     for n, asked in enumerate(wanted.tolist()):
         amplitude = float(np.hypot(march.state[0], march.state[J] / stator.omega[0]))
-        state, ordered = force_step(law, state, asked, force, amplitude, speed)
-        command = ordered.voltage
-        driven = stator._replace(force=per_volt * command)
+        state = force_step(law, state, asked, force, amplitude, speed)
+        driven = stator._replace(force=per_volt * state.voltage)
         begun = float(march.state[totals + kernel.THRUST])
         parts = (driven, motor.feet, slider, march)
         steps = count * STEPS
@@ -134,5 +133,5 @@ def track_force(
         if done < steps:
             raise ConvergenceError("too many contacts began and ended within one step of the loop")
         force = (float(march.state[totals + kernel.THRUST]) - begun) / (count * period) - guide
-        rows[:, n] = (n + 1) * count * period, force, amplitude, command
+        rows[:, n] = (n + 1) * count * period, force, amplitude, state.voltage
     return TrackedForce(rows[0], wanted, rows[1], rows[2], rows[3], state.cut)

@@ -37,8 +37,8 @@ def speed_force_curve(
 class MotorMap:
     """A motor over preload (N) × amplitude (m); arrays (preloads, amplitudes).
 
-    `stall_force` (N), `no_load_speed` (m/s), `efficiency` at the best of five loads and `contact`
-    at rest (1). NaN where the motor stalls without a load.
+    `stall_force` (N), `no_load_speed` (m/s) and `efficiency` at the best of five loads. NaN where
+    the motor stalls without a load.
     """
 
     preload: si.NewtonArray
@@ -46,7 +46,6 @@ class MotorMap:
     stall_force: si.NewtonArray
     no_load_speed: si.MetrePerSecondArray
     efficiency: si.FloatArray
-    contact: si.FloatArray
 
 
 @si.checked_numbers
@@ -64,12 +63,11 @@ def motor_map(
     """
     si.require("preloads", preloads, si.Unit("N"), axes=1)
     si.require("amplitudes", amplitudes, si.Unit("m"), axes=1)
-    answers = np.full((4, preloads.size, amplitudes.size), np.nan)
+    answers = np.full((3, preloads.size, amplitudes.size), np.nan)
     for i, preload in enumerate(preloads.tolist()):
         for j, amplitude in enumerate(amplitudes.tolist()):
             working = Working(amplitude=amplitude, preload=preload)
             rest = averaged(motor, working)
-            answers[3, i, j] = rest.contact_share
             try:
                 require_moving(motor, rest)
                 top = no_load_speed(motor, working)
@@ -77,7 +75,7 @@ def motor_map(
                 top = None
             if top is not None:
                 loaded = [averaged(motor, working, speed=top * part) for part in _SPEEDS.tolist()]
-                answers[:3, i, j] = rest.force, top, max(point.efficiency for point in loaded)
+                answers[:, i, j] = rest.force, top, max(point.efficiency for point in loaded)
             if progress is not None:
                 progress(i * amplitudes.size + j + 1, answers[0].size)
     return MotorMap(preloads, amplitudes, *answers)

@@ -7,7 +7,7 @@ measured force, and added to what is wanted; the amplitude over the voltage, whi
 a proportional loop around it with the resonance's gain fed forward. Nothing is integrated that
 could wind up.
 
-One step is a pure function: state and measurements in, state and command out.
+One step is a pure function: state and measurements in, state with the command out.
 """
 
 from __future__ import annotations
@@ -64,7 +64,8 @@ class ForceLaw:
 
 class ForceState(NamedTuple):
     """State of a law: by how much the table is too high (N), what the feet add to the amplitude
-    (m), amplitude (m) and voltage (V) a step before, and how many commands were cut."""
+    (m), the amplitude measured last (m), the voltage commanded there (V, zero-to-peak), and how
+    many commands were cut."""
 
     correction: float = 0.0
     offset: float = 0.0
@@ -73,26 +74,13 @@ class ForceState(NamedTuple):
     cut: int = 0
 
 
-class ForceCommand(NamedTuple):
-    """The voltage's amplitude (V), the amplitude it is for (m), and the force that is expected of
-    it (N)."""
-
-    voltage: float
-    amplitude: float
-    expected_thrust: float
-
-
 @si.checked_numbers
-def amplitude_for_force(
-    law: ForceLaw, force: si.Newton, speed: si.MetrePerSecond
-) -> tuple[si.Metre, si.Newton]:
-    """The amplitude (m) for a force (N) at a speed (m/s) by the law's table, and its force there.
+def amplitude_for_force(law: ForceLaw, force: si.Newton, speed: si.MetrePerSecond) -> si.Metre:
+    """The amplitude (m) for a force (N) at a speed (m/s) by the law's table.
 
     Linear between the table's points; at its ends where the force, or the speed, lies beyond them.
     """
-    row = _thrust_at(law, speed)
-    amplitude = float(np.interp(force, row, law.amplitude))
-    return amplitude, float(np.interp(amplitude, law.amplitude, row))
+    return float(np.interp(force, _thrust_at(law, speed), law.amplitude))
 
 
 @si.checked_numbers
@@ -103,8 +91,8 @@ def force_step(
     force: si.Newton,
     amplitude: Annotated[si.Metre, si.AtLeast(0.0)],
     speed: si.MetrePerSecond,
-) -> tuple[ForceState, ForceCommand]:
-    """Make a step of the law.
+) -> ForceState:
+    """The state after a step of the law; its `voltage` is the command.
 
     Args:
         law: what is known of the motor.
@@ -122,7 +110,7 @@ def force_step(
     believed = float(np.interp(0.5 * (state.amplitude + amplitude), law.amplitude, row))
     share = min(1.0, law.interval / law.correction_time)
     correction = state.correction + share * (believed - force - state.correction)
-    target, expected = amplitude_for_force(law, wanted + correction, speed)
+    target = amplitude_for_force(law, wanted + correction, speed)
     # τ A' + A = V/G + offset, turned around for an error that vanishes within amplitude_time; the
     # offset, of the feet's load on the mode, is observed as the force's is.
     kept = float(np.exp(-law.interval / law.time_constant))
@@ -131,10 +119,7 @@ def force_step(
     ahead = target - offset + law.time_constant / law.amplitude_time * (target - amplitude)
     asked = law.volts_per_metre * ahead
     voltage = min(max(asked, 0.0), law.highest_voltage)
-    return (
-        ForceState(correction, offset, amplitude, voltage, state.cut + (voltage != asked)),
-        ForceCommand(voltage, target, expected - correction),
-    )
+    return ForceState(correction, offset, amplitude, voltage, state.cut + (voltage != asked))
 
 
 def _thrust_at(law: ForceLaw, speed: si.MetrePerSecond) -> si.NewtonArray:

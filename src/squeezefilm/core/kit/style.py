@@ -75,7 +75,6 @@ LANDMARK: dict[str, Any] = {"color": INK, "lw": 1, "ls": (0, (4, 2))}
 ESTIMATE: dict[str, Any] = {"color": BLUE, "marker": "o", "ls": "", "ms": 7, "mec": PAPER}
 INTERVAL: dict[str, Any] = {"color": MUTED, "lw": 1.4}
 OUTLINED: dict[str, Any] = {"edgecolor": INK, "lw": 0.8}
-SLANTED: dict[str, Any] = {"fontsize": 9, "rotation": 35, "va": "bottom"}
 BARS: dict[str, Any] = {"color": BAND, "edgecolor": MUTED}
 
 _RC: dict[str, Any] = {
