@@ -188,14 +188,14 @@ def bent_ring_down(wrong: Wrong, random: Random) -> Checked:
     return ring_down(wrong, random, bent=True)
 
 
-_SWEPT: dict[tuple[int, bool], tuple[SofteningResonance, list[Any], list[float], list[str]]] = {}
+_SWEPT: dict[int, tuple[SofteningResonance, list[Any], list[float], list[str]]] = {}
 
 
 def _swept(
-    number: int, drift: bool
+    number: int,
 ) -> tuple[SofteningResonance, list[Any], list[float], list[str]]:
     """One of eight softening resonances, swept without noise: the slow part, kept."""
-    if (number, drift) not in _SWEPT:
+    if number not in _SWEPT:
         random = np.random.default_rng(number)
         quality, size = random.uniform(50, 80), 2e-6
         backbone = -random.uniform(0.004, 0.02) / size**2
@@ -204,18 +204,16 @@ def _swept(
         rows, volts, ways = [], [], []
         for V in (2.0, 5.0, 10.0, 15.0):
             for way in ("up", "down"):
-                # A plate that warms by 2e-5 of its frequency from sweep to sweep.
-                moved = true._replace(frequency=33.2e3 * (1 - 2e-5 * drift * len(rows)))
-                rows.append((f, moved.swept(f, V)) if way == "up" else
-                            (f[::-1], moved.swept(f[::-1], V)))  # fmt: skip
+                along = f if way == "up" else f[::-1]
+                rows.append((along, true.swept(along, V)))
                 volts.append(V)
                 ways.append(way)
-        _SWEPT[number, drift] = true, rows, volts, ways
-    return _SWEPT[number, drift]
+        _SWEPT[number] = true, rows, volts, ways
+    return _SWEPT[number]
 
 
 def voltage_sweeps(wrong: Wrong, random: Random) -> Checked:
-    true, rows, volts, ways = _swept(int(random.integers(8)), wrong.drift)
+    true, rows, volts, ways = _swept(int(random.integers(8)))
     size, sweeps = 0.01 * 2e-6 / np.sqrt(2), []
     for (f, x), V in zip(rows, volts, strict=True):
         noise = size * random.standard_normal((2, f.size))
@@ -224,14 +222,9 @@ def voltage_sweeps(wrong: Wrong, random: Random) -> Checked:
         H = H.conj() if wrong.phase_reversed else H
         sweeps.append(kinds.FrequencyResponse(f[keep], H[keep], V))
     recording = kinds.VoltageSweeps(tuple(sweeps), tuple(ways))
-    fit = fit_voltage_sweeps(recording, law="quadratic", drift=wrong.drift)
-    # With drift the frequency is that of the points' middle, in order of the sweeps.
-    middle = sum(i * one.frequency.size for i, one in enumerate(sweeps)) / sum(
-        one.frequency.size for one in sweeps
-    )
-    own = true.frequency * (1 - 2e-5 * middle) if wrong.drift else true.frequency
+    fit = fit_voltage_sweeps(recording)
     return {
-        "frequency": (fit.frequency, own),
+        "frequency": (fit.frequency, true.frequency),
         "quality factor": (fit.quality_factor, true.quality_factor),
         "amplitude per volt": (fit.amplitude_per_volt, true.amplitude_per_volt),
         "backbone": (fit.backbone, true.backbone),
@@ -260,7 +253,7 @@ def friction_bench(wrong: Wrong, random: Random) -> Checked:
         made.vibration_amplitude[keep],
         frequency=33e3,
     )
-    fit = fit_friction_bench(recording, drift=2 if wrong.drift else 0)
+    fit = fit_friction_bench(recording)
     assert fit.speed_exponent is not None
     assert fit.force_exponent is not None
     found = {
@@ -289,7 +282,7 @@ _MADE: Mapping[str, tuple[Callable[[Wrong, Random], Checked], str]] = {
     "grid scan": (grid_scan, "noise, double mode, missing points, phase reversed"),
     "ring-down": (ring_down, "noise, drift, double mode, missing points"),
     "ring-down that depends on its amplitude": (bent_ring_down, "noise, missing points"),
-    "voltage sweeps": (voltage_sweeps, "noise, drift, missing points, phase reversed"),
+    "voltage sweeps": (voltage_sweeps, "noise, missing points, phase reversed"),
     "friction bench": (friction_bench, "noise, drift, missing points"),
 }  # fmt: skip
 

@@ -70,7 +70,6 @@ def test_friction_by_amplitude_speed_and_force_with_what_may_be_used_of_it() -> 
 def test_a_finger_that_sweats_is_told_from_the_vibration_in_a_mixed_order_only() -> None:
     fit = fit_friction_bench(bench(sweat=0.5)[1])
     assert fit.adequacy.adequate
-    assert fit.drift is not None
     assert fit.drift.interval[0] < 0.5 < fit.drift.interval[1]
     for one, true in zip(fit.relative_friction, RELATIVE[1:], strict=True):
         assert one.value == pytest.approx(true, abs=4 * one.standard_error)
@@ -139,8 +138,6 @@ def test_what_is_no_sliding_is_refused() -> None:
     )  # fmt: skip
     with pytest.raises(InputError, match="need at least"):
         fit_friction_bench(short)
-    with pytest.raises(InputError, match="drift"):
-        fit_friction_bench(recording, drift=9)
 
 
 def test_levels_are_told_apart_by_a_share_of_the_largest() -> None:
@@ -160,16 +157,16 @@ def test_a_design_has_a_column_for_each_thing_that_varied() -> None:
         "direction": np.array([1.0, -1.0, 1.0, -1.0, 1.0, 1.0]),
     }
 
-    def design(drift: int, **changes: np.ndarray) -> tuple[_Design, np.ndarray]:
+    def design(**changes: np.ndarray) -> tuple[_Design, np.ndarray]:
         strokes: Any = SimpleNamespace(column=(known | changes).__getitem__)
-        found = _Design.of(strokes, drift)
+        found = _Design.of(strokes)
         return found, found.matrix.T
 
-    whole, columns = design(2)
+    whole, columns = design()
     assert whole.levels == pytest.approx([0.0, 1e-6, 2e-6])
     assert whole.speed == pytest.approx(np.prod(known["speed"]) ** (1 / 6))
     assert whole.force == pytest.approx(np.prod(known["force"]) ** (1 / 6))
-    assert (whole.speeds_vary, whole.forces_vary, whole.drift_at) == (True, True, 7)
+    assert (whole.speeds_vary, whole.forces_vary, whole.drift) == (True, True, slice(7, 9))
     share = known["amplitude"] / 2e-6
     place = (known["time"] - 5) / 4
     bend = (3 * place**2 - 1) / 2
@@ -181,7 +178,7 @@ def test_a_design_has_a_column_for_each_thing_that_varied() -> None:
     expected += [place - place.mean(), bend - bend.mean(), direction - direction.mean()]
     assert columns == pytest.approx(np.array(expected, dtype=float))
     # What hardly varied has no column, and one level no share of it.
-    even, columns = design(1, speed=np.full(6, 0.07), direction=np.ones(6))
-    assert (even.speeds_vary, even.drift_at, len(columns)) == (False, 5, 6)
-    alone, columns = design(1, amplitude=np.full(6, 1e-6))
-    assert (alone.levels.size, alone.drift_at, len(columns)) == (1, 3, 5)
+    even, columns = design(speed=np.full(6, 0.07), direction=np.ones(6))
+    assert (even.speeds_vary, even.drift, len(columns)) == (False, slice(5, 7), 7)
+    alone, columns = design(amplitude=np.full(6, 1e-6))
+    assert (alone.levels.size, alone.drift, len(columns)) == (1, slice(3, 5), 6)

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Annotated
 
 import numpy as np
 
@@ -28,8 +27,7 @@ from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
 from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.recordings.kinds import FrictionBench
 
-MOST_DRIFT = 4
-
+_DRIFT = 2  # degree in time; a finger sweats or dries
 # Amplitudes nearer than this share of the largest are one level.
 _LEVEL = 0.04
 _MOST_LEVELS = 24
@@ -63,7 +61,7 @@ class FrictionBenchFit(FitResult):
     relative_friction: tuple[Estimate, ...]
     speed_exponent: Estimate | None
     force_exponent: Estimate | None
-    drift: Estimate | None
+    drift: Estimate
     between_strokes: si.Dimensionless
     adequacy: Adequacy
 
@@ -94,25 +92,20 @@ class FrictionBenchFit(FitResult):
 
 
 @guarded_fit
-def fit_friction_bench(
-    recording: FrictionBench,
-    *,
-    drift: Annotated[int, si.AtLeast(0), si.AtMost(MOST_DRIFT)] = 2,
-) -> FrictionBenchFit:
+def fit_friction_bench(recording: FrictionBench) -> FrictionBenchFit:
     """µ and µ′/µ against amplitude (m), speed (m/s) and force (N), drift of the finger taken out.
 
     ln µ of every stroke is a level for its amplitude, exponents of speed and force (and how these
-    change with the amplitude), a polynomial of degree `drift` in time for a finger that sweats or
+    change with the amplitude), a square polynomial in time for a finger that sweats or
     dries, and the direction of the stroke (a force sensor's zero). What is left is the spread
     between strokes, of which intervals are made. Amplitude and drift are told apart only where
     amplitudes came in a mixed order: where they did not, `adequacy` says so. Needs more strokes
     than numbers to fit. Raises `InputError` for too few strokes, more than 24 amplitudes, or no
     friction at the least amplitude. Amplitudes at which a stroke has none are left out, and said.
     """
-    si.require("drift", drift, at_least=0, at_most=MOST_DRIFT)
     strokes = sliding_strokes(recording)
     strokes, floating = _touching(strokes)
-    fit = _Fitted.of(strokes, drift).read(recording, strokes)
+    fit = _Fitted.of(strokes).read(recording, strokes)
     if not floating:
         return fit
     shown = " and ".join(f"{1e6 * amplitude:.3g} µm" for amplitude in floating)
@@ -156,10 +149,9 @@ class _Design:
     speeds_vary: bool
     forces_vary: bool
     matrix: si.FloatArray
-    drift: int
 
     @classmethod
-    def of(cls, strokes: Strokes, drift: int) -> _Design:
+    def of(cls, strokes: Strokes) -> _Design:
         amplitude = strokes.column("amplitude")
         levels, number = _levels(amplitude)
         speed, force = (np.log(strokes.column(name)) for name in ("speed", "force"))
@@ -175,18 +167,19 @@ class _Design:
         t = strokes.column("time")
         place = 2 * (t - t[0]) / max(t[-1] - t[0], 1e-12) - 1
         # Orthogonal over the strokes, so that levels are those of the session's middle.
-        basis = np.polynomial.legendre.legvander(place, drift)[:, 1:]
+        basis = np.polynomial.legendre.legvander(place, _DRIFT)[:, 1:]
         columns += list((basis - basis.mean(axis=0)).T)
         direction = strokes.column("direction")
         if np.ptp(direction) > 0:
             columns.append(direction - direction.mean())
-        return cls(levels, number, *middle, *vary, np.stack(columns, axis=1), drift)
+        return cls(levels, number, *middle, *vary, np.stack(columns, axis=1))
 
     @cached_property
-    def drift_at(self) -> int:
-        """The first column of the drift."""
+    def drift(self) -> slice:
+        """The columns of the drift."""
         exponents = self.speeds_vary + self.forces_vary
-        return self.levels.size + exponents * (2 if self.levels.size > 1 else 1)
+        first = self.levels.size + exponents * (2 if self.levels.size > 1 else 1)
+        return slice(first, first + _DRIFT)
 
 
 def _levels(amplitude: si.MetreArray) -> tuple[si.MetreArray, si.IntArray]:
@@ -213,8 +206,8 @@ class _Fitted:
     data: si.FloatArray
 
     @classmethod
-    def of(cls, strokes: Strokes, drift: int) -> _Fitted:
-        design = _Design.of(strokes, drift)
+    def of(cls, strokes: Strokes) -> _Fitted:
+        design = _Design.of(strokes)
         data = np.log(strokes.column("coefficient"))
         if len(strokes.rows) < design.matrix.shape[1] + 2:
             raise InputError(
@@ -254,7 +247,7 @@ class _Fitted:
             relative_friction=tuple(relative),
             speed_exponent=self.sum(self.one(count)) if design.speeds_vary else None,
             force_exponent=self.sum(self.one(after_speed)) if design.forces_vary else None,
-            drift=self._drift() if design.drift else None,
+            drift=self._drift(),
             between_strokes=spread,
             adequacy=self._adequacy(strokes),
         )
@@ -262,8 +255,7 @@ class _Fitted:
     def _drift(self) -> Estimate:
         """Drift from the first stroke to the last."""
         design, row = self.design, np.zeros(self.design.matrix.shape[1])
-        own = slice(design.drift_at, design.drift_at + design.drift)
-        row[own] = design.matrix[-1, own] - design.matrix[0, own]
+        row[design.drift] = design.matrix[-1, design.drift] - design.matrix[0, design.drift]
         return self.sum(row)
 
     def _adequacy(self, strokes: Strokes) -> Adequacy:
@@ -272,8 +264,7 @@ class _Fitted:
             friction,
             friction - np.exp(self.fit.model),
             lambda i: f"at {strokes.rows[i].time:.4g} s",
-            remedy="The finger changed otherwise than by a slow drift: ask for a drift of higher "
-            "degree, or leave out what went wrong.",
+            remedy="The finger changed otherwise than by a slow drift: leave out what went wrong.",
         )
         confounded = self._confounded()
         if confounded is None:
@@ -291,10 +282,10 @@ class _Fitted:
     def _confounded(self) -> int | None:
         """The level whose difference from the first one drift widens most, if by too much."""
         design, count = self.design, self.design.levels.size
-        if not design.drift or count < 2:
+        if count < 2:
             return None
         keep = np.ones(design.matrix.shape[1], dtype=bool)
-        keep[design.drift_at : design.drift_at + design.drift] = False
+        keep[design.drift] = False
         # In units of the noise: what the design alone does.
         whole, without = (np.linalg.pinv(m.T @ m) for m in (design.matrix, design.matrix[:, keep]))
         ratio = []
@@ -310,6 +301,6 @@ def _straight(matrix: si.FloatArray, data: si.FloatArray) -> SeparableFit:
     if np.linalg.matrix_rank(matrix) < matrix.shape[1]:
         raise InputError(
             "amplitude, speed, force and time of the strokes went together, so that none can be "
-            "told from the others; vary them in a mixed order, or ask for no drift"
+            "told from the others; vary them in a mixed order"
         )
     return linear_fit(matrix, data)

@@ -43,9 +43,8 @@ class VoltageSweepsFit(FitResult):
     `frequency` (f0, Hz), `quality_factor` (Q0) and `amplitude_per_volt` (m/V, at resonance) are
     those of vanishing amplitudes. Above `critical_amplitude` (m) at the resonance a sweep jumps;
     None where the backbone is not told from none. `phase_reversed` says that the phase was recorded
-    with the other sign, and the fit is of the complex conjugate. `warming` (share of f0 from one
-    sweep to the next) where drift was asked for. `model` and `residual` (m, complex) go with the
-    finite points of all sweeps in a row.
+    with the other sign, and the fit is of the complex conjugate. `model` and `residual` (m,
+    complex) go with the finite points of all sweeps in a row.
     """
 
     recording: VoltageSweeps
@@ -55,7 +54,6 @@ class VoltageSweepsFit(FitResult):
     amplitude_per_volt: Estimate
     backbone: Estimate
     damping_rise: Estimate
-    warming: Estimate | None
     critical_amplitude: si.Metre | None
     phase_reversed: bool
     model: si.ComplexArray
@@ -105,28 +103,19 @@ class VoltageSweepsFit(FitResult):
 
 
 @guarded_fit
-def fit_voltage_sweeps(
-    recording: VoltageSweeps,
-    *,
-    law: BackboneLaw | None = None,
-    drift: bool = False,
-) -> VoltageSweepsFit:
+def fit_voltage_sweeps(recording: VoltageSweeps) -> VoltageSweepsFit:
     """Fit how resonance frequency (Hz) and losses depend on the amplitude (m), from sweeps at
     several voltages (V), up and down.
 
     At every point [(f(a)/f0)² (1 + i/Q(a)) − (f/f0)²](x − R V) = g V with the amplitude a = |x|
     that was recorded: no branch has to be chosen, and jumps need no treatment. Residuals are
     brought back to metres by the curve's own slope (to first order: small noise); points next to a
-    fold are left out. Without a `law` the one that leaves less. With `drift` f0 may move from sweep
-    to sweep in proportion to their order, as a plate that warms. Noise is taken to be the same in
-    metres at every voltage. Raises `InputError` for fewer than 30 points, a sweep without a voltage
-    or phase, or one voltage only. Source: Nayfeh and Mook, Nonlinear Oscillations, section 4.1.
+    fold are left out. Of the laws the one that leaves less. Noise is taken to be the same in metres
+    at every voltage. Raises `InputError` for fewer than 30 points, a sweep without a voltage or
+    phase, or one voltage only. Source: Nayfeh and Mook, Nonlinear Oscillations, section 4.1.
     """
     points = _Points.of(recording)
-    if law is not None:
-        si.require_one_of("law", law, BACKBONE_LAWS)
-    tried: tuple[BackboneLaw, ...] = BACKBONE_LAWS if law is None else (law,)
-    looks = [_first_look(points, tried_law, drift) for tried_law in tried]
+    looks = [_first_look(points, law) for law in BACKBONE_LAWS]
     return _fitted(*min(looks, key=_left)).read(recording)
 
 
@@ -137,7 +126,6 @@ class _Points:
     f: si.HertzArray
     u: si.ComplexArray
     v: si.FloatArray
-    order: si.FloatArray
     size: si.Metre
     volts: si.Volt
     phase_reversed: bool = False
@@ -152,14 +140,14 @@ class _Points:
         if not recording.sweeps:
             raise InputError("there is no sweep; give sweeps at two or more voltages")
         rows = []
-        for number, sweep in enumerate(recording.sweeps):
+        for number, sweep in enumerate(recording.sweeps, 1):
             if not sweep.voltage or sweep.voltage <= 0:
-                raise InputError(f"sweep {number + 1} has no voltage; say at which it was made")
+                raise InputError(f"sweep {number} has no voltage; say at which it was made")
             f, H = np.asarray(sweep.frequency, dtype=float), np.asarray(sweep.displacement_per_volt)
             good = np.isfinite(f) & np.isfinite(H) & (f > 0)
-            V, place = (np.full(int(good.sum()), value) for value in (sweep.voltage, number))
-            rows.append((f[good], H[good] * sweep.voltage, V, place))
-        f, x, V, place = (np.concatenate(column) for column in zip(*rows, strict=True))
+            V = np.full(int(good.sum()), sweep.voltage)
+            rows.append((f[good], H[good] * sweep.voltage, V))
+        f, x, V = (np.concatenate(column) for column in zip(*rows, strict=True))
         if f.size < _FEWEST_POINTS:
             raise InputError(
                 f"the sweeps have {f.size} usable points; a backbone needs at least "
@@ -177,7 +165,6 @@ class _Points:
             f,
             np.asarray(x / size, dtype=complex),
             V / V.max(),
-            place - place.mean(),
             size,
             float(V.max()),
         )
@@ -195,16 +182,16 @@ class _Points:
 
     @cached_property
     def start(self) -> si.FloatArray:
-        """f0 as 1, loss, backbone, its loss, g, R (real and imaginary), drift; from the lowest
-        sweep's circle and the highest one's peak."""
+        """f0 as 1, loss, backbone, its loss, g, R (real and imaginary); from the lowest sweep's
+        circle and the highest one's peak."""
         low, circle = self.v == self.v.min(), self.circle
         f, u = self.f[low], self.u[low] / self.v.min()
         if circle is None or not f.min() < circle.frequency < f.max():
-            return np.array([float(f[np.argmax(np.abs(u))]), 0.02, 0, 0, 0.02, 0, 0, 0, 0])
+            return np.array([float(f[np.argmax(np.abs(u))]), 0.02, 0, 0, 0.02, 0, 0, 0])
         loss = min(abs(1 / circle.quality_factor), 0.3)
         peak = u[np.argmin(np.abs(f - circle.frequency))]
         g = 1j * loss * peak
-        return np.array([circle.frequency, loss, 0, 0, g.real, g.imag, 0, 0, 0])
+        return np.array([circle.frequency, loss, 0, 0, g.real, g.imag, 0, 0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -214,7 +201,6 @@ class _Duffing:
     points: _Points
     law: BackboneLaw
     own: si.Hertz
-    drift: bool
 
     @property
     def power(self) -> int:
@@ -227,7 +213,7 @@ class _Duffing:
         g, R = at[4] + 1j * at[5], at[6] + 1j * at[7]
         points = self.points
         a = np.abs(points.u)
-        own = 1 + shift + (at[8] * points.order if self.drift else 0.0)
+        own = 1 + shift
         back, bent = 1 + bend * a**self.power, self.power * bend * a**self.power
         lossy = 1 + 1j * loss * (1 + rise * a)
         D = (own * back) ** 2 * lossy - (points.f / self.own) ** 2
@@ -282,8 +268,8 @@ class _Fitted:
             "fit is of the complex conjugate. "
             if points.phase_reversed
             else "",
-            remedy="Narrow the band to the one mode, wait between sweeps until the plate is cold, "
-            "or ask for the drift.",
+            remedy="Narrow the band to the one mode, or wait between sweeps until the plate is "
+            "cold.",
         )
         return VoltageSweepsFit(
             recording=recording,
@@ -297,7 +283,6 @@ class _Fitted:
             ),
             backbone=backbone,
             damping_rise=estimate(3, 1 / size, "1/m"),
-            warming=estimate(8, 1.0, "1") if self.duffing.drift else None,
             critical_amplitude=_critical(backbone, float(fit.numbers[1]), power),
             phase_reversed=points.phase_reversed,
             model=(points.u - step) * size,
@@ -306,25 +291,22 @@ class _Fitted:
         )
 
 
-def _first_look(
-    points: _Points, law: BackboneLaw, drift: bool
-) -> tuple[_Duffing, NonlinearFit, si.FloatArray]:
+def _first_look(points: _Points, law: BackboneLaw) -> tuple[_Duffing, NonlinearFit, si.FloatArray]:
     """A law's numbers by the equation as it stands, which leads near from afar, and the steps by
     which they are varied."""
     start = points.start.copy()
     own, start[0] = float(start[0]), 0.0
-    duffing = _Duffing(points, law, own, drift)
+    duffing = _Duffing(points, law, own)
     loss = float(start[1])
     start[2] = _first_bend(points, own, duffing.power)
-    count = 9 if drift else 8
-    steps = np.array([loss, loss, loss, 1.0, loss, loss, loss, loss, loss])[:count] * 1e-5
+    steps = np.array([loss, loss, loss, 1.0, loss, loss, loss, loss]) * 1e-5
 
     def equation(at: si.FloatArray) -> si.FloatArray:
         D, _, x, wanted = duffing.terms(at)
         E = D * x - wanted
         return np.concatenate([E.real, E.imag])
 
-    return duffing, fit_nonlinear(equation, start[:count], steps), steps
+    return duffing, fit_nonlinear(equation, start, steps), steps
 
 
 def _left(look: tuple[_Duffing, NonlinearFit, si.FloatArray]) -> float:
