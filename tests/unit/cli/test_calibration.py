@@ -12,7 +12,7 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.cli.calibration import calibrate, predict_unseen, score
-from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted, Score
+from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted, Score, load_prediction
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.display import load_display
 
@@ -86,7 +86,7 @@ def test_a_calibration_is_written_into_a_folder_with_a_page(
 
 
 def test_a_prediction_is_told_with_its_hash(stands_in: StandsIn, tmp_path: Path) -> None:
-    asked = stands_in("measure.calibration.blind:predict_blind", BLIND)
+    asked = stands_in("measure.calibration.blind:predicted", BLIND)
     out = tmp_path / "p.json"
     ask = ("--ask", "relative_friction: vibration_amplitude=1.7 um", "--ask", "mass")
     done = run("measure", "predict", PLATE, *ask, "--out", str(out))
@@ -96,7 +96,7 @@ def test_a_prediction_is_told_with_its_hash(stands_in: StandsIn, tmp_path: Path)
         Observation("mass", 0.0, 0.0, {}),
     ]
     assert "vibration_amplitude 1.7e-06: 0.4 (0.3 to 0.5, 90 %)" in done.stdout.replace("\n", " ")
-    assert "SHA-256 abc123" in done.stdout
+    assert f"SHA-256 {load_prediction(out).sha256}" in done.stdout
     refused = run("measure", "predict", PLATE, "--ask", "mass: wind=1 m", "--out", str(out))
     assert refused.returncode == 2
     assert "no condition" in refused.stderr

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.calibration.blind import Predicted, _scored, predict_blind
+from squeezefilm.measure.calibration.blind import Predicted, _scored, predict_measurement
 from squeezefilm.measure.calibration.plate_posterior import Predictive
 from squeezefilm.measure.calibration.solved_answers import Asked
 from squeezefilm.measure.fits.ceramic.constants import compliances
@@ -24,7 +24,6 @@ from squeezefilm.measure.fits.vibration.frequency_response import _Band, fit_fre
 from squeezefilm.measure.fits.vibration.line_points import LinePoints
 from squeezefilm.measure.fits.vibration.line_scan import _wave_number
 from squeezefilm.measure.recordings.kinds import FrequencyResponse
-from squeezefilm.physics.display import load_display
 
 X = np.linspace(0, 80e-3, 9)
 EVEN = np.ones((9, 9))
@@ -67,7 +66,7 @@ def test_a_prediction_is_never_overwritten(tmp_path: Path) -> None:
     there = tmp_path / "blind.json"
     there.write_text("{}")
     with pytest.raises(InputError, match="never overwritten"):
-        predict_blind(load_display("biet2008-plate"), [], there)
+        predict_measurement("biet2008-plate", "mass", there)
     assert there.read_text() == "{}"
 
 

@@ -105,33 +105,6 @@ class Score:
         )
 
 
-def predict_blind(
-    display: Display,
-    what: Sequence[Observation],
-    path: str | Path,
-    *,
-    seed: int = 1,
-    progress: SayProgress | None = None,
-) -> BlindPrediction:
-    """Write a prediction of what will be measured, before it is.
-
-    `what` names the answers and their conditions; the values in them are ignored (leave them 0). Of
-    a calibrated display its calibration's draws predict the plate, of another plates drawn from its
-    spreads, each with what a model is believed to be off by. The file is JSON, in SI units, never
-    overwritten.
-
-    Raises `InputError` where nothing is asked, an answer is not known, or the file is there
-    already.
-    """
-    target = Path(path)
-    if target.exists():
-        raise InputError(
-            f"{target} is there already; a prediction is never overwritten, name another"
-        )
-    write_whole(target, sealed(predicted(display, what, seed=seed, progress=progress)))
-    return load_prediction(target)
-
-
 @reads_text
 def predict_measurement(
     display: NamedDisplay,
@@ -147,14 +120,20 @@ def predict_measurement(
     "resonance_frequency" or "relative_friction: vibration_amplitude=1.7 um". `out` is a JSON file
     in SI units that is never overwritten; `score_prediction` compares it with recordings later.
     A calibrated display answers from its calibration's draws, in a second, what these hold; else
-    plates are drawn from the display's own spreads and solved: a minute or so. See
-    `measure.calibration.blind.predict_blind`.
+    plates are drawn from the display's own spreads and solved: a minute or so. Either has what a
+    model is believed to be off by.
 
     Raises `InputError` for a question that cannot be read or answered, where nothing is asked, and
     for a file that is there already.
     """
     asked = [question(text) for text in ([ask] if isinstance(ask, str) else ask)]
-    return predict_blind(display, asked, out, seed=seed, progress=progress)
+    target = Path(out)
+    if target.exists():
+        raise InputError(
+            f"{target} is there already; a prediction is never overwritten, name another"
+        )
+    write_whole(target, sealed(predicted(display, asked, seed=seed, progress=progress)))
+    return load_prediction(target)
 
 
 def predicted(
@@ -164,8 +143,8 @@ def predicted(
     seed: int = 1,
     progress: SayProgress | None = None,
 ) -> BlindPrediction:
-    """Predict what will be measured, as `predict_blind` writes it, not yet sealed: its SHA-256 is
-    empty.
+    """Predict what will be measured, not yet sealed: its SHA-256 is empty. `what` names answers and
+    conditions; the values in them are ignored.
 
     Raises `InputError` where nothing is asked or an answer is not known.
     """
@@ -276,7 +255,7 @@ def _digest(content: dict[str, Any]) -> str:
 
 
 def load_prediction(path: str | Path) -> BlindPrediction:
-    """The prediction in a file of `predict_blind`.
+    """The prediction in a file of `predict_measurement`.
 
     Raises `InputError` for a file that is none, or whose content is not what its SHA-256 says.
     """

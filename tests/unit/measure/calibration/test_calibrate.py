@@ -13,7 +13,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.measure.calibration.blind import (
     keep_scores,
     load_prediction,
-    predict_blind,
+    predict_measurement,
     score,
 )
 from squeezefilm.measure.calibration.calibrate import Effort, calibrate, friction_before
@@ -104,8 +104,9 @@ def test_text_with_sources_reads_back(calibration: Calibration) -> None:
 @pytest.mark.slow
 def test_a_prediction_is_made_kept_and_scored(calibration: Calibration, tmp_path: Path) -> None:
     file = tmp_path / "prediction.json"
-    wanted = friction(0.0, 1.5e-6)
-    made = predict_blind(calibrated_display(calibration), [wanted], file)
+    ask = "relative_friction: vibration_amplitude=1.5 um"
+    display = calibrated_display(calibration)
+    made = predict_measurement(display, ask, file)
     assert made == load_prediction(file)
     assert len(made.sha256) == 64
     low, high = made.predictions[0].interval
@@ -120,11 +121,11 @@ def test_a_prediction_is_made_kept_and_scored(calibration: Calibration, tmp_path
     with pytest.raises(InputError, match="nothing that was measured"):
         score(file, [friction(0.4, 3e-6)])
     with pytest.raises(InputError, match="never overwritten"):
-        predict_blind(calibrated_display(calibration), [wanted], file)
-    display = write_calibrated(calibration, tmp_path / "display.toml")
-    keep_scores(display, file, [one])
-    assert made.sha256 in display.read_text(encoding="utf-8")
-    assert load_display(display).joint is not None
+        predict_measurement(display, ask, file)
+    told = write_calibrated(calibration, tmp_path / "display.toml")
+    keep_scores(told, file, [one])
+    assert made.sha256 in told.read_text(encoding="utf-8")
+    assert load_display(told).joint is not None
     file.write_text(file.read_text().replace('"median": 0.', '"median": 0.1'))
     with pytest.raises(InputError, match="changed after it was written"):
         score(file, [inside])
@@ -136,7 +137,7 @@ def test_a_prediction_that_is_none(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="no prediction"):
         load_prediction(file)
     with pytest.raises(InputError, match="name at least one"):
-        predict_blind(load_display(STATOR), [], tmp_path / "new.json")
+        predict_measurement(load_display(STATOR), [], tmp_path / "new.json")
 
 
 def test_what_cannot_be_used_is_refused_before_any_work() -> None:

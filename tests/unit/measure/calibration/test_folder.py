@@ -92,15 +92,22 @@ def test_a_folder_without_anything_to_use_is_refused(
         sf.calibrate_display(STATOR, tmp_path)
 
 
-def test_a_measurement_is_predicted_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_measurement_is_predicted_in_words(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     asked: list[Any] = []
-    monkeypatch.setattr(
-        blind, "predict_blind", lambda *given, **named: asked.append((given, named))
-    )
-    sf.predict_measurement(STATOR, "relative_friction: vibration_amplitude=1.7 um", "p.json")
-    sf.predict_measurement(STATOR, ["mass", "quality_factor"], "p.json", seed=4)
-    (display, first, out), named = asked[0]
-    assert (display.name, out, named["seed"]) == (STATOR, "p.json", 1)
+    made = blind.BlindPrediction(STATOR, "made up", (), {}, "")
+
+    def predicted(*given: Any, **named: Any) -> blind.BlindPrediction:
+        asked.append((given, named))
+        return made
+
+    monkeypatch.setattr(blind, "predicted", predicted)
+    one, two = tmp_path / "1.json", tmp_path / "2.json"
+    sf.predict_measurement(STATOR, "relative_friction: vibration_amplitude=1.7 um", one)
+    sf.predict_measurement(STATOR, ["mass", "quality_factor"], two, seed=4)
+    (display, first), named = asked[0]
+    assert (display.name, named["seed"]) == (STATOR, 1)
     assert first == [Observation("relative_friction", 0.0, 0.0, {"vibration_amplitude": 1.7e-6})]
     assert [one.answer for one in asked[1][0][1]] == ["mass", "quality_factor"]
 
