@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import math
 import subprocess
 import sys
 import tomllib
@@ -25,13 +26,15 @@ import tomlkit
 
 from radial_mode import RadialPrediction, predict_radial_mode
 from squeezefilm import __version__
-from squeezefilm.measure.fits.ceramic.disc import DiscConstants, disc_by_mass, disc_constants
+from squeezefilm.measure.fits.ceramic.disc import DiscConstants, disc_constants
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
+from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 
 ROOT = Path(__file__).parents[1]
 FILE = ROOT / "predictions" / "pzt-disc-35mm-second-radial.toml"
 DIAMETER, THICKNESS, MASS = 35e-3, 2e-3, 14.8993e-3
+DISC = CeramicDisc(DIAMETER, THICKNESS, MASS / (math.pi / 4 * DIAMETER**2 * THICKNESS))
 SEED, DRAWS = 19, 2000
 
 ASSUMED = (
@@ -158,7 +161,7 @@ def main() -> int:
     parser.add_argument("--check", action="store_true", help="compare with the file that is there")
     arguments = parser.parse_args()
     sweep = read_sweep(arguments.recording)
-    constants = disc_constants(sweep, disc_by_mass(DIAMETER, THICKNESS, MASS))
+    constants = disc_constants(sweep, DISC)
     found = predict_radial_mode(constants, sweep, seed=SEED, draws=DRAWS)
     if arguments.check:
         text = FILE.read_text(encoding="utf-8")

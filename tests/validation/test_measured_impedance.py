@@ -11,11 +11,11 @@ import tomllib
 import numpy as np
 import pytest
 
-from predict_disc import DIAMETER, FILE, MASS, PREDICTED, THICKNESS
+from predict_disc import DISC, FILE, PREDICTED
 from radial_mode import predict_radial_mode
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.ceramic.bar import bar_constants
-from squeezefilm.measure.fits.ceramic.disc import disc_by_mass, disc_constants
+from squeezefilm.measure.fits.ceramic.disc import disc_constants
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.sweep_reading import sweep_peaks
 from squeezefilm.measure.recordings.kinds import CeramicBar, ImpedanceSweep
@@ -75,7 +75,7 @@ def test_the_bar() -> None:
 
 def test_the_disc() -> None:
     """Compared with what a thin disc's formula gave, where the first mode tells it."""
-    found = disc_constants(disc_sweep(), disc_by_mass(35e-3, 2e-3, 14.8993e-3))
+    found = disc_constants(disc_sweep(), DISC)
     assert found.adequacy.residual < 0.02
     low, high = found.compliance_11.interval
     assert low < 16.31e-12 < high
@@ -90,7 +90,7 @@ def test_the_disc() -> None:
 def test_the_committed_prediction_is_what_the_fit_to_the_first_mode_gives() -> None:
     """With fewer draws than the committed one has, so only to a third of its half intervals."""
     old = tomllib.loads(FILE.read_text(encoding="utf-8"))
-    constants = disc_constants(disc_sweep(), disc_by_mass(DIAMETER, THICKNESS, MASS))
+    constants = disc_constants(disc_sweep(), DISC)
     again = predict_radial_mode(constants, disc_sweep(), seed=3, draws=160)
     for name in PREDICTED:
         before, now = old["prediction"][name], getattr(again, name)

@@ -31,7 +31,6 @@ from squeezefilm.measure.fits.ceramic.constants import (
 )
 from squeezefilm.measure.fits.ceramic.disc import (
     DiscConstants,
-    disc_by_mass,
     disc_constants,
     disc_curve,
 )
@@ -106,10 +105,6 @@ def test_the_prior_is_made_of_the_ceramics_of_the_library() -> None:
     assert s[0].real > 0 > s[1].real
     assert d[0].real < 0 < d[1].real
     assert eps[1].real > 500
-
-
-def test_a_mass_gives_the_density() -> None:
-    assert disc_by_mass(35e-3, 2e-3, 14.8993e-3).density == pytest.approx(7743, abs=1)
 
 
 def test_a_thick_disc_and_a_sweep_without_the_mode_are_refused() -> None:

@@ -54,16 +54,14 @@ class DiscConstants(CeramicConstants):
     from_data: dict[str, float]
 
 
-def disc_constants(
-    sweep: ImpedanceSweep, disc: CeramicDisc, prior: Prior | None = None
-) -> DiscConstants:
+def disc_constants(sweep: ImpedanceSweep, disc: CeramicDisc) -> DiscConstants:
     """Fit the axisymmetric piezoelectric solution of the free disc to a sweep of one or more of its
     radial modes, with elastic, piezoelectric and dielectric losses.
 
     Which of the lowest four the most conductance is of is found by what ceramics are and by what is
     left of the data (`recorded_mode`), and said. What the mode does not tell (Poisson's ratio,
-    everything along the thickness) is held by `prior`, that of the library's ceramics where none is
-    given, and its uncertainty stays in the intervals. Constants do not depend on frequency within
+    everything along the thickness) is held by what the library's ceramics have in common, and its
+    uncertainty stays in the intervals. Constants do not depend on frequency within
     the sweep. Range: discs at least 5 times as wide as thick (`CeramicDisc`), full electrodes,
     free. Raises `InputError` as `fit_impedance` does, and for a thicker disc.
     """
@@ -75,7 +73,7 @@ def disc_constants(
             f"the others from {_LEAST_SLENDERNESS:.0f} on",
             quantity="disc",
         )
-    prior = prior or ceramic_prior()
+    prior = ceramic_prior()
     starts = _starts(sweep, disc, prior)
 
     def fitted_as(number: int) -> ComplexFit:
@@ -162,14 +160,3 @@ def _starts(sweep: ImpedanceSweep, disc: CeramicDisc, prior: Prior) -> list[si.F
         p[[0, 2, 3]] = math.log(s11), math.log(d31), math.log(eps33)
         starts.append(p)
     return starts
-
-
-@si.checked_numbers
-def disc_by_mass(
-    diameter: Annotated[si.Metre, si.Above(0.0)],
-    thickness: Annotated[si.Metre, si.Above(0.0)],
-    mass: Annotated[si.Kilogram, si.Above(0.0)],
-) -> CeramicDisc:
-    """The disc of a diameter, a thickness (m) and a mass (kg) that was weighed."""
-    volume = math.pi / 4 * diameter**2 * thickness
-    return CeramicDisc(diameter, thickness, mass / volume)
