@@ -24,19 +24,13 @@ from squeezefilm.measure.recordings.kinds import FrequencyResponse
 
 @dataclass(frozen=True)
 class ModalCircle:
-    """A mode by the circle through its response (m/V): centre, diameter, and how round it is.
-
-    `roundness` is the mean distance of the points from the circle over its radius; `points` lay
-    within the stretch that was used. A negative `quality_factor` is that of a phase recorded with
-    the other sign.
-    """
+    """A mode by the circle through its response: `roundness` is the mean distance of the points
+    from it over its radius. A negative `quality_factor` is that of a phase recorded with the other
+    sign."""
 
     frequency: si.Hertz
     quality_factor: si.Dimensionless
-    centre: complex
-    diameter: si.MetrePerVolt
     roundness: si.Dimensionless
-    points: int
 
 
 def modal_circle(frequency: si.HertzArray, response: si.ComplexArray) -> ModalCircle | None:
@@ -66,17 +60,12 @@ def modal_circle(frequency: si.HertzArray, response: si.ComplexArray) -> ModalCi
     if squared <= 0 or p.imag == 0:
         return None
     A = c - R * p
-    diameter = abs(A / p.imag)
-    centre = R + A / (2j * p.imag)
-    distance = np.abs(H - centre)
-    roundness = float(np.mean(np.abs(distance - diameter / 2)) / (diameter / 2))
+    radius = abs(A / p.imag) / 2
+    distance = np.abs(H - R - A / (2j * p.imag))
     return ModalCircle(
         frequency=middle * float(np.sqrt(squared)),
         quality_factor=float(squared / p.imag),
-        centre=complex(centre * size),
-        diameter=float(diameter * size),
-        roundness=roundness,
-        points=int(near.size),
+        roundness=float(np.mean(np.abs(distance - radius)) / radius),
     )
 
 
