@@ -41,7 +41,7 @@ from squeezefilm.instruments.bench.played_session import PlayedSession
 from squeezefilm.instruments.report import figures as played
 from squeezefilm.instruments.report.page import write_play
 from squeezefilm.measure.calibration.folder import FolderCalibration
-from squeezefilm.measure.report import calibration_figures
+from squeezefilm.measure.report.calibration_page import FIGURES as CALIBRATION_FIGURES
 from squeezefilm.measure.report.calibration_page import write_calibration
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
@@ -108,7 +108,7 @@ SUBJECTS: Mapping[type, _Subject] = {
     Fabrication: _Subject(
         {"drawing": lambda made: sheet_figure(drawing_sheet(made))}, write_fabrication
     ),
-    FolderCalibration: _Subject(_by_key(calibration_figures.FIGURES), write_calibration),
+    FolderCalibration: _Subject(_by_key(CALIBRATION_FIGURES), write_calibration),
     IdentificationAnalysis: _Subject(_by_key(FIGURES_OF_STUDY), write_study),
     TaskAnalysis: _Subject(_by_key(TASK_FIGURES), write_study),
     SimulatedStudy: _Subject({"answers": _of_first_display}, write_simulated),

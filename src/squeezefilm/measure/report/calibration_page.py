@@ -6,12 +6,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.calibration_record import ComparedAnswer
+from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, write_folder
-from squeezefilm.core.kit.numbers import changed, shown
+from squeezefilm.core.kit.numbers import changed, shown, span
 from squeezefilm.core.kit.page_style import (
+    FigureOf,
     as_html,
     bullets,
     drawn_figures,
@@ -31,15 +36,49 @@ from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.folder import FolderCalibration
 from squeezefilm.measure.calibration.identified import IDENTIFIED, NOT_TOLD
 from squeezefilm.measure.calibration.written_display import calibrated_text
-from squeezefilm.measure.report.calibration_figures import (
-    FIGURES,
-    deviation,
-    row_name,
-)
 from squeezefilm.physics.uncertainty.intervals import LEVEL
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 DISPLAY_FILE, PAGE = "calibrated.toml", "calibration.html"
 VALUES_HEAD = ("value", "before", "after", "90 % interval", "spread left")
+
+
+@style.drawn
+def friction_figure(calibrated: FolderCalibration) -> Figure:
+    """Friction's interval before and after."""
+    before, after = calibrated.calibration.before, calibrated.calibration.after
+    pairs = (("as described", before), ("with what was measured", after))
+    known = [(name, interval) for name, interval in pairs if interval is not None]
+    if after is None:
+        title = "Friction has no interval: too many draws have none"
+    elif before is None:
+        title = f"µ′/µ is {span(*after.interval)}"
+    else:
+        title = (
+            f"µ′/µ is {span(*after.interval)} where it was {span(*before.interval)}: "
+            f"{si.percent(after.width / before.width)} of that interval is left"
+        )
+    figure = style.new_figure(
+        title, f"{si.percent(LEVEL)} intervals at the display's own voltage, force and speed", 2.5
+    )
+    axes = figure.subplots()
+    for row, (_, interval) in enumerate(known):
+        color = style.BLUE if interval is after else style.MUTED
+        axes.plot(interval.interval, [row, row], color=color, lw=4.5, solid_capstyle="butt")
+        axes.plot([interval.median], [row], **style.ESTIMATE)
+    names = [f"{name},\n{shown(interval.amplitude, si.Unit('m'), 2)}" for name, interval in known]
+    axes.set_yticks(range(len(names)), names)
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.grid(visible=False, axis="y")
+    axes.tick_params(axis="y", length=0)
+    axes.set(xlim=(0, 1.04), xlabel="relative friction µ′/µ")
+    return figure
+
+
+FIGURES = (FigureOf("friction", "Friction before and after", friction_figure),)
+"""The figures of a calibration, in the order of its page."""
 
 
 def write_calibration(calibrated: FolderCalibration, folder: Path) -> Path:
@@ -50,13 +89,11 @@ def write_calibration(calibrated: FolderCalibration, folder: Path) -> Path:
     calibration = calibrated.calibration
     summary = calibrated.summary() | {"stamp": stamp(calibration.described, calibration.seed)}
     figures = drawn_figures(FIGURES, calibrated)
-    pictures = {key: picture_sections({key: drawn}) for key, drawn in figures.items()}
-    get = pictures.get
     body = section(
         "What was measured is explained" if calibration.fits else "The model does NOT explain it",
         bullets([*calibration.doubts, *_misfits(calibration)]),
     )
-    body += get("friction", "")
+    body += picture_sections(figures)
     body += section("Every measured number", _compared(calibration.compared))
     body += section(
         "Each value", text_table("Before and after", VALUES_HEAD, value_rows(calibrated))
@@ -135,6 +172,24 @@ def _compared(rows: Sequence[ComparedAnswer]) -> str:
             )
             for answer in rows
         ],
+    )
+
+
+def deviation(answer: ComparedAnswer) -> float:
+    """Number of standard errors (measurement's and model's together) by which the measured value
+    lies above the calibrated model's median; NaN where the model has none."""
+    if not answer.after:
+        return float("nan")
+    from scipy.special import ndtri
+
+    spread = (answer.after[2] - answer.after[0]) / (2 * float(ndtri((1 + LEVEL) / 2)))
+    return (1 - answer.after[1]) / max(float(np.hypot(answer.error, spread)), 1e-12)
+
+
+def row_name(answer: ComparedAnswer) -> str:
+    """An observation by its name, and its recording where it has one."""
+    return style.plain(
+        f"{answer.said} ({answer.recording})" if answer.recording else answer.said, 90
     )
 
 

@@ -30,8 +30,12 @@ from squeezefilm.measure.calibration.identified import (
     NextMeasurement,
 )
 from squeezefilm.measure.fits.estimate import Observation
-from squeezefilm.measure.report.calibration_figures import FIGURES, deviation
-from squeezefilm.measure.report.calibration_page import value_rows, write_calibration
+from squeezefilm.measure.report.calibration_page import (
+    FIGURES,
+    deviation,
+    value_rows,
+    write_calibration,
+)
 from squeezefilm.physics.display import load_display
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
