@@ -16,7 +16,7 @@ from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.core.hard_limits import RECORDING_BYTES
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.regular_file import read_regular
-from squeezefilm.core.results import Result, to_json
+from squeezefilm.core.results import Result, to_json, write_whole
 from squeezefilm.measure.calibration.blind import Score, load_prediction, score
 from squeezefilm.measure.calibration.calibrate import calibrate
 from squeezefilm.measure.calibration.calibration import Calibration
@@ -27,7 +27,7 @@ from squeezefilm.measure.calibration.solved_answers import (
     PLATE_ANSWERS,
     asked_by,
 )
-from squeezefilm.measure.calibration.written_display import calibrated_display, write_calibrated
+from squeezefilm.measure.calibration.written_display import calibrated_display, calibrated_text
 from squeezefilm.measure.fits.by_kind import fit_recording, response_fit
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.measure.recordings.kinds import FrictionCurve
@@ -105,7 +105,9 @@ def calibrate_display(
         seed=seed,
         progress=progress,
     )
-    file = None if out is None else write_calibrated(calibration, out, seen.recordings)
+    file = None if out is None else Path(out)
+    if file is not None:
+        write_whole(file, calibrated_text(calibration, seen.recordings))
     return FolderCalibration(calibration, seen.recordings, seen.left_out, file)
 
 

@@ -40,7 +40,7 @@ BOUND = ("resonance_frequency", "parallel_resonance_frequency", "coupling_coeffi
 _MOST_COUPLED = -0.01
 # In standard deviations: further out the covariances of errors cannot be told from singular ones.
 _FURTHEST = 10.0
-_PASSES = 3
+_PASSES, _STARTS = 3, 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,8 +67,6 @@ class PlateProblem:
                     f"{asked_by(seen).said} was observed as {seen.value:.6g} with a standard error "
                     f"of {seen.standard_error:.6g}; both must be above 0"
                 )
-            if asked_by(seen) not in self.asked:
-                raise InputError(f"the emulator does not know the {asked_by(seen).said}")
 
     @cached_property
     def columns(self) -> list[int]:
@@ -166,6 +164,13 @@ class PlateProblem:
         root = np.linalg.cholesky(self.covariance)
         return np.asarray(np.linalg.solve(root, self.residuals(scores).T).T)
 
+    def slopes(self, scores: si.DimensionlessArray, step: float) -> si.FloatArray:
+        """Derivatives of `whitened` at scores (parameters,), by central differences, shape
+        (parameters, observations)."""
+        count = scores.size
+        there = self.whitened(scores + step * np.vstack([np.eye(count), -np.eye(count)]))
+        return np.asarray((there[:count] - there[count:]) / (2 * step))
+
     def errors(self, scales: si.DimensionlessArray) -> si.DimensionlessArray:
         """Covariances of the model's errors, emulator and solver included, at the discrepancy's
         `scales` (points, kinds), shape (points, asked, asked)."""
@@ -210,7 +215,7 @@ class PlatePosterior:
     effective: float
 
 
-def best_fit(problem: PlateProblem, starts: int = 4, seed: int = 1) -> si.DimensionlessArray:
+def best_fit(problem: PlateProblem, seed: int = 1) -> si.DimensionlessArray:
     """The most probable scores without a discrepancy, shape (parameters,), by least squares from
     several starts."""
     from scipy.optimize import least_squares
@@ -221,13 +226,10 @@ def best_fit(problem: PlateProblem, starts: int = 4, seed: int = 1) -> si.Dimens
         return np.asarray(np.r_[scores, problem.whitened(scores[None, :])[0]])
 
     def slopes(scores: si.FloatArray) -> si.FloatArray:
-        step = 1e-4
-        moved = scores + step * np.vstack([np.eye(count), -np.eye(count)])
-        there = problem.whitened(moved)
-        return np.vstack([np.eye(count), (there[:count] - there[count:]).T / (2 * step)])
+        return np.vstack([np.eye(count), problem.slopes(scores, 1e-4).T])
 
     random = np.random.default_rng(seed)
-    begun = np.vstack([np.zeros(count), random.normal(0, 0.7, (max(starts - 1, 0), count))])
+    begun = np.vstack([np.zeros(count), random.normal(0, 0.7, (_STARTS - 1, count))])
     fits = [least_squares(off, fitted, jac=slopes) for fitted in begun]
     return np.asarray(min(fits, key=lambda fitted: float(fitted.cost)).x)
 
@@ -290,10 +292,7 @@ def sampled_posterior(
 
 def _around(problem: PlateProblem, best: si.DimensionlessArray) -> si.FloatArray:
     """The covariance of the scores about the best fit if all were linear."""
-    step = 1e-3
-    moved = best + step * np.vstack([np.eye(best.size), -np.eye(best.size)])
-    there = problem.whitened(moved)
-    slopes = (there[: best.size] - there[best.size :]) / (2 * step)
+    slopes = problem.slopes(best, 1e-3)
     return np.asarray(np.linalg.inv(np.eye(best.size) + slopes @ slopes.T))
 
 

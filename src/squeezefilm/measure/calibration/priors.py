@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any, NamedTuple, cast
+from typing import Annotated, Any, NamedTuple, cast
 
 import numpy as np
 
@@ -155,23 +155,17 @@ def with_calibrated(display: Display, values: Mapping[str, float]) -> Display:
 @si.checked_numbers
 def ceramic_with_shares(
     ceramic: Piezoceramic,
-    stiffness: si.Dimensionless,
-    charge: si.Dimensionless,
-    permittivity: si.Dimensionless,
+    stiffness: Annotated[si.Dimensionless, si.Above(0.0)],
+    charge: Annotated[si.Dimensionless, si.Above(0.0)],
+    permittivity: Annotated[si.Dimensionless, si.Above(0.0)],
 ) -> Piezoceramic:
     """The ceramic with all stiffnesses, all charge coefficients and all clamped permittivities
-    multiplied by a share (above 0) each.
+    multiplied by a share each.
 
     Its full constants are stated then, as `Piezoceramic.full_constants` had them. What was stated
     twice (free permittivities, stress coefficients) belongs to the other values and is dropped.
     Raises `InputError` for shares that are not above 0.
     """
-    for name, share in (
-        ("stiffness", stiffness),
-        ("charge", charge),
-        ("permittivity", permittivity),
-    ):
-        si.require(name, share, above=0)
     full = ceramic.full_constants
     scaled: dict[str, Any] = {}
     for constant in dataclasses.fields(full):

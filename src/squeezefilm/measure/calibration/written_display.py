@@ -13,7 +13,6 @@ import json
 import re
 from collections.abc import Sequence
 from datetime import UTC, datetime
-from pathlib import Path
 
 import numpy as np
 
@@ -28,7 +27,7 @@ from squeezefilm.core.calibration_record import (
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.distributions import Distribution, Normal, Uniform
-from squeezefilm.core.results import config_hash, to_json, write_whole
+from squeezefilm.core.results import config_hash, to_json
 from squeezefilm.measure.calibration.calibration import CalibratedValue, Calibration, Joint
 from squeezefilm.measure.calibration.friction_posterior import finger_mixture
 from squeezefilm.measure.calibration.identified import NOT_TOLD
@@ -124,16 +123,6 @@ def calibrated_text(calibration: Calibration, recordings: Sequence[UsedRecording
         "measured\n# stands below, under calibration.\n\n"
     )
     return head + text_of(display, display.provenance)
-
-
-def write_calibrated(
-    calibration: Calibration, path: str | Path, recordings: Sequence[UsedRecording] = ()
-) -> Path:
-    """Write `calibrated_text` to a file, whole or not at all. Raises `InputError` where it cannot
-    be written."""
-    target = Path(path)
-    write_whole(target, calibrated_text(calibration, recordings))
-    return target
 
 
 def _day() -> str:

@@ -29,7 +29,6 @@ from squeezefilm.measure.calibration.solved_answers import (
 from squeezefilm.measure.calibration.written_display import (
     calibrated_display,
     calibrated_text,
-    write_calibrated,
 )
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.estimate import Observation
@@ -69,7 +68,8 @@ def test_friction_is_narrowed_and_the_file_has_the_same_interval(
     assert after is not None
     assert after.width < 0.8 * before.width
     assert any("of that interval is left" in one for one in calibration.sentences)
-    file = write_calibrated(calibration, tmp_path / "calibrated.toml")
+    file = tmp_path / "calibrated.toml"
+    file.write_text(calibrated_text(calibration), encoding="utf-8")
     read = load_display(file)
     assert read == calibrated_display(calibration)
     found = uncertain_friction(read, predict(read), samples=16, seed=2)
@@ -122,7 +122,8 @@ def test_a_prediction_is_made_kept_and_scored(calibration: Calibration, tmp_path
         score(file, [friction(0.4, 3e-6)])
     with pytest.raises(InputError, match="never overwritten"):
         predict_measurement(display, ask, file)
-    told = write_calibrated(calibration, tmp_path / "display.toml")
+    told = tmp_path / "display.toml"
+    told.write_text(calibrated_text(calibration), encoding="utf-8")
     keep_scores(told, file, [one])
     assert made.sha256 in told.read_text(encoding="utf-8")
     assert load_display(told).joint is not None

@@ -68,10 +68,12 @@ def test_a_calibration_takes_names_and_writes_what_it_found(
 
     monkeypatch.setattr(calibrated_folder, "calibrate", calibrate)
     monkeypatch.setattr(
-        calibrated_folder, "write_calibrated", lambda found, out, used: Path(f"{out}-{len(used)}")
+        calibrated_folder, "calibrated_text", lambda found, used: f"{found}, {len(used)} used"
     )
-    found = sf.calibrate_display(PLATE, tmp_path / "bench", "c.toml", seed=3)
-    assert (found.calibration, found.file, found.left_out) == ("found", Path("c.toml-1"), ())
+    out = tmp_path / "c.toml"
+    found = sf.calibrate_display(PLATE, tmp_path / "bench", out, seed=3)
+    assert (found.calibration, found.file, found.left_out) == ("found", out, ())
+    assert out.read_text() == "found, 1 used"
     assert asked["display"] == PLATE
     assert asked["seed"] == 3
     assert asked["answers"] == ["resonance_frequency", "quality_factor"]

@@ -78,19 +78,12 @@ def rest_friction(curve: FrictionCurve) -> float:
     return at_rest
 
 
-def scored(
-    model: str, relative_friction: si.DimensionlessArray, curve: FrictionCurve
-) -> ModelScore:
-    """The score of µ′/µ of a model at a curve's amplitudes, shape (points,), NaN where refused."""
-    return _score(model, 1, _scaled(relative_friction, curve.friction), curve)
-
-
 def shape_scores(curve: FrictionCurve) -> tuple[ModelScore, ...]:
     """The scores of `SHAPES`."""
     scores = []
     for name in SHAPES:
         _, shape = fitted_shape(name, curve.vibration_amplitude, curve.friction)
-        scores.append(_score(name, 2, _scaled(shape, curve.friction), curve))
+        scores.append(scored(name, shape, curve, fitted=2))
     return tuple(scores)
 
 
@@ -137,7 +130,11 @@ def _scaled(shape: si.DimensionlessArray, friction: si.FloatArray) -> si.FloatAr
     return np.asarray(shape * float(np.sum(shape[known] * friction[known])) / square)
 
 
-def _score(model: str, fitted: int, friction: si.FloatArray, curve: FrictionCurve) -> ModelScore:
+def scored(
+    model: str, relative_friction: si.DimensionlessArray, curve: FrictionCurve, fitted: int = 1
+) -> ModelScore:
+    """The score of µ′/µ of a model at a curve's amplitudes, shape (points,), NaN where refused."""
+    friction = _scaled(relative_friction, curve.friction)
     off = curve.friction - friction
     known = np.isfinite(off)
     if not known.any():
