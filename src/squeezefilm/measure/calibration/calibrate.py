@@ -51,7 +51,6 @@ from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.touch import touch
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.layout import AnnularStator
 from squeezefilm.physics.plate.working_mode import WorkingMode
 from squeezefilm.physics.uncertainty.drawn import evaluate
 from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, between_limits
@@ -106,8 +105,6 @@ def calibrate(
     of_plate = tuple(seen for seen in every if seen.answer != FRICTION)
     likelihood = FrictionLikelihood(of_friction)
     _ = likelihood.where  # refused before any long work
-    if of_plate and isinstance(display.actuator, AnnularStator):
-        calibration_parameters(display)
     plate = None
     chosen = calibration_parameters(display, parameters) if of_plate else ()
     size = effort.plates or design_sizes(len(chosen))

@@ -47,10 +47,8 @@ class Combination:
 
     @property
     def sentence(self) -> str:
-        """Sentence about it."""
+        """Sentence about one of two parameters and more."""
         to = f"to {si.percent(self.left, 1 if self.left < 0.1 else 0)} of their prior spread"
-        if len(self.parts) == 1:
-            return f"{self.parts[0][0]} alone is fixed {to}."
         up = [name for name, weight in self.parts if weight > 0]
         down = [name for name, weight in self.parts if weight < 0]
         if not down or not up:

@@ -241,15 +241,10 @@ def sampled_posterior(
     steps: Annotated[int, si.AtLeast(100)] = STEPS,
     progress: ShareProgress | None = None,
 ) -> PlatePosterior:
-    """The posterior of a plate's parameters and of the discrepancy's scales.
-
-    Raises `InputError` where nothing was observed of the plate; interrupted, it leaves nothing.
-    """
+    """The posterior of a plate's parameters and of the discrepancy's scales."""
     with optional("measure", "a calibration"):
         import emcee
 
-    if not problem.observations:
-        raise InputError("nothing of the plate was observed; give at least one observation of it")
     tell = progress or (lambda _, __: None)
     tell("least squares", 0.0)
     best = best_fit(problem, seed=seed)
@@ -305,11 +300,7 @@ class Predictive:
     values: si.FloatArray
 
     def of(self, asked: Asked) -> si.FloatArray:
-        """The draws of one answer, shape (draws,). Raises `InputError` for one that is not
-        there."""
-        if asked not in self.asked:
-            known = ", ".join(answer.said for answer in self.asked)
-            raise InputError(f"nothing was computed of the {asked.said}; there are: {known}")
+        """The draws of one answer, shape (draws,)."""
         return np.asarray(self.values[:, self.asked.index(asked)])
 
 

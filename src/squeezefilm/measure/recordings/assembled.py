@@ -33,7 +33,6 @@ from squeezefilm.measure.recordings.quantities_read import (
 from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 
 _HZ, _S = si.Unit("Hz"), si.Unit("s")
-_PAIRS = tuple(IMPEDANCES)
 _REFLECTED = ("reflection", "transmission")
 # Times are printed with few digits; half a sample off is another sample's time.
 _UNEVEN = 0.5
@@ -75,7 +74,7 @@ def _own_columns(description: Description, table: RawTable) -> ImpedanceColumns:
 
 def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
     frequency = reading.take("frequency")
-    named = {name for pair in _PAIRS for name in pair if reading.has(name)}
+    named = {name for pair in IMPEDANCES for name in pair if reading.has(name)}
     named |= {"gain"} if reading.has("shunt_voltage") else set()
     alone = len(named) == 1 and named < set(SIZES)
     value: Any = _size(reading, min(named), frequency) if alone else _admittance(reading, frequency)
@@ -137,9 +136,17 @@ def _first_and_second(
     """The pair that is named and its values; two voltages are the pair of their quotient."""
     if reading.has("shunt_voltage"):
         return ("gain", "phase"), _gain(reading), reading.take("phase")
-    pair = _one_of(reading, _PAIRS)
-    first, second = (reading.take(name) for name in pair)
-    return pair, first, second
+    named = {name for pair in IMPEDANCES for name in pair if reading.has(name)}
+    for pair in IMPEDANCES:
+        if named == set(pair):
+            first, second = (reading.take(name) for name in pair)
+            return pair, first, second
+    shown = "; ".join(" with ".join(pair) for pair in IMPEDANCES)
+    raise reading.description.error(
+        f"one pair must be named of an impedance: {shown}; named are "
+        f"{', '.join(sorted(named)) or 'none'}",
+        ["columns"],
+    )
 
 
 def _gain(reading: Reading) -> si.FloatArray:
@@ -353,20 +360,6 @@ def _runs(frequency: si.HertzArray, voltage: si.VoltArray) -> list[tuple[int, in
         else:
             way = float(step)
     return list(zip(starts, [*starts[1:], frequency.size], strict=True))
-
-
-def _one_of(reading: Reading, pairs: tuple[tuple[str, ...], ...]) -> tuple[str, ...]:
-    """The pair of quantities that are both named, and no other is."""
-    named = {name for pair in pairs for name in pair if reading.has(name)}
-    for pair in pairs:
-        if named == set(pair):
-            return pair
-    shown = "; ".join(" with ".join(pair) for pair in pairs)
-    raise reading.description.error(
-        f"one pair must be named of an impedance: {shown}; named are "
-        f"{', '.join(sorted(named)) or 'none'}",
-        ["columns"],
-    )
 
 
 _OF_KIND: Mapping[str, Callable[[Reading], kinds.Recording]] = {

@@ -129,16 +129,15 @@ _LEAST_DIGITS, _MOST_DIGITS = 3, 9
 
 
 def estimate_rows(fit: Fit) -> list[tuple[str, ...]]:
-    """The estimates of a fit: name, value, interval (with its level where that is no usual one),
-    standard error; with so many digits that two of the standard error are seen."""
+    """The estimates of a fit: name, value, interval, standard error; with so many digits that two
+    of the standard error are seen."""
     rows: list[tuple[str, ...]] = []
     for name, estimate in estimates(fit):
         digits = _digits(estimate.value, estimate.standard_error)
         low, high = (valued(value, estimate.unit, digits) for value in estimate.interval)
-        level = "" if estimate.level == LEVEL else f" ({si.percent(estimate.level)})"
         error = valued(estimate.standard_error, estimate.unit, 2)
         value = valued(estimate.value, estimate.unit, digits)
-        rows.append((name, value, f"{low} to {high}{level}", error))
+        rows.append((name, value, f"{low} to {high}", error))
     return rows
 
 
