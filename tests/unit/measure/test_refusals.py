@@ -18,7 +18,7 @@ from squeezefilm.measure.fits.ceramic.constants import compliances
 from squeezefilm.measure.fits.circuit.branches import poles
 from squeezefilm.measure.fits.estimate import Estimate, Observation, guarded_fit
 from squeezefilm.measure.fits.friction.friction_bench import _MOST_LEVELS, _levels, _straight
-from squeezefilm.measure.fits.least_squares import _least, fit_nonlinear
+from squeezefilm.measure.fits.least_squares import _least
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
 from squeezefilm.measure.fits.vibration.frequency_response import _Band, fit_frequency_response
 from squeezefilm.measure.fits.vibration.line_points import LinePoints
@@ -43,7 +43,6 @@ def line(w: Any, x: Any = X) -> Any:
         (lambda: poles(np.full(9, 3e4), np.ones(9) + 0j, 1), "span a band"),
         (lambda: poles(F, np.append(RESPONSE[:-1], 0), 1), "exactly zero"),
         (lambda: poles(F, RESPONSE[:-1], 1), "response"),
-        (lambda: fit_nonlinear(lambda at: np.zeros(2), np.zeros(2), np.ones(2)), "record more"),
         (lambda: line(0 * X), "not all of them 0"),
         (lambda: line(np.append(X[:-1], np.nan)), "finite"),
         (lambda: line(np.arange(9)), "finite displacements"),

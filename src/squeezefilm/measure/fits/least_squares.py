@@ -215,16 +215,10 @@ def fit_nonlinear(
 ) -> NonlinearFit:
     """The numbers (p,) that make the squares of `residual` (points,) least.
 
-    Derivatives are central differences of `steps` (p,). A residual that is not finite is walked
-    around. Raises `InputError` where there are fewer residuals than numbers.
+    Derivatives are central differences of `steps` (p,), more residuals than numbers are presumed.
+    A residual that is not finite is walked around.
     """
     numbers = np.asarray(start, dtype=float)
-    count = residual(numbers).size
-    freedom = count - numbers.size
-    if freedom < 1:
-        raise InputError(
-            f"{count} numbers were recorded and {numbers.size} are to be fitted; record more"
-        )
 
     def slopes(at: si.FloatArray) -> si.FloatArray:
         moved = np.diag(steps)
@@ -233,6 +227,7 @@ def fit_nonlinear(
 
     numbers = _least(residual, slopes, numbers, np.inf)
     left = residual(numbers)
+    freedom = left.size - numbers.size
     covariance = float(left @ left) / freedom * _inverse_square(slopes(numbers))
     return NonlinearFit(numbers, covariance, left, freedom)
 

@@ -151,9 +151,7 @@ class FrequencyResponseFit(FitResult):
 
 
 @guarded_fit
-def fit_frequency_response(
-    recording: FrequencyResponse,
-) -> FrequencyResponseFit:
+def fit_frequency_response(recording: FrequencyResponse) -> FrequencyResponseFit:
     """Frequency (Hz), Q and modal constant (m/V) of the modes in a response, with intervals.
 
     H(f) = Σ A_k f_k²/(f_k²(1 + i/Q_k) − f²) + R0 + R1 f: structural damping, complex modal

@@ -71,10 +71,7 @@ class GridScanFit(FitResult):
 
 
 @guarded_fit
-def fit_grid_scan(
-    recording: GridScan,
-    shapes: Mapping[str, si.Array],
-) -> GridScanFit:
+def fit_grid_scan(recording: GridScan, shapes: Mapping[str, si.Array]) -> GridScanFit:
     """Tell which of the `shapes` a scan is, by the modal assurance criterion, and how far it moves.
 
     `shapes` by their labels, each (points,), relative motion at the scan's places with 1 where the
