@@ -222,7 +222,8 @@ def crosstalk_figure(analysis: SkinStretchAnalysis) -> Figure:
     array = analysis.array
     x, y = array.cradle.places
     shares = 100 * array.crosstalk_shares
-    pulls = int(np.argmax(shares.max(axis=0)))
+    # Mirrored contactors do so equally: the first, whatever rounding says.
+    pulls = int(np.argmax(np.round(shares.max(axis=0), 9)))
     share, apart = shares[:, pulls], 1e3 * np.hypot(x - x[pulls], y - y[pulls])
     others = apart > 0
     figure = style.new_figure(
