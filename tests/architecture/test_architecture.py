@@ -12,6 +12,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from packaging.specifiers import SpecifierSet
 
 import squeezefilm
 from squeezefilm.core.quantities import CLOSED_FORMS
@@ -138,6 +139,19 @@ def test_constraints_pin_and_hold_no_address() -> None:
     # Asked for on other platforms, or by Pythons before ours, only.
     elsewhere = {"tzdata", "colorama", "exceptiongroup", "importlib-metadata", "tomli"}
     assert _runtime_closure() - names <= elsewhere
+
+
+def test_pins_are_of_versions_that_every_python_from_3_11_0_on_takes() -> None:
+    """A pin that asks for a later one leaves older ones without what they could install."""
+    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    pinned = {re.sub(r"[-_.]+", "-", line.split("==")[0]).lower() for line in lines}
+    later = [
+        f"{found.name} {found.version}: {found.metadata['Requires-Python']}"
+        for found in importlib.metadata.distributions()
+        if re.sub(r"[-_.]+", "-", found.name).lower() in pinned
+        and not SpecifierSet(found.metadata["Requires-Python"] or "").contains("3.11.0")
+    ]
+    assert not later
 
 
 def test_messages_of_the_library_speak_of_arguments_not_of_options() -> None:
