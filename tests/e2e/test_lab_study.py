@@ -206,7 +206,6 @@ def test_a_study_from_its_plan_to_its_export(chromium: Browser, running_lab: Run
     keep(person, "lab-participant-trial")
     # The experimenter sees it without asking.
     page.locator(".count", has_text="13 of 120").wait_for()
-    page.get_by_text("3 answers.").wait_for()
     # By hand, somebody has to know what to present; the participant's page does not.
     now = page.locator(".byhand strong").inner_text()
     newest = "SELECT trial FROM presentation ORDER BY presented_utc DESC"
@@ -279,7 +278,6 @@ def test_a_whole_sitting_by_keys_with_practice_and_rest(
     assert sum(one["right"] is not None for one in told) == 2
     assert sum(one["correct"] is not None for one in told) == 2
     page.locator(".count", has_text="17 of 17").wait_for()
-    page.get_by_text("10 answers.").wait_for()
     assert complaints == []
 
 
