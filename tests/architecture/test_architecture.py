@@ -146,10 +146,10 @@ def test_pins_are_of_versions_that_every_python_from_3_11_0_on_takes() -> None:
     lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
     pinned = {re.sub(r"[-_.]+", "-", line.split("==")[0]).lower() for line in lines}
     later = [
-        f"{found.name} {found.version}: {found.metadata['Requires-Python']}"
+        f"{found.name} {found.version}: {found.metadata.json.get('requires_python')}"
         for found in importlib.metadata.distributions()
         if re.sub(r"[-_.]+", "-", found.name).lower() in pinned
-        and not SpecifierSet(found.metadata["Requires-Python"] or "").contains("3.11.0")
+        and not SpecifierSet(str(found.metadata.json.get("requires_python", ""))).contains("3.11.0")
     ]
     assert not later
 
