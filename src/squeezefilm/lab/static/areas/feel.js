@@ -263,12 +263,13 @@ class FeelView {
   async reload() {
     if (!this.source) return;
     const turn = ++this.turn;
+    // Not when it is there: what went wrong meanwhile stays to be read.
+    this.error.hidden = true;
     const asked = { display: this.store.current.text, quality: this.solved.box.checked ? "solved" : "screening", ...this.source };
     try {
       this.heading.textContent = "preparing…";
       const ready = await this.lab.socket.ask("load texture", asked);
       if (turn !== this.turn) return;
-      this.error.hidden = true;
       sessionStorage.setItem(TEXTURE, JSON.stringify({ text: this.text.value, choice: this.choice.value, source: this.source }));
       this.take(ready);
       const samples = await this.lab.socket.ask("parity", asked);
