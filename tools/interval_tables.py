@@ -20,8 +20,14 @@ PEOPLE = {
     "constant": "constant stimuli", "adaptive": "adaptive series",
     "same-different": "same or different", "magnitude": "magnitude estimation",
     "same-different, adaptive": "same or different, adaptive series",
+    "direction": "direction", "direction, adaptive": "direction, adaptive series",
+    "odd-one-out": "odd one out of three", "odd-one-out-of-four": "odd one out of four",
+    "odd-one-out, adaptive": "odd one out of three, adaptive series",
+    "yes-no": "yes or no", "yes-no, adaptive": "yes or no, adaptive series",
+    "detection": "detection", "pairs": "paired comparison", "ranking": "ranking",
+    "adjustment": "adjustment",
 }  # fmt: skip
-PEOPLES_STUDIES = {"magnitude": 2000}
+PEOPLES_STUDIES = {"magnitude": 2000, "ranking": 2000, "adjustment": 2000}
 
 
 def printed(test: str, path: Path = ANSWERS) -> list[str]:
@@ -39,9 +45,14 @@ def people_rows() -> list[str]:
     rows = []
     for line in printed("test_intervals_of_many_studies_hold_the_truth"):
         name, rest = line.split(" {", 1)
-        of = ast.literal_eval(f"{{{rest}")
-        shares = " | ".join(f"{100 * of[one]:.1f} %" for one in ("persons", "population", "spread"))
-        rows.append(f"| {PEOPLE[name]} | {PEOPLES_STUDIES.get(name, 500)} | {shares} |")
+        # A task without a spread prints nan for it.
+        of = ast.literal_eval(f"{{{rest}".replace(": nan", ": None"))
+        cells = [
+            "–" if of[part] is None else f"{100 * of[part]:.1f} %"
+            for part in ("persons", "population", "spread")
+        ]
+        cells += [f"{100 * of['error']:+.1f} %", f"{100 * of['named']:.1f} %"]
+        rows.append(f"| {PEOPLE[name]} | {PEOPLES_STUDIES.get(name, 500)} | {' | '.join(cells)} |")
     return sorted(rows)
 
 

@@ -20,9 +20,9 @@ import tomlkit
 
 from predict_disc import sealed
 from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.felt import MEAN_FRICTION
 from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.validation.populations import (
-    MEAN_FRICTION,
     RIVALS,
     detection_medians,
     rival_observer,

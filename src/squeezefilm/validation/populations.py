@@ -33,7 +33,7 @@ from squeezefilm.physics.chain.friction_models import MODEL_KINDS
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.perception.felt import Rubbed, grating_evidence
+from squeezefilm.physics.perception.felt import MEAN_FRICTION, Rubbed, detected_share
 from squeezefilm.physics.perception.observer import Observer, load_observer
 
 _POINTS, _MOST_DECAY = 9, 10.0
@@ -152,8 +152,6 @@ def compare_impedances(
 Rival = Literal["temporal", "mixed", "spatial"]
 RIVALS: Mapping[Rival, si.Dimensionless] = {"temporal": 1.0, "mixed": 0.5, "spatial": 0.0}
 """Rival senses by the speed's exponent in their channels; at `TUNED_AT` all are alike."""
-MEAN_FRICTION: si.Dimensionless = 0.5
-"""Mean friction coefficient of the stimuli: assumed."""
 METHOD_RATIO: si.Dimensionless = 1.45
 """Ratio of what two intervals, three down and one up, the mean of the last six trials and the
 larger of two directions give, over the amplitude with d′ = 1: simulated by
@@ -210,10 +208,7 @@ def detection_threshold(
     pad = FingerpadDynamics.pressed(normal_force)
     rubbed = Rubbed(friction_coefficient * normal_force, pad, speed)
     wave = np.sin(2 * math.pi * np.arange(_SAMPLES) / _SAMPLES) * np.ones((period.size, 1))
-    small = 1e-3
-    # d′ is in proportion to the amplitude.
-    d_prime = grating_evidence(observer, period, wave, lambda share: 1 + small * share, rubbed)
-    return np.asarray(small * friction_coefficient / d_prime)
+    return np.asarray(friction_coefficient * detected_share(observer, period, wave, rubbed))
 
 
 def detection_medians(

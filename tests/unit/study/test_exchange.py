@@ -23,9 +23,9 @@ from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import (
     Column,
     cell_text,
-    columns_of,
     csv_text,
     guarded,
+    trial_columns,
     trial_table,
     unguarded,
 )
@@ -69,9 +69,11 @@ def test_numbers_stay_numbers(value: float) -> None:
 
 
 def test_a_row_a_trial_with_numbers_as_numbers(store: StudyStore) -> None:
-    rows = list(csv.DictReader(io.StringIO(csv_text(trial_table(store), columns_of(store.design)))))
+    rows = list(
+        csv.DictReader(io.StringIO(csv_text(trial_table(store), trial_columns(store.design))))
+    )
     assert len(rows) == 18
-    assert list(rows[0]) == [column.name for column in columns_of(store.design)]
+    assert list(rows[0]) == [column.name for column in trial_columns(store.design)]
     main = [row for row in rows if row["phase"] == "main"]
     assert {row["correct"] for row in main} <= {"true", "false"}
     assert {float(row["stimulus_period_m"]) for row in main} == {2e-3, 4e-3, 8e-3}

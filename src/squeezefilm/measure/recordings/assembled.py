@@ -74,7 +74,7 @@ def _own_columns(description: Description, table: RawTable) -> ImpedanceColumns:
 
 def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
     frequency = reading.take("frequency")
-    named = {name for pair in IMPEDANCES for name in pair if reading.has(name)}
+    named = _named(reading)
     named |= {"gain"} if reading.has("shunt_voltage") else set()
     alone = len(named) == 1 and named < set(SIZES)
     value: Any = _size(reading, min(named), frequency) if alone else _admittance(reading, frequency)
@@ -130,13 +130,18 @@ def _admittance(reading: Reading, frequency: si.HertzArray) -> si.ComplexArray:
     return _corrected(reading, 1 / value)
 
 
+def _named(reading: Reading) -> set[str]:
+    """Quantities of an impedance that are named."""
+    return {name for pair in IMPEDANCES for name in pair if reading.has(name)}
+
+
 def _first_and_second(
     reading: Reading,
 ) -> tuple[tuple[str, ...], si.FloatArray, si.FloatArray]:
     """The pair that is named and its values; two voltages are the pair of their quotient."""
     if reading.has("shunt_voltage"):
         return ("gain", "phase"), _gain(reading), reading.take("phase")
-    named = {name for pair in IMPEDANCES for name in pair if reading.has(name)}
+    named = _named(reading)
     for pair in IMPEDANCES:
         if named == set(pair):
             first, second = (reading.take(name) for name in pair)

@@ -30,6 +30,8 @@ from squeezefilm.physics.perception.senses import COARSEST_PERIOD, FINEST_LINE
 
 FINEST_TRIED: si.Metre = 0.125e-3
 """The finest at which thresholds were measured."""
+MEAN_FRICTION: si.Dimensionless = 0.5
+"""Mean friction coefficient of stimuli that were published without it: assumed."""
 _SAMPLES = 256
 """Number of samples over a period; the fifteenth harmonic, the last that counts, has seventeen."""
 
@@ -97,6 +99,18 @@ def grating_evidence(
             passed = channel.gain(period / harmonic, rubbed.speed) * seen
             power += (passed / channel.noise(mean)) ** 2
     return np.asarray(np.sqrt(power))
+
+
+def detected_share(
+    observer: Observer, period: si.MetreArray, wave: si.FloatArray, rubbed: Rubbed
+) -> si.DimensionlessArray:
+    """Share of the mean friction (1) that has d′ = 1 as the size of a wave of friction, shape (n,).
+
+    `wave` is of size 1, over each passage of the periods (m, shape (n,)), shape (n, samples).
+    """
+    small = 1e-3
+    # d′ is in proportion to the size.
+    return small / grating_evidence(observer, period, wave, lambda share: 1 + small * share, rubbed)
 
 
 def finest_felt(

@@ -48,8 +48,7 @@ class ModelSeries:
         self._differences, model = _placement(ends, task, in_amounts)
         # As intensities have them, in parts of the reference or amounts.
         self._choices = self._differences if in_amounts else np.expm1(self._differences)
-        self._is_right = described.model is not None and described.model.counts < 0
-        self._hears_choice = described.surfaces == 1
+        self._hears_choice = hears_choice(series, described)
         self.placement = Placement(model, series.count)
 
     @property
@@ -71,13 +70,12 @@ class ModelSeries:
         """Take in an answer to a difference: the answer itself of one surface, else whether it was
         right; 0 is the reference alone."""
         number = int(np.argmin(np.abs(self._choices - intensity)))
-        answers = self.placement.model.answers
-        said = answered
-        if not self._hears_choice:
-            # What is counted is right of all but the reference alone.
-            counted = answered == (self._is_right or intensity > 0)
-            said = answers[0] if counted else answers[1]
-        self.placement.update(number, answers.index(str(said)))
+        if self._hears_choice:
+            answer = self.placement.model.answers.index(str(answered))
+        else:
+            # The first answer, which is counted, is right of all but the reference alone.
+            answer = int(answered != (intensity > 0))
+        self.placement.update(number, answer)
 
 
 @functools.lru_cache(maxsize=8)
@@ -88,11 +86,10 @@ def _placement(
     described = TASKS[task]
     model = described.model
     assert model is not None
-    choices = np.geomspace(
-        *ends, _CHOICES // 2 if described.reference == "remembered" else _CHOICES
-    )
+    is_signed = described.reference == "remembered"
+    choices = np.geomspace(*ends, _CHOICES // 2 if is_signed else _CHOICES)
     above = choices if in_amounts else np.log1p(choices)
-    below = -above[::-1] if described.reference == "remembered" else np.zeros(1)
+    below = -above[::-1] if is_signed else np.zeros(1)
     differences = np.concatenate([below, above])
     thresholds = np.geomspace(ends[0] / 4, 4 * ends[1], _THRESHOLDS)
     within = model.criteria[model.criteria <= _LARGEST_CRITERION]
@@ -140,6 +137,7 @@ def adaptive_method(
     what is right see `ModelSeries`.
     """
     method: AdaptiveMethod
+    described = TASKS[task]
     if series.method == "staircase":
         method = Staircase(
             StaircaseRule(
@@ -153,10 +151,9 @@ def adaptive_method(
             )
         )
     elif series.in_runs:
-        described = TASKS[task]
         in_amounts = described.compares_amounts(series.varied)
         method = Runs(series, is_flat=described.reference == "flat", in_amounts=in_amounts)
-    elif not TASKS[task].right_is_enough:
+    elif not described.right_is_enough:
         method = ModelSeries(series, task)
     else:
         choices = np.geomspace(series.lowest, series.highest, _CHOICES)

@@ -2,7 +2,7 @@
 
 Sessions, presentations and answers are written as for people, so that analysis and exports can be
 tried before anybody is asked. The sessions say that they are simulated, and analyses take it over.
-Nothing is recorded of their fingers: for paths take the twin (`study run --drive twin`).
+Nothing is recorded of their fingers: for paths run a session on the twin.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import Result, write_named
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.perception.felt import Rubbed, grating_evidence
+from squeezefilm.physics.perception.felt import MEAN_FRICTION, Rubbed, detected_share
 from squeezefilm.physics.perception.observer import NamedObserver, Observer, load_observer
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
@@ -31,9 +31,6 @@ from squeezefilm.study.design.trials import (
     trials,
     williams_square,
 )
-
-_FRICTION = 0.5
-"""Coefficient of friction without vibration (assumed; a relative depth hardly depends on it)."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -242,18 +239,15 @@ def predicted_depth(design: StudyDesign, observer: Observer) -> si.Dimensionless
     """Change of relative friction (1) of a square grating with the period of a design's first
     textured stimulus that the observer tells from a flat surface in 75 % of two intervals, by a
     display without limits; None without such a stimulus. Source: `physics.perception.felt`."""
-    periods = [one.period for one in design.stimuli if one.name != design.reference]
-    if not periods or math.isnan(periods[0]):
+    textured = [stimulus for stimulus in design.stimuli if stimulus.name != design.reference]
+    if not textured or math.isnan(textured[0].period):
         return None
     pad = FingerpadDynamics.pressed(observer.normal_force)
-    rubbed = Rubbed(_FRICTION * observer.normal_force, pad, observer.speed)
+    # A relative depth hardly depends on the mean.
+    rubbed = Rubbed(MEAN_FRICTION * observer.normal_force, pad, observer.speed)
     square = np.repeat([[0.5, -0.5]], 128, axis=1)
-    small = 1e-3
-    # d′ is in proportion to the depth.
-    d_prime = grating_evidence(
-        observer, np.array(periods[:1]), square, lambda share: 1 + small * share, rubbed
-    )
-    return float(D_PRIME_OF_75 * small / d_prime[0])
+    period = np.array([textured[0].period])
+    return float(D_PRIME_OF_75 * detected_share(observer, period, square, rubbed)[0])
 
 
 def _of_range(design: StudyDesign, observer: Observer) -> list[str]:

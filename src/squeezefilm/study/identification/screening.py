@@ -31,7 +31,7 @@ _SPREADS, _PLACES, _GUESSES = 24, 21, 13
 _LEAST_PART, _LEAST_TRIALS, _LEAST_PEOPLE = 10, 12, 3
 _ABOVE_CHANCE = 1.6448536269514722
 _BY_CHANCE = 0.05
-# Of honest people 1 % have less, of guessers at most 10 % more (tests/recovery/task_people.py).
+# Assumed: of honest people few have less ("named" in tests/recovery/test_task_recovery.py).
 _OF_MEDIAN = 1 / 3
 _SURE = 3.0
 """Least ln ratio by which lapses beyond the rule's must be likelier."""

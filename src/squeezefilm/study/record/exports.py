@@ -25,9 +25,9 @@ from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import (
     SESSION_COLUMNS,
     Column,
-    columns_of,
     csv_text,
     session_table,
+    trial_columns,
     trial_table,
 )
 
@@ -156,7 +156,7 @@ def _remember(store: StudyStore, format: Format, folder: Path) -> None:
 def _csv_files(store: StudyStore) -> dict[str, str]:
     name = store.design.name
     return {
-        f"{name}_trials.csv": csv_text(trial_table(store), columns_of(store.design)),
+        f"{name}_trials.csv": csv_text(trial_table(store), trial_columns(store.design)),
         f"{name}_sessions.csv": csv_text(session_table(store), SESSION_COLUMNS),
     }
 
@@ -168,7 +168,7 @@ def psych_ds(store: StudyStore) -> dict[str, str]:
     """The files of a Psych-DS dataset: path within it → text."""
     design = store.design
     name = keyword(design.name)
-    of_trials = columns_of(design)
+    of_trials = trial_columns(design)
     columns = {column.name: column for column in (*of_trials, *SESSION_COLUMNS)}
     about = {
         "@context": "https://schema.org",

@@ -232,12 +232,12 @@ def _places(
         if names.count(name) > 1:
             said = f"{path} has {names.count(name)} columns '{name}'; keep one"
             raise InputError(said, quantity="columns")
-    if {"response_time_s", MILLISECONDS} <= {key for key in ours if columns.get(key, key) in names}:
-        said = f"{path} has response_time_s and {MILLISECONDS}; keep one of the two columns"
-        raise InputError(said, quantity="columns")
     places = {
         key: names.index(columns.get(key, key)) for key in ours if columns.get(key, key) in names
     }
+    if {"response_time_s", MILLISECONDS} <= places.keys():
+        said = f"{path} has response_time_s and {MILLISECONDS}; keep one of the two columns"
+        raise InputError(said, quantity="columns")
     wanted = ["participant_id", "stimulus", "choice" if design.answers else "estimate"]
     wanted += SURFACES[1 : design.described.surfaces]
     lacking = [key for key in wanted if key not in places and key not in known]

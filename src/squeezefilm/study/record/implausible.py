@@ -189,7 +189,8 @@ def _require_one_scale(path: str | Path, design: StudyDesign, who: str, mine: Nu
     ]
     if len(middles) < _FEWEST_SURFACES or not slopes:
         return
-    off = {name: middles[name] - median(slopes) * levels[name] for name in middles}
+    exponent = median(slopes)
+    off = {name: middles[name] - exponent * levels[name] for name in middles}
     usual = median(off.values())
     for name, here in of_surface.items():
         if abs(off[name] - usual) > _OFF_SCALE:

@@ -15,9 +15,9 @@ from squeezefilm.study.record.tables import (
     SURFACES,
     Cell,
     Column,
-    columns_of,
     csv_text,
     surface_cells,
+    trial_columns,
 )
 
 _OWN = (
@@ -47,14 +47,12 @@ def write_orders(plan: StudyPlan, folder: str | Path) -> list[Path]:
     `InputError` where the folder cannot be written to.
     """
     folder, written = Path(folder), []
-    columns = [column for column in ORDER_COLUMNS if column in (*columns_of(plan.design), *_OWN)]
+    columns = [column for column in ORDER_COLUMNS if column in (*trial_columns(plan.design), *_OWN)]
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file; give a folder for the orders")
     for number, schedule in enumerate(plan.schedules):
-        rows = [
-            {column.name: _row(plan, number, trial)[column.name] for column in columns}
-            for trial in schedule
-        ]
+        every = (_row(plan, number, trial) for trial in schedule)
+        rows = [{column.name: row[column.name] for column in columns} for row in every]
         for suffix, text in (
             ("csv", csv_text(rows, columns)),
             ("json", json.dumps(rows, indent=1) + "\n"),

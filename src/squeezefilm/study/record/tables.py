@@ -101,7 +101,7 @@ _USUAL = 3
 """Surfaces whose columns every export has; those of more are of tasks that present so many."""
 
 
-def columns_of(design: StudyDesign) -> tuple[Column, ...]:
+def trial_columns(design: StudyDesign) -> tuple[Column, ...]:
     """Columns of a design's trials: `COLUMNS` without those of surfaces that it never presents."""
     never = SURFACES[max(_USUAL, design.described.surfaces) :]
     return tuple(column for column in COLUMNS if not never or not column.name.startswith(never))
@@ -126,14 +126,14 @@ Cell = str | float | int | bool | None
 
 
 def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
-    """Every answered trial, in the order of participants and trials; keys as in `columns_of`.
+    """Every answered trial, in the order of participants and trials; keys as in `trial_columns`.
 
     Trials without an answer are not in it. Raises `RecordError` if the file cannot be read.
     """
     design = store.design
     gratings = {alternative.name: alternative for alternative in design.alternatives}
     rows: list[dict[str, Cell]] = []
-    columns = columns_of(design)
+    columns = trial_columns(design)
     explored, surfaces = ExploredTrials(store), _Surfaces()
     for row in store.rows(_QUERY):
         names = json.loads(row.pop("stimuli"))

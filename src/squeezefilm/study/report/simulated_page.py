@@ -12,7 +12,7 @@ import numpy as np
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import M, printable, shown
 from squeezefilm.core.kit.page_style import bullets, links, section, text_table
-from squeezefilm.study.record.tables import SURFACES, Column, columns_of, csv_text
+from squeezefilm.study.record.tables import SURFACES, Column, csv_text, trial_columns
 from squeezefilm.study.report.words import confusion_rows
 from squeezefilm.study.simulated.answers import SimulatedStudy
 from squeezefilm.study.simulated.chain_tables import ChainTables
@@ -46,7 +46,7 @@ def simulated_columns(design: StudyDesign) -> list[Column]:
     return [
         Column("origin", "Always simulated"),
         Column("participant", "Number of the simulated participant, from 0", kind="whole"),
-        *(column for column in columns_of(design) if column.name in _SHARED),
+        *(column for column in trial_columns(design) if column.name in _SHARED),
     ]
 
 

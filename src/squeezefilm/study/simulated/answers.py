@@ -17,7 +17,7 @@ from squeezefilm.physics.perception.observer import NamedObserver
 from squeezefilm.study.design.study_design import NamedDesign
 from squeezefilm.study.identification.confusion import ConfusionMatrix
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.record.tables import SURFACES, columns_of
+from squeezefilm.study.record.tables import SURFACES, trial_columns
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.participants import (
     match_counts,
@@ -144,7 +144,7 @@ class SimulatedStudy(Result):
         a = self.answers
         names = [surface.name for surface in a.surfaces]
         answers, series = a.design.answers, [item.name for item in a.design.adaptive]
-        surfaces = [column.name for column in columns_of(a.design) if column.name in SURFACES]
+        surfaces = [column.name for column in trial_columns(a.design) if column.name in SURFACES]
         return [
             {
                 "participant": int(a.participant[at]),

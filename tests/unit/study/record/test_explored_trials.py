@@ -19,8 +19,8 @@ from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
 from squeezefilm.study.record.answers import recorded_answers
 from squeezefilm.study.record.exploration import MEASURES, ExploredTrials
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.tables import columns_of, trial_table
 from squeezefilm.study.record.tables import csv_text as trials_csv
+from squeezefilm.study.record.tables import trial_columns, trial_table
 
 PLATE, OBSERVER = load_display("biet2008-plate"), load_observer()
 FINGER = OBSERVER.median_finger()
@@ -57,10 +57,10 @@ def test_a_line_is_one_pass_over_a_row_of_cells(tmp_path: Path) -> None:
         )
         found = recorded_answers(store)
         assert set(MEASURES) <= set(found.exploration)
-        (cells,) = csv.DictReader(io.StringIO(trials_csv([row], columns_of(store.design))))
+        (cells,) = csv.DictReader(io.StringIO(trials_csv([row], trial_columns(store.design))))
         assert float(cells["coverage"]) == row["coverage"]
         # Every measure says its unit in the column's description.
-        units = {one.name: one.unit for one in columns_of(store.design)}
+        units = {one.name: one.unit for one in trial_columns(store.design)}
         assert (units["peak_speed_m_per_s"], units["time_in_touch_s"]) == ("m/s", "s")
 
 

@@ -15,7 +15,7 @@ from squeezefilm import __version__
 from squeezefilm.study.record.exports import description, keyword, readme
 from squeezefilm.study.record.exports import psych_ds as dataset
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.record.tables import SESSION_COLUMNS, columns_of
+from squeezefilm.study.record.tables import SESSION_COLUMNS, trial_columns
 
 from ..scripted import gratings, run_through
 
@@ -48,7 +48,7 @@ def test_the_files_of_the_dataset(store: StudyStore) -> None:
     rows = list(csv.DictReader(io.StringIO(files[f"{sessions}_data.csv"])))
     assert len(rows) == 2
     assert list(rows[0]) == [column.name for column in SESSION_COLUMNS]
-    for name, columns in ((trials, columns_of(store.design)), (sessions, SESSION_COLUMNS)):
+    for name, columns in ((trials, trial_columns(store.design)), (sessions, SESSION_COLUMNS)):
         beside = json.loads(files[f"{name}_data.json"])
         assert list(beside) == ["variableMeasured"]
         assert [one["name"] for one in beside["variableMeasured"]] == [c.name for c in columns]
@@ -62,7 +62,7 @@ def test_the_description_has_every_column_once(store: StudyStore) -> None:
     about = json.loads(text)
     variables = {one["name"]: one for one in about.pop("variableMeasured")}
     assert set(variables) == {
-        column.name for column in (*columns_of(store.design), *SESSION_COLUMNS)
+        column.name for column in (*trial_columns(store.design), *SESSION_COLUMNS)
     }
     assert variables["stimulus_period_m"] == {
         "@type": "PropertyValue", "name": "stimulus_period_m",

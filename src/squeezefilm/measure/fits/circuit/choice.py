@@ -240,12 +240,12 @@ def _fitted(
     bounded = variances[3 : layout.loss : 3] < _BOUNDED**2
     if not np.all(inside & sharp & strong & bounded) or not np.all(variances > 0):
         return None
-    if not _is_passive(sweep, fit, layout):
+    if not _is_usual(sweep, fit, layout):
         return None
     return _in_order(fit, layout, frequency), layout
 
 
-def _is_passive(sweep: ImpedanceSweep, fit: ComplexFit, layout: Layout) -> bool:
+def _is_usual(sweep: ImpedanceSweep, fit: ComplexFit, layout: Layout) -> bool:
     """True where corrections are what leads, ceramics and analysers do; else they stand for modes
     beside the band, with another static capacitance."""
     p = fit.parameters

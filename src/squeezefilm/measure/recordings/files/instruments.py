@@ -105,14 +105,14 @@ def read_name(name: str) -> tuple[str, str] | None:
     bare = _BESIDE_A_NAME.sub("", " ".join(bare.casefold().split()))
     bare = _BESIDE_A_NAME.sub("", bare).strip(" _:-−")
     readings = bare, bare.replace("_", " "), bare.rpartition(":")[2].strip()
-    for said, (quantity, names, usual) in itertools.product(readings, _tables()[1]):
+    for reading, (quantity, names, usual) in itertools.product(readings, _tables()[1]):
         meant = unit or usual
         if meant == "dB" and usual in ("ohm", "S"):
             meant = f"dB re 1 {usual}"
         elif meant == "S" and usual == "s":
             # Seconds and siemens, both "(S)" in one maker's files.
             meant = "s"
-        if names.fullmatch(said) and _fits(meant, usual):
+        if names.fullmatch(reading) and _fits(meant, usual):
             return quantity, meant
     return None
 

@@ -21,7 +21,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import helmert
 from scipy.special import ndtr, ndtri
 
 from squeezefilm.core import quantities as si
@@ -58,6 +57,7 @@ def _distances(surfaces: int) -> tuple[si.DimensionlessArray, si.DimensionlessAr
     if surfaces == 3:
         return math.sqrt(3.0) * _Z, _DENSITY
     # Only the shares of trials in a design need it, and a plan does not load it.
+    from scipy.linalg import helmert
     from scipy.stats import qmc
 
     basis = helmert(surfaces - 1)
