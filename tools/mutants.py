@@ -20,6 +20,7 @@ import argparse
 import contextlib
 import functools
 import hashlib
+import itertools
 import json
 import os
 import re
@@ -71,6 +72,7 @@ class Copy:
 
     def __init__(self, folder: Path) -> None:
         self.tree, self._cache, self._tried = folder / "tree", folder / "cache", folder / "tried"
+        self._seconds = itertools.count(1)
         self._temporary = folder / "tmp"
         for part in (self.tree, self._cache):
             part.mkdir(parents=True, exist_ok=True)
@@ -114,6 +116,9 @@ class Copy:
         shutil.rmtree(self.tree / "out" / "test-cache", ignore_errors=True)
         source, times = path.read_bytes(), path.stat()
         path.write_bytes(text)
+        # A mutant of the size and second of the last one would be run by that one's bytecode.
+        later = times.st_mtime_ns + 10**9 * next(self._seconds)
+        os.utime(path, ns=(times.st_atime_ns, later))
         try:
             yield
         finally:
