@@ -49,7 +49,7 @@ from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.texture_files.texture_file import TextureFile
 from squeezefilm.study.identification.analysis import IdentificationAnalysis
 from squeezefilm.study.psychometric.fit import PsychometricFit
-from squeezefilm.study.report import time_figures
+from squeezefilm.study.report import figures
 from squeezefilm.study.report.page import FIGURES as FIGURES_OF_STUDY
 from squeezefilm.study.report.page import TASK_FIGURES, write_study
 from squeezefilm.study.report.simulated_page import write_simulated
@@ -112,9 +112,9 @@ SUBJECTS: Mapping[type, _Subject] = {
     IdentificationAnalysis: _Subject(_by_key(FIGURES_OF_STUDY), write_study),
     TaskAnalysis: _Subject(_by_key(TASK_FIGURES), write_study),
     SimulatedStudy: _Subject({"answers": _of_first_display}, write_simulated),
-    PlannedPower: _Subject({"power": lambda planned: time_figures.power(planned.curve)}),
-    PlannedPrecision: _Subject({"precision": time_figures.precision}),
-    PsychometricFit: _Subject({"function": time_figures.psychometric_function}),
+    PlannedPower: _Subject({"power": lambda planned: figures.power(planned.curve)}),
+    PlannedPrecision: _Subject({"precision": figures.precision}),
+    PsychometricFit: _Subject({"function": figures.psychometric_function}),
 }
 """Figures and report of every type of result."""
 

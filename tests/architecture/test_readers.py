@@ -45,7 +45,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "measure/recordings/description.py": {"tomllib.loads": TOML},
     "physics/texture_files/image_file.py": {"Pillow.open": CHILD},
     "design/plate/report/page.py": {"read_bytes": "a draft in a folder of its own"},
-    "study/report/session.py": {"path.open": WRITES},
+    "study/report/terminal.py": {"path.open": WRITES},
     "instruments/session/record/trace.py": {"mmap.mmap": "over the descriptor that `opened` gave"},
     "instruments/session/record/trace_writer.py": {"os.open": WRITES},
     "instruments/session/loop/process.py": {"mmap.mmap": "memory shared with its own child"},

@@ -14,8 +14,8 @@ import pytest
 
 import squeezefilm as sf
 from squeezefilm.study.design.study_design import load_design
+from squeezefilm.study.record.exports import write_orders
 from squeezefilm.study.record.foreign import read_answers
-from squeezefilm.study.record.orders import write_orders
 
 SCRIPT = Path(__file__).parents[2] / "docs" / "how-to" / "two_surfaces.py"
 TRIALS = 3

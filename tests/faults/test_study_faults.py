@@ -17,7 +17,7 @@ from tests.faults.forked import Forked
 from tests.faults.study_child import run
 
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
-from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.rules import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.store import StudyStore

@@ -14,7 +14,7 @@ from scipy.special import ndtr
 
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import adaptive_method, hears_choice
-from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.rules import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import Trial, trials
 from squeezefilm.study.record.answers import Answers

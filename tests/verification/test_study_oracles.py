@@ -23,11 +23,11 @@ from tests.task_models import (
 
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.placement import Placement
-from squeezefilm.study.design.tasks.two_interval import QUARTILE
+from squeezefilm.study.design.tasks.two_surfaces import QUARTILE
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior
-from squeezefilm.study.tasks.magnitude import exponents
 from squeezefilm.study.tasks.on_grid import on_grid
+from squeezefilm.study.tasks.scales import exponents
 
 SETS = range(20)
 FEW = pytest.mark.parametrize(

@@ -113,7 +113,7 @@ def plan(
     doubtful of it: its range, its displays, catch trials."""
     from squeezefilm.study.design.plan import plan_study
     from squeezefilm.study.design.study_design import load_design
-    from squeezefilm.study.record.orders import write_orders
+    from squeezefilm.study.record.exports import write_orders
     from squeezefilm.study.report.terminal import show_plan
 
     planned = plan_study(load_design(design), participants, seed, reach=reach)
@@ -356,8 +356,7 @@ class RunOptions:
 @called_with(RunOptions)
 def run(asked: RunOptions) -> None:
     """Run a session at the terminal; stop with Ctrl-C, and go on later where it stopped."""
-    from squeezefilm.study.report.session import run_study
-    from squeezefilm.study.report.terminal import ask_acknowledgement
+    from squeezefilm.study.report.terminal import ask_acknowledgement, run_study
 
     ended = run_study(
         asked.design,

@@ -18,7 +18,7 @@ from squeezefilm.study.conduct.study_device import (
     TrialMotion,
 )
 from squeezefilm.study.conduct.terminal_run import conduct
-from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.rules import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.record.store import StudyStore

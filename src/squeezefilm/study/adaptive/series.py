@@ -12,9 +12,8 @@ from scipy.special import ndtr
 from squeezefilm.core import quantities as si
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.adaptive.placement import Placement, PlacementModel
-from squeezefilm.study.adaptive.runs import Runs
-from squeezefilm.study.adaptive.staircase import Staircase, StaircaseRule
-from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.adaptive.staircase import Runs, Staircase, StaircaseRule
+from squeezefilm.study.design.rules import AdaptiveCondition
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.design.tasks.task import StudyTask, Task
 from squeezefilm.study.psychometric.function import PsychometricPrior

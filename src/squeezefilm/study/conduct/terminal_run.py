@@ -36,7 +36,7 @@ from squeezefilm.study.conduct.sessions import (
 from squeezefilm.study.conduct.study_device import ByHand, NoDevice, StudyDevice, TrialMotion
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.design.trials import expected_duration
-from squeezefilm.study.identification.course import judged
+from squeezefilm.study.identification.condition_means import judged
 from squeezefilm.study.record.deletion import remove_rows
 from squeezefilm.study.record.store import StudyStore, utc_now
 

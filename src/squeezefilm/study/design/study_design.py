@@ -28,10 +28,11 @@ from squeezefilm.study.design.matching import (
     require_comparison,
     require_matching,
 )
-from squeezefilm.study.design.rules import ExclusionRule, TrialRules
-from squeezefilm.study.design.special_trials import (
+from squeezefilm.study.design.rules import (
     AdaptiveCondition,
     CatchTrial,
+    ExclusionRule,
+    TrialRules,
     require_different,
     require_name,
 )

@@ -19,7 +19,7 @@ from typing import Any, Literal
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.study.design.special_trials import CatchTrial
+from squeezefilm.study.design.rules import CatchTrial
 from squeezefilm.study.design.study_design import Order, StudyDesign
 from squeezefilm.study.design.tasks.task import Condition
 

@@ -15,12 +15,12 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.study.identification.condition_means import (
     ConditionMean,
+    Course,
     ResponseTimeSummary,
     condition_means,
     response_time_summary,
 )
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
-from squeezefilm.study.identification.course import Course
 from squeezefilm.study.identification.information import (
     METHOD,
     InformationTransfer,

@@ -22,7 +22,7 @@ from scipy.special import ndtr, ndtri
 from squeezefilm.core import quantities as si
 from squeezefilm.study.design.rules import ExclusionRule
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.identification.course import attention
+from squeezefilm.study.identification.condition_means import attention
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers
 

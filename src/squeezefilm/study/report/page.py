@@ -24,8 +24,8 @@ from squeezefilm.core.kit.page_style import (
     text_table,
 )
 from squeezefilm.study.report import figures as draw
+from squeezefilm.study.report import figures as times
 from squeezefilm.study.report import task_figures
-from squeezefilm.study.report import time_figures as times
 from squeezefilm.study.report.words import (
     PERSON_HEAD,
     SCREENING_HEAD,

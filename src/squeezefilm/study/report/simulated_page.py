@@ -30,7 +30,7 @@ REMARK = (
 def remarks(design: StudyDesign) -> tuple[str, ...]:
     """Sentences to be read beside the answers to a design: the paper's remark where
     real gratings are matched, else what the answers assume."""
-    from squeezefilm.study.simulated.recalled import assumed
+    from squeezefilm.study.simulated.chain_tables import assumed
 
     return (REMARK,) if design.alternatives else assumed(design)
 

@@ -14,8 +14,8 @@ from squeezefilm.study.tasks.findings import EQUALITY, PARTS, TaskAnalysis
 
 if TYPE_CHECKING:
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
+    from squeezefilm.study.identification.condition_means import Course
     from squeezefilm.study.identification.confusion import ConfusionMatrix
-    from squeezefilm.study.identification.course import Course
     from squeezefilm.study.identification.screening import Screening
     from squeezefilm.study.psychometric.estimate import Estimate
     from squeezefilm.study.tasks.analyze import StudyAnalysis

@@ -18,13 +18,12 @@ from squeezefilm.study.design.study_design import NamedDesign
 from squeezefilm.study.identification.confusion import ConfusionMatrix
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.record.tables import SURFACES, trial_columns
-from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
+from squeezefilm.study.simulated.chain_tables import ChainTables, assumed, chain_tables
 from squeezefilm.study.simulated.participants import (
     match_counts,
     require_people,
     simulate_matches,
 )
-from squeezefilm.study.simulated.recalled import assumed
 
 if TYPE_CHECKING:
     from squeezefilm.study.tasks.analyze import StudyAnalysis

@@ -30,9 +30,8 @@ from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.tasks.task import Percepts
 from squeezefilm.study.design.trials import Trial, trials
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.simulated.chain_tables import ChainTables
+from squeezefilm.study.simulated.chain_tables import ChainTables, difference
 from squeezefilm.study.simulated.participants import CHUNK, SimulatedPeople
-from squeezefilm.study.simulated.recalled import difference
 
 _FAINTEST = 0.05
 """Strength (d′) below which magnitudes fall no further."""

@@ -26,8 +26,7 @@ from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.identification.confusion import participant_counts
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.recalled import recalled_distances
+from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables, recalled_distances
 
 _MOST_PEOPLE = 1_000_000
 _STREAM = 29

@@ -25,10 +25,9 @@ from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.simulated.planned_power import Planned, PlannedStudies, on_one_display
 from squeezefilm.study.tasks.by_condition import MEASURE, unlike_persons
-from squeezefilm.study.tasks.choices import rank_exponents
 from squeezefilm.study.tasks.findings import PARTS, PersonEstimate
-from squeezefilm.study.tasks.magnitude import exponents
 from squeezefilm.study.tasks.on_grid import PeopleOnGrid, on_grid
+from squeezefilm.study.tasks.scales import exponents, rank_exponents
 from squeezefilm.study.tasks.settings import settings_of
 
 PEOPLE = 400

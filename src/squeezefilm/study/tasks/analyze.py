@@ -24,9 +24,9 @@ from squeezefilm.study.identification.condition_means import (
     ConditionMean,
     ResponseTimeSummary,
     condition_means,
+    course_of,
     response_time_summary,
 )
-from squeezefilm.study.identification.course import course_of
 from squeezefilm.study.identification.screening import Screening, judged_people, rule_of
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers, recorded_answers
@@ -34,9 +34,9 @@ from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.tasks.by_condition import comparisons
 from squeezefilm.study.tasks.findings import TaskAnalysis
-from squeezefilm.study.tasks.magnitude import require_magnitudes
 from squeezefilm.study.tasks.measures import measured
 from squeezefilm.study.tasks.methods import methods_text
+from squeezefilm.study.tasks.scales import require_magnitudes
 
 StudyAnalysis = IdentificationAnalysis | TaskAnalysis
 Tell = Callable[[str], None]

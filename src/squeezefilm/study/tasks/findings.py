@@ -11,8 +11,11 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.results import Result, stamp
 from squeezefilm.physics.perception.stimuli import Varied
 from squeezefilm.study.design.tasks.task import JUDGED, Task
-from squeezefilm.study.identification.condition_means import ConditionMean, ResponseTimeSummary
-from squeezefilm.study.identification.course import Course
+from squeezefilm.study.identification.condition_means import (
+    ConditionMean,
+    Course,
+    ResponseTimeSummary,
+)
 from squeezefilm.study.identification.screening import Screening
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.tasks.population import PopulationEstimate

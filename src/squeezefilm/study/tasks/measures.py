@@ -18,15 +18,20 @@ from squeezefilm.study.tasks.by_condition import (
     more_numbers,
     unlike_persons,
 )
-from squeezefilm.study.tasks.choices import rank_exponents, strengths
 from squeezefilm.study.tasks.findings import (
     ConditionFinding,
     PersonEstimate,
     PersonFunction,
     of_population,
 )
-from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions, of_exponents
 from squeezefilm.study.tasks.on_grid import on_grid
+from squeezefilm.study.tasks.scales import (
+    exponents,
+    magnitude_conditions,
+    of_exponents,
+    rank_exponents,
+    strengths,
+)
 from squeezefilm.study.tasks.settings import of_settings, settings_of
 
 Tell = Callable[[str], None]

@@ -9,9 +9,9 @@ import numpy as np
 from scipy import stats
 
 from squeezefilm.core import quantities as si
-from squeezefilm.study.adaptive.runs import Ending, Runs
 from squeezefilm.study.adaptive.series import adaptive_method
-from squeezefilm.study.design.tasks.two_interval import QUARTILE
+from squeezefilm.study.adaptive.staircase import Ending, Runs
+from squeezefilm.study.design.tasks.two_surfaces import QUARTILE
 from squeezefilm.study.psychometric.estimate import Estimate, t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import (

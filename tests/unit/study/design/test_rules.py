@@ -8,8 +8,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign
-from squeezefilm.study.design.rules import TrialRules
-from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.rules import AdaptiveCondition, TrialRules
 from squeezefilm.study.psychometric.function import PsychometricPrior
 
 RULES = TrialRules(

@@ -9,7 +9,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.stimuli import Stimulus
-from squeezefilm.study.design.special_trials import (
+from squeezefilm.study.design.rules import (
     AdaptiveCondition,
     CatchTrial,
     require_different,

@@ -12,8 +12,7 @@ import pytest
 from squeezefilm.core import config, presets
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
-from squeezefilm.study.design.rules import TrialRules
-from squeezefilm.study.design.special_trials import AdaptiveCondition, CatchTrial
+from squeezefilm.study.design.rules import AdaptiveCondition, CatchTrial, TrialRules
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.record.store import StudyStore

@@ -11,7 +11,7 @@ import pytest
 from squeezefilm.core import config
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.stimuli import Stimulus
-from squeezefilm.study.design.special_trials import AdaptiveCondition, CatchTrial
+from squeezefilm.study.design.rules import AdaptiveCondition, CatchTrial
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.trials import (
     expected_duration,

@@ -13,7 +13,7 @@ import pytest
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.study.conduct.rehearsal import rehearse
-from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.rules import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.record import foreign
 from squeezefilm.study.record.answers import recorded_answers

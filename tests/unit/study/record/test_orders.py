@@ -10,7 +10,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.design.plan import plan_study
-from squeezefilm.study.record.orders import ORDER_COLUMNS, write_orders
+from squeezefilm.study.record.exports import ORDER_COLUMNS, write_orders
 
 
 @pytest.mark.parametrize("name", ["biet2008-gratings", "period-jnd", "coarseness-magnitude"])

@@ -20,7 +20,7 @@ from squeezefilm.study.identification.power import (
     power_curve,
 )
 from squeezefilm.study.report import figures as study_figures
-from squeezefilm.study.report import time_figures as study_time_figures
+from squeezefilm.study.report import figures as study_time_figures
 from squeezefilm.study.report.page import study_figures as figures_of
 from squeezefilm.study.report.page import study_page, write_study
 

@@ -12,7 +12,7 @@ from tests.unit.drawn import words
 
 from squeezefilm.core.kit.style import BLUE, ORANGE
 from squeezefilm.study.psychometric.function import PsychometricFunction
-from squeezefilm.study.report.time_figures import psychometric_function
+from squeezefilm.study.report.figures import psychometric_function
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 

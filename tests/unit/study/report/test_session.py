@@ -12,7 +12,7 @@ from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.report.session import run_study
+from squeezefilm.study.report.terminal import run_study
 
 from ...study.scripted import Script, gratings, magnitudes
 

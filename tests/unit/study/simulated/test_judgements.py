@@ -18,7 +18,7 @@ from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import adaptive_method
-from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.rules import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.simulated.answers import (

@@ -13,8 +13,8 @@ from scipy import stats
 from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.perceived import Perceived
 from squeezefilm.physics.perception.senses import Candidates
+from squeezefilm.study.simulated.chain_tables import assumed, difference, recalled_distances
 from squeezefilm.study.simulated.participants import SimulatedPeople
-from squeezefilm.study.simulated.recalled import assumed, difference, recalled_distances
 
 OBSERVER = dataclasses.replace(load_observer(), candidates=1)
 

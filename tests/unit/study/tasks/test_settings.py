@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.recovery.task_people import EVERY, Person, answered
 
-from squeezefilm.study.adaptive.runs import Ending
+from squeezefilm.study.adaptive.staircase import Ending
 from squeezefilm.study.tasks import settings
 
 

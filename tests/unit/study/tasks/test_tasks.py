@@ -14,15 +14,15 @@ from scipy import stats
 from tests.recovery.task_people import DESIGNS, Person, analysed, answered, somebody
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.course import attention, course_of, drift
+from squeezefilm.study.identification.condition_means import attention, course_of, drift
 from squeezefilm.study.psychometric.estimate import t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.analyze import analyze_answers
 from squeezefilm.study.tasks.by_condition import comparisons, false_alarms
 from squeezefilm.study.tasks.findings import TaskAnalysis
-from squeezefilm.study.tasks.magnitude import exponents, magnitude_conditions
 from squeezefilm.study.tasks.methods import methods_text
 from squeezefilm.study.tasks.on_grid import PeopleOnGrid, on_grid
+from squeezefilm.study.tasks.scales import exponents, magnitude_conditions
 
 SHARP = Person(0.02, 0.9, 0.0)
 

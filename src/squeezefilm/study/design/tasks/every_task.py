@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from squeezefilm.study.design.tasks.adjustment import ADJUSTMENT
-from squeezefilm.study.design.tasks.detection import DETECTION
-from squeezefilm.study.design.tasks.direction import DIRECTION
 from squeezefilm.study.design.tasks.odd_one_out import (
     ODD_ONE_OUT,
     ODD_ONE_OUT_OF_FIVE,
     ODD_ONE_OUT_OF_FOUR,
 )
-from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE
-from squeezefilm.study.design.tasks.paired_comparison import PAIRED_COMPARISON
+from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE, YES_NO
 from squeezefilm.study.design.tasks.ranking import RANKING
 from squeezefilm.study.design.tasks.same_different import SAME_DIFFERENT
 from squeezefilm.study.design.tasks.task import StudyTask
-from squeezefilm.study.design.tasks.two_interval import TWO_INTERVAL
-from squeezefilm.study.design.tasks.yes_no import YES_NO
+from squeezefilm.study.design.tasks.two_surfaces import (
+    DETECTION,
+    DIRECTION,
+    PAIRED_COMPARISON,
+    TWO_INTERVAL,
+)
 
 TASKS: dict[str, StudyTask] = {
     task.name: task

@@ -16,7 +16,7 @@ from scipy.special import ndtr
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.senses import percept_deviation
 from squeezefilm.study.design.plan import plan_study
-from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.rules import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.design.tasks.odd_one_out import (

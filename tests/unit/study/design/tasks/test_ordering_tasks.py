@@ -14,9 +14,9 @@ import pytest
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.study_design import StudyDesign, load_design
-from squeezefilm.study.design.tasks.paired_comparison import PAIRED_COMPARISON
 from squeezefilm.study.design.tasks.ranking import RANKING
 from squeezefilm.study.design.tasks.task import Percepts
+from squeezefilm.study.design.tasks.two_surfaces import PAIRED_COMPARISON
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.report.page import write_study
@@ -24,8 +24,8 @@ from squeezefilm.study.report.words import read_first
 from squeezefilm.study.simulated.planned_power import pair_scores
 from squeezefilm.study.simulated.planned_precision import person_values
 from squeezefilm.study.tasks.analyze import analyze_answers
-from squeezefilm.study.tasks.choices import fitted, likelihood, strengths
 from squeezefilm.study.tasks.findings import TaskAnalysis
+from squeezefilm.study.tasks.scales import fitted, likelihood, strengths
 
 PAIRS, ORDERS = load_design("period-pairs"), load_design("period-ranking")
 SLOPE = 6.0

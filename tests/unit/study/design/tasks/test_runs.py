@@ -12,12 +12,11 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.adaptive.runs import Runs
 from squeezefilm.study.adaptive.series import adaptive_method
+from squeezefilm.study.adaptive.staircase import Runs
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation
 from squeezefilm.study.conduct.terminal_run import Desk, run_session
-from squeezefilm.study.design.rules import ExclusionRule
-from squeezefilm.study.design.special_trials import AdaptiveCondition
+from squeezefilm.study.design.rules import AdaptiveCondition, ExclusionRule
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.tasks.adjustment import ADJUSTMENT
 from squeezefilm.study.design.tasks.task import Percepts

@@ -1,0 +1,203 @@
+"""Tasks of comparison: two surfaces, one of them flat or not, and one with a known reference."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.study.design.tasks.task import (
+    CLEARER,
+    FELT,
+    POPULATION,
+    STRENGTHS,
+    UNFELT,
+    Condition,
+    Decision,
+    DifferenceModel,
+    Judged,
+    Percepts,
+    StudyTask,
+    alone,
+    from_reference,
+    nothing_is_right,
+    one_each,
+)
+
+QUARTILE: si.Dimensionless = 0.6744897501960817
+"""Quartile of a normal deviate: 75 % lie below."""
+BIASES: si.DimensionlessArray = np.linspace(-0.5, 0.5, 41)
+"""Biases for an answer that are held possible, in parts of the greatest difference (1)."""
+
+
+def _question(judged: str) -> str:
+    more = "coarser" if judged == "spatial_period" else "more strongly felt"
+    return f"Which of the two surfaces was {more}?"
+
+
+def _conditions(reference: str, others: Sequence[str]) -> tuple[Condition, ...]:
+    return tuple(pair for other in others for pair in ((reference, other), (other, reference)))
+
+
+def _right(surfaces: Sequence[Stimulus], judged: Judged) -> str:
+    first, second = map(judged, surfaces)
+    return "" if first == second else "first" if first > second else "second"
+
+
+def _decides(given: Percepts) -> Decision:
+    apart = (given.level[0] - given.level[1]) / (math.sqrt(2.0) * given.deviation)
+    return Decision.by_sign(apart, given.felt[0] & given.felt[1])
+
+
+TWO_INTERVAL = StudyTask(
+    name="two-interval",
+    surfaces=2,
+    reference="presented",
+    answers=("first", "second"),
+    question=_question,
+    conditions=_conditions,
+    right=_right,
+    presents=(
+        "On each trial two surfaces were presented one after the other, one of them the reference "
+        "({reference}), and the participant said which had the greater {judged}"
+    ),
+    analysed=(
+        "Each participant's answers were fitted with a cumulative Gaussian of the difference of "
+        "logarithms, with a bias for an interval and lapses; the Weber fraction is what is told in "
+        f"75 % of two intervals. {POPULATION} d′ follows Macmillan and Creelman (2005)."
+    ),
+    counted="Has more",
+    assumed=(
+        "The coarser surface is the one whose clearest rhythm has the longer period, the deeper "
+        "one the one whose clearest rhythm is the more evident.",
+        "A person who does not feel both rhythms guesses which is coarser.",
+    ),
+    in_plane=(CLEARER,),
+    adaptive=("staircase", "bayesian"),
+    decides=_decides,
+    model=DifferenceModel(
+        difference=lambda levels, _: np.asarray(levels[0] - levels[1]),
+        criteria=BIASES,
+        threshold=QUARTILE,
+        sensitivity="two-interval",
+    ),
+)
+"""Two surfaces, which has more?"""
+
+
+# d′ grows with the amount x: P(first) = Φ((x₁ − x₂ − b)/s), with the person's bias b for an
+# interval (Macmillan and Creelman 2005, chapter 7). The threshold is told in 75 % of the trials.
+def _detection_decides(given: Percepts) -> Decision:
+    return Decision.by_sign((given.level[0] - given.level[1]) / given.deviation)
+
+
+DETECTION = dataclasses.replace(
+    TWO_INTERVAL,
+    name="detection",
+    reference="flat",
+    question=lambda _: "On which of the two surfaces was there something to feel?",
+    presents=(
+        "On each trial two surfaces were presented one after the other, one of them flat "
+        "({reference}), and the participant said on which there was something to feel"
+    ),
+    analysed=(
+        "Each participant's answers were fitted with a cumulative Gaussian of the {judged}, with a "
+        "bias for an interval and lapses; the threshold is what is told from the flat surface in "
+        f"75 % of two intervals. {POPULATION}"
+    ),
+    assumed=("The surface is named whose clearest rhythm is the more evident.", FELT),
+    in_amounts=True,
+    decides=_detection_decides,
+)
+"""Two surfaces, one of them flat: which had something to feel?"""
+
+
+# The method of single stimuli: P(more) = Φ((Δ − b)/s), with Δ the difference from the reference, of
+# logarithms or of an orientation, and b the person's middle between the two answers. The threshold
+# is told in 75 % of the trials by somebody whose middle is the reference.
+_QUESTIONS = {
+    "spatial_period": "coarser than the reference (more) or finer (less)",
+    "friction_depth": "felt more strongly than the reference (more) or less (less)",
+    "ridge_share": "made of wider ridges than the reference (more) or narrower ones (less)",
+    "orientation": "turned to the left from the reference (more) or to the right (less)",
+}
+
+
+def _direction_decides(given: Percepts) -> Decision:
+    return Decision.by_sign((given.level[0] - given.reference) / given.deviation, given.felt[0])
+
+
+DIRECTION = StudyTask(
+    name="direction",
+    surfaces=1,
+    reference="remembered",
+    answers=("more", "less"),
+    question=lambda judged: f"Was the surface {_QUESTIONS[judged]}?",
+    conditions=one_each,
+    right=nothing_is_right,
+    presents=(
+        "On each trial one surface was presented, and the participant said whether it had more or "
+        "less {judged} than the reference ({reference}), which they knew from before"
+    ),
+    analysed=(
+        "Each participant's answers were fitted with a cumulative Gaussian of the difference from "
+        "the reference, with a middle of their own and lapses; the threshold is what is told in "
+        f"75 % of the trials by somebody whose middle is the reference. {POPULATION}"
+    ),
+    counted="More",
+    assumed=("The reference is remembered without error.", UNFELT),
+    in_plane=(CLEARER,),
+    adaptive=("limits", "bayesian"),
+    series=lambda *_: (False, ""),
+    arranges=alone,
+    decides=_direction_decides,
+    model=DifferenceModel(
+        difference=from_reference,
+        criteria=BIASES,
+        threshold=QUARTILE,
+        criterion="bias of the middle between the answers",
+    ),
+)
+"""One surface: more or less than the reference?"""
+
+
+# No surface is the reference: each is compared with each other, in either order. By who is named
+# each has a strength (Bradley and Terry 1952, 10.1093/biomet/39.3-4.324; `tasks.choices`), whether
+# or not the surfaces have an amount in common. Where they have, the difference that is told in 75 %
+# of the pairs is that of two intervals.
+def _paired_comparison_conditions(catch: str, others: Sequence[str]) -> Iterator[Condition]:
+    every = others if catch in ("", *others) else (catch, *others)
+    return (pair for pair in itertools.permutations(every, 2) if every is others or catch in pair)
+
+
+def _paired_comparison_right(surfaces: Sequence[Stimulus], judged: Judged) -> str:
+    first, second = map(judged, surfaces)
+    alike = first == second or math.isnan(first) or math.isnan(second)
+    return "" if alike else "first" if first > second else "second"
+
+
+PAIRED_COMPARISON = dataclasses.replace(
+    TWO_INTERVAL,
+    name="paired-comparison",
+    reference="",
+    conditions=_paired_comparison_conditions,
+    right=_paired_comparison_right,
+    presents=(
+        "On each trial two surfaces were presented one after the other, each with each other in "
+        "either order, and the participant said which had the greater {judged}"
+    ),
+    analysed=(
+        f"{STRENGTHS} For the Weber fraction, what is told in 75 % of the pairs, each "
+        "participant's answers were fitted with a cumulative Gaussian of the difference of "
+        f"logarithms, with a bias for an interval and lapses. {POPULATION}"
+    ),
+    counted="Strength",
+    adaptive=(),
+    ranks=((0, 1), (1, 0)),
+)
+"""Two of all surfaces, which has more?"""
