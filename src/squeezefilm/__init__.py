@@ -62,7 +62,7 @@ _NAMES = {
     "fabricate": "design.fabrication.fabricate",
     # Studies
     "plan_study": "study.design.plan",
-    "run_study": "study.report.session",
+    "run_study": "study.report.terminal",
     "simulate_participants": "study.simulated.answers",
     "analyze_study": "study.tasks.analyze",
     "AdaptiveDesign": "study.adaptive.bayesian",

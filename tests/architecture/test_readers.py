@@ -33,9 +33,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
         "json.loads": "answers of a child that may be taken over",
         "pickle.load": "requests of the process that started it, by a pipe of its own",
     },
-    "core/kept/records.py": {
-        "json.loads": "what `read_regular` read; any error counts as not there"
-    },
+    "core/kept/store.py": {"json.loads": "what `read_regular` read; any error counts as not there"},
     "physics/contact/sharing/film_panels.py": {"np.load": PACKAGE},
     "core/kept/computed_by.py": {"os.open": "the package's source"},
     "measure/recordings/files/matlab.py": {"loadmat": CHILD},
@@ -60,7 +58,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "core/results.py": {"os.open": WRITES},
     "lab/files.py": {"os.open": WRITES, "zipfile.ZipFile": "written, in memory"},
     "lab/designing/form.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
-    "lab/requirements_text.py": {"tomllib.loads": TOML},
+    "lab/search_process.py": {"tomllib.loads": TOML},
     "lab/wire.py": {"json.loads": "a message of a page, of limited length"},
     "lab/serve.py": {"webbrowser.open": "no file"},
     "core/presets/materials.py": {"read_text": PACKAGE, "tomllib.loads": TOML},

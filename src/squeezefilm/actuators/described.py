@@ -16,7 +16,7 @@ from squeezefilm.actuators.skin_stretch.array import SkinStretchDescription
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.load import load_text
-from squeezefilm.core.config.scan import require_quick_toml
+from squeezefilm.core.config.syntax import require_quick_toml
 from squeezefilm.core.errors import ConfigError, SqueezefilmError
 from squeezefilm.core.regular_file import read_toml_text
 

@@ -12,12 +12,10 @@ import typer
 
 # In the order in which `--help` lists them.
 from squeezefilm.cli import describe  # noqa: F401 # isort: skip
-from squeezefilm.cli import sweep  # noqa: F401 # isort: skip
 from squeezefilm.cli import design  # noqa: F401 # isort: skip
 from squeezefilm.cli import textures  # noqa: F401 # isort: skip
 from squeezefilm.cli import claims  # noqa: F401 # isort: skip
 from squeezefilm.cli import measure  # noqa: F401 # isort: skip
-from squeezefilm.cli import calibration  # noqa: F401 # isort: skip
 from squeezefilm.cli import study  # noqa: F401 # isort: skip
 from squeezefilm.cli import study_file  # noqa: F401 # isort: skip
 from squeezefilm.cli import cache  # noqa: F401 # isort: skip

@@ -156,7 +156,7 @@ def analyze(asked: AnalyzeOptions) -> None:
     from squeezefilm.actuators.described import is_actuator
 
     if is_actuator(asked.target):
-        from squeezefilm.cli.actuator import analyze_actuator
+        from squeezefilm.cli.described import analyze_actuator
 
         analyze_actuator(asked)
         return

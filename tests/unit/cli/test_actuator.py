@@ -1,4 +1,4 @@
-"""`squeezefilm.cli.actuator`: `analyze` of a motor or an array."""
+"""`squeezefilm.cli.described`: `analyze` of a motor or an array."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from tests.e2e.program import run
 
-from squeezefilm.cli.calibration import calibrate, predict_unseen, score
+from squeezefilm.cli.measure import calibrate, predict_unseen, score
 from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted, Score, load_prediction
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.display import load_display

@@ -10,14 +10,13 @@ import pytest
 from tests.unit.design.search.made_up import requirements
 
 from squeezefilm.core.errors import MissingPackageError, optional
-from squeezefilm.core.formats.drawing import Drawing
-from squeezefilm.core.formats.dxf import dxf_text
+from squeezefilm.core.formats.drawing import Drawing, dxf_text
 from squeezefilm.core.formats.traces import Table, parquet_bytes
 from squeezefilm.design.search.evolution import Proposals
 from squeezefilm.design.sweep.workers import workers
 from squeezefilm.instruments.bench.markers import Markers
 from squeezefilm.instruments.device.wire.streams import SerialStream
-from squeezefilm.lab.lan import certificate
+from squeezefilm.lab.serve import certificate
 
 EXTRAS = {
     "cluster": ("distributed",),

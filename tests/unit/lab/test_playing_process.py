@@ -21,8 +21,8 @@ from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.report import page
 from squeezefilm.instruments.session.loop.rows import COLUMNS
 from squeezefilm.instruments.session.play.plan import PlayView
-from squeezefilm.lab import told_process
-from squeezefilm.lab.playing_process import DeviceSession, check, play
+from squeezefilm.lab import own_process
+from squeezefilm.lab.own_process import DeviceSession, check, play
 
 WORK: Any = {
     "display": "d.toml", "texture": "biet2008-square-4mm", "drive": "twin", "mode": "stream",
@@ -211,7 +211,7 @@ def test_where_the_server_is_gone_the_session_stops_as_by_ctrl_c(
     killed: list[Any] = []
     monkeypatch.setattr(os, "kill", lambda *given: killed.append(given))
     pipe: Any = Pipe()
-    tell = told_process.telling(pipe)
+    tell = own_process.telling(pipe)
     tell({"type": "a"})
     assert (pipe.said, killed) == ([{"type": "a"}], [])
     pipe.broken = True

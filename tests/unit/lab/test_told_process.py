@@ -13,9 +13,9 @@ from typing import Any
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.lab import told_process
+from squeezefilm.lab import own_process
+from squeezefilm.lab.own_process import ToldProcess
 from squeezefilm.lab.search_process import _Stop
-from squeezefilm.lab.told_process import ToldProcess
 
 
 class Work(ToldProcess):
@@ -79,8 +79,8 @@ def signalled(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
         assert kind == "spawn"
         return Context
 
-    monkeypatch.setattr(told_process.multiprocessing, "get_context", context)
-    monkeypatch.setattr(told_process.os, "kill", lambda *said: sent.append(said))
+    monkeypatch.setattr(own_process.multiprocessing, "get_context", context)
+    monkeypatch.setattr(own_process.os, "kill", lambda *said: sent.append(said))
     return sent
 
 

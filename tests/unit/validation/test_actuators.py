@@ -5,12 +5,12 @@ from __future__ import annotations
 import pytest
 
 from squeezefilm.actuators.described import load_actuator
-from squeezefilm.validation import actuators
+from squeezefilm.validation import command
 from squeezefilm.validation.values import CLAIM_VALUES
 
 
 def test_the_surface_is_a_pitch_for_each_contactor() -> None:
-    array = actuators._array()
+    array = command._array()
     found = CLAIM_VALUES["skin-stretch-surface"]()
     assert found.value == pytest.approx(
         (60 * array.cradle.pitch_along * array.cradle.pitch_across,)

@@ -24,9 +24,8 @@ from squeezefilm.core.config.provenance import (
     tree_values,
 )
 from squeezefilm.core.config.references import COPIED_FROM, References
-from squeezefilm.core.config.scan import DEEPEST, require_quick_toml
 from squeezefilm.core.config.schema import family, model_of, reads_from_file
-from squeezefilm.core.config.syntax import explained, locate
+from squeezefilm.core.config.syntax import DEEPEST, explained, locate, require_quick_toml
 from squeezefilm.core.distributions import Distribution
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.regular_file import read_toml_text

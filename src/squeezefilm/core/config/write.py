@@ -12,8 +12,8 @@ from typing import Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import Provenance, read_only
-from squeezefilm.core.config.scan import DEEPEST
 from squeezefilm.core.config.schema import reads_from_file
+from squeezefilm.core.config.syntax import DEEPEST
 from squeezefilm.core.distributions import Normal
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import DESCRIPTION_BYTES, require_within

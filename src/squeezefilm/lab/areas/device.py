@@ -12,11 +12,11 @@ from pydantic import Field
 from squeezefilm.core import presets
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import write_whole
-from squeezefilm.lab import playing_process as device_process
+from squeezefilm.lab import own_process as device_process
 from squeezefilm.lab.designing.form import name_of
 from squeezefilm.lab.designing.program import require_playable, title_of
 from squeezefilm.lab.files import existing
-from squeezefilm.lab.playing_process import DeviceSession
+from squeezefilm.lab.own_process import DeviceSession
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 
 if TYPE_CHECKING:

@@ -16,8 +16,7 @@ from squeezefilm.core.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED
 from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import write_whole
 from squeezefilm.lab.files import existing, named
-from squeezefilm.lab.requirements_text import asked_of, display_text, folder_of
-from squeezefilm.lab.search_process import SearchProcess, search
+from squeezefilm.lab.search_process import SearchProcess, asked_of, display_text, folder_of, search
 from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
 
 if TYPE_CHECKING:

@@ -12,8 +12,7 @@ from typing import Annotated, Literal
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config import load_text
-from squeezefilm.core.config.scan import require_quick_toml
-from squeezefilm.core.config.syntax import locate
+from squeezefilm.core.config.syntax import locate, require_quick_toml
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.hard_limits import DESCRIPTION_BYTES, FREQUENCY, PLACE, RESISTANCE
 from squeezefilm.core.regular_file import read_regular_text

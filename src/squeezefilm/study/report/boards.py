@@ -11,8 +11,15 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.formats.drawing import Dimension, Drawing, Item, Layer, Text, rectangle
-from squeezefilm.core.formats.dxf import dxf_text
+from squeezefilm.core.formats.drawing import (
+    Dimension,
+    Drawing,
+    Item,
+    Layer,
+    Text,
+    dxf_text,
+    rectangle,
+)
 from squeezefilm.core.hard_limits import HardLimit, require_within
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder

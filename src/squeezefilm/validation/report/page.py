@@ -13,16 +13,6 @@ from squeezefilm.core.results import write_whole
 from squeezefilm.design.analysis.paper_procedure import PaperDesign
 from squeezefilm.validation.command import ClaimResult, Reproduction
 from squeezefilm.validation.explanations import PrototypeStudy
-from squeezefilm.validation.report.claim_rows import (
-    direction_table,
-    directions,
-    missed_lists,
-    model_sentences,
-    plain_claims,
-    show_printed,
-    show_values,
-    verdict_table,
-)
 from squeezefilm.validation.report.prototype import (
     Table,
     comparison,
@@ -31,6 +21,16 @@ from squeezefilm.validation.report.prototype import (
     prototype_markdown,
     sentences,
     separation_table,
+)
+from squeezefilm.validation.report.published import (
+    direction_table,
+    directions,
+    missed_lists,
+    model_sentences,
+    plain_claims,
+    show_printed,
+    show_values,
+    verdict_table,
 )
 
 _HEADER = """# Validation

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from squeezefilm.core.kit.terminal import bullets, heading, plain_console, table
-from squeezefilm.validation.report.claim_rows import (
+from squeezefilm.validation.report.published import (
     direction_table,
     directions,
     model_sentences,

@@ -11,9 +11,8 @@ import pytest
 
 from squeezefilm.core import presets
 from squeezefilm.core.config import load_text
-from squeezefilm.core.config import scan as scanning
-from squeezefilm.core.config.scan import DEEPEST, require_quick_toml
-from squeezefilm.core.config.syntax import locate
+from squeezefilm.core.config import syntax as scanning
+from squeezefilm.core.config.syntax import DEEPEST, locate, require_quick_toml
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.texture_files.texture_file import texture_from_text

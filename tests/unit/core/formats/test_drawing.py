@@ -11,6 +11,7 @@ from ezdxf.filemanagement import read
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.formats.drawing import (
+    APPLICATION,
     Arc,
     Dimension,
     Drawing,
@@ -19,10 +20,10 @@ from squeezefilm.core.formats.drawing import (
     Polyline,
     Text,
     arrows_outside,
+    dxf_text,
     millimetres,
     rectangle,
 )
-from squeezefilm.core.formats.dxf import APPLICATION, dxf_text
 
 LAYERS = {"A": Layer(7), "B": Layer(1, "DASHDOT", 0.5e-3)}
 

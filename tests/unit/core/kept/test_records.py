@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.kept.records import packed, unpacked
+from squeezefilm.core.kept.store import packed, unpacked
 
 
 @dataclass(frozen=True, eq=False)

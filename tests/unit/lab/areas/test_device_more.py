@@ -15,10 +15,10 @@ from serial.tools import list_ports
 from tests.unit.lab.areas.too_long import require_refused_if_longer
 
 from squeezefilm.core import presets
-from squeezefilm.lab import playing_process
+from squeezefilm.lab import own_process
 from squeezefilm.lab.areas.device import DEVICE, DeviceArea, OnDrive, PlayDevice
 from squeezefilm.lab.designing.form import preset_text
-from squeezefilm.lab.playing_process import DeviceSession
+from squeezefilm.lab.own_process import DeviceSession
 
 if TYPE_CHECKING:
     from .conftest import Talk
@@ -46,7 +46,7 @@ class Session:
     def work(self) -> Any:
         """What was last begun to play."""
         play, how = self.begun[-1]
-        assert play is playing_process.play
+        assert play is own_process.play
         return SimpleNamespace(**how)
 
 
@@ -143,7 +143,7 @@ def test_a_check_is_a_thing_that_plays(lab: Talk, session: Session) -> None:
     found = lab.say("check device", display=STATOR, drive="serial:X")
     assert found == {"type": "checking"}
     display = str(lab.folder / "sessions" / ".display.toml")
-    assert session.begun == [(playing_process.check, {"drive": "serial:X", "display": display})]
+    assert session.begun == [(own_process.check, {"drive": "serial:X", "display": display})]
     (now,) = lab.say("what plays")["now"]
     assert now == {"key": "device", "text": "the check of serial:X", "plays": True}
     assert lab.say("stop everything") == {"type": "stopping"}

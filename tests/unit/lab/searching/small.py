@@ -7,7 +7,7 @@ from pathlib import Path
 from squeezefilm.design.search.candidate import Evaluated, Level, design_of
 from squeezefilm.design.search.criteria import breaches
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.lab.requirements_text import requirements_of
+from squeezefilm.lab.search_process import requirements_of
 
 TEXT = Path(__file__).with_name("small.toml").read_text(encoding="utf-8")
 

@@ -14,7 +14,7 @@ from squeezefilm.design.search.criteria import criterion_of
 from squeezefilm.design.search.report.page import plate_file
 from squeezefilm.lab.designing.form import preset_text
 from squeezefilm.lab.designing.numbers import opened
-from squeezefilm.lab.requirements_text import (
+from squeezefilm.lab.search_process import (
     asked_of,
     display_text,
     folder_of,

@@ -16,9 +16,9 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.design.search import run
 from squeezefilm.design.search.found import Glimpse
 from squeezefilm.design.search.run import SearchRequest
+from squeezefilm.lab import own_process
 from squeezefilm.lab import search_process as process
 from squeezefilm.lab import search_process as shown
-from squeezefilm.lab import told_process
 from squeezefilm.lab.search_process import SearchProcess, StagePace, search
 
 from .small import TEXT
@@ -238,4 +238,4 @@ def test_a_process_that_does_not_stop_is_ended(monkeypatch: pytest.MonkeyPatch) 
     one.kill()
     assert done == ["killed"]
     assert one._stopped
-    assert told_process.ToldProcess in SearchProcess.__mro__
+    assert own_process.ToldProcess in SearchProcess.__mro__

@@ -13,13 +13,13 @@ from typing import Any
 import pytest
 
 from squeezefilm.core.errors import DeviceError, InputError
-from squeezefilm.lab import playing_process
+from squeezefilm.lab import own_process
 from squeezefilm.lab.areas import study as study_area
 from squeezefilm.lab.areas.device import DeviceArea
 from squeezefilm.lab.areas.study import StudyArea
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
-from squeezefilm.lab.playing_process import DeviceSession
+from squeezefilm.lab.own_process import DeviceSession
 from squeezefilm.lab.server import PAGE, Lab
 from squeezefilm.lab.studying.devices import StudyDevices, require_device
 from squeezefilm.physics.perception.stimuli import Stimulus
@@ -346,7 +346,7 @@ def test_a_check_is_asked_of_the_drive_with_the_display_on_the_page(
 
     play(work())
     ((what, how),) = begun
-    assert (what, how["drive"]) == (playing_process.check, "twin")
+    assert (what, how["drive"]) == (own_process.check, "twin")
     assert Path(how["display"]).read_text() == 'name = "mine"'
 
 

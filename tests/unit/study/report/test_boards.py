@@ -10,8 +10,7 @@ import pytest
 from ezdxf.filemanagement import readfile
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.formats.drawing import Dimension, Polyline, Text
-from squeezefilm.core.formats.dxf import MILLIMETRES
+from squeezefilm.core.formats.drawing import MILLIMETRES, Dimension, Polyline, Text
 from squeezefilm.physics.perception.stimuli import Grating
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.report.boards import board_of, boards, drawing_of, write_boards

@@ -12,8 +12,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.formats.drawing import Drawing
-from squeezefilm.core.formats.dxf import dxf_text
+from squeezefilm.core.formats.drawing import Drawing, dxf_text
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import csv_text, json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import HZ, printable, shown

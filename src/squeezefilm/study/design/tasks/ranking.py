@@ -2,7 +2,7 @@
 
 All triples come, each surface once in each place. Of the surfaces that are left the one put next
 has its strength over the sum of theirs for a probability (Plackett 1975, 10.2307/2346567; Luce
-1959; `tasks.choices`), so that an order counts as two choices, and is not split into three pairs.
+1959; `tasks.scales`), so that an order counts as two choices, and is not split into three pairs.
 """
 
 from __future__ import annotations

@@ -167,7 +167,7 @@ DIRECTION = StudyTask(
 
 
 # No surface is the reference: each is compared with each other, in either order. By who is named
-# each has a strength (Bradley and Terry 1952, 10.1093/biomet/39.3-4.324; `tasks.choices`), whether
+# each has a strength (Bradley and Terry 1952, 10.1093/biomet/39.3-4.324; `tasks.scales`), whether
 # or not the surfaces have an amount in common. Where they have, the difference that is told in 75 %
 # of the pairs is that of two intervals.
 def _paired_comparison_conditions(catch: str, others: Sequence[str]) -> Iterator[Condition]:

@@ -17,8 +17,15 @@ from hypothesis import strategies as st
 import squeezefilm as sf
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.distributions import Normal, Uniform
-from squeezefilm.core.formats.drawing import Dimension, Drawing, Ordinate, Polyline, Text
-from squeezefilm.core.formats.dxf import APPLICATION, dxf_text
+from squeezefilm.core.formats.drawing import (
+    APPLICATION,
+    Dimension,
+    Drawing,
+    Ordinate,
+    Polyline,
+    Text,
+    dxf_text,
+)
 from squeezefilm.core.kit.sheet import sheet_figure
 from squeezefilm.design.fabrication.fabricate import Fabrication
 from squeezefilm.design.fabrication.report import sheet_parts
