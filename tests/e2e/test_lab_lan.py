@@ -20,7 +20,7 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Origin
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.lab.serve import certificate, lan_listener
+from squeezefilm.lab.lan import certificate, lan_listener
 
 from .conftest import RunningLab, Start
 from .test_lab_pages import CONTRAST, keep, opened

@@ -24,7 +24,7 @@ from squeezefilm.design.sweep.report.terminal import compared_rows
 from squeezefilm.instruments.session.record.trace import export_trace
 from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 from squeezefilm.lab.keys import Keys
-from squeezefilm.lab.serve import certificate
+from squeezefilm.lab.lan import certificate
 from squeezefilm.measure.calibration.blind import (
     BlindPrediction,
     Predicted,

@@ -248,7 +248,7 @@ def test_a_rehearsal_makes_the_file_and_says_what_comes_next(
 def test_a_session_is_given_every_option(
     stands_in: StandsIn, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    asked = stands_in("study.report.session:run_study", "how it ended", tells=False)
+    asked = stands_in("study.report.terminal:run_study", "how it ended", tells=False)
     done = run("run", PRESET, "--store", "a.sqlite")
     assert done.stdout == "how it ended\n"
     assert asked.given == (PRESET, Path("a.sqlite"), None)

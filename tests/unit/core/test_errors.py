@@ -16,7 +16,7 @@ from squeezefilm.design.search.evolution import Proposals
 from squeezefilm.design.sweep.workers import workers
 from squeezefilm.instruments.bench.markers import Markers
 from squeezefilm.instruments.device.wire.streams import SerialStream
-from squeezefilm.lab.serve import certificate
+from squeezefilm.lab.lan import certificate
 
 EXTRAS = {
     "cluster": ("distributed",),

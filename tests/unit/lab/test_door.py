@@ -23,7 +23,7 @@ from squeezefilm.lab import door as doors
 from squeezefilm.lab.door import Connection, Door, room_for
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
-from squeezefilm.lab.serve import certificate
+from squeezefilm.lab.lan import certificate
 from squeezefilm.lab.server import Lab, UnheardServer, listening_socket, server_of
 from squeezefilm.lab.wire import Request
 

@@ -16,11 +16,11 @@ import pytest
 from starlette.testclient import TestClient
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.lab import serve
+from squeezefilm.lab import lan
 from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
-from squeezefilm.lab.serve import certificate, lan_application, lan_listener, lan_server
+from squeezefilm.lab.lan import certificate, lan_application, lan_listener, lan_server
 from squeezefilm.lab.server import STATIC, Lab
 
 HOST = "192.168.1.20:8632"
@@ -115,10 +115,10 @@ def test_the_server_says_where_it_is_and_by_what_it_is_known(
         made.append((address, file))
         return "AB:CD"
 
-    monkeypatch.setattr(serve, "certificate", noted)
+    monkeypatch.setattr(lan, "certificate", noted)
     file = tmp_path / "key.pem"
     served: list[tuple[Any, dict[str, Any]]] = []
-    monkeypatch.setattr(serve, "server_of", lambda *given, **how: served.append((given, how)))
+    monkeypatch.setattr(lan, "server_of", lambda *given, **how: served.append((given, how)))
     lan_server(lab, Listener(), file)  # type: ignore[arg-type]
     lan_server(lab, Listener(), file, most=3)  # type: ignore[arg-type]
     assert made == [("192.168.1.20", file)] * 2
@@ -169,12 +169,12 @@ def test_a_certificate_that_ends_within_a_day_is_made_anew(
     pytest.importorskip("cryptography")
     file = tmp_path / "key.pem"
     with monkeypatch.context() as short:
-        short.setattr(serve, "_LIFE", datetime.timedelta(hours=23))
+        short.setattr(lan, "_LIFE", datetime.timedelta(hours=23))
         first = certificate("192.168.1.20", file)
         again = certificate("192.168.1.20", file)
         assert again != first
     with monkeypatch.context() as longer:
-        longer.setattr(serve, "_LIFE", datetime.timedelta(hours=25))
+        longer.setattr(lan, "_LIFE", datetime.timedelta(hours=25))
         third = certificate("192.168.1.20", file)
         assert third != again
         assert certificate("192.168.1.20", file) == third
@@ -191,7 +191,7 @@ def test_without_its_package_a_certificate_is_refused_in_words(
 
 def test_the_listener_is_asked_for_the_port_and_address(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[Any] = []
-    monkeypatch.setattr(serve, "listening_socket", lambda *given: asked.append(given))
+    monkeypatch.setattr(lan, "listening_socket", lambda *given: asked.append(given))
     lan_listener("192.168.1.20")
     lan_listener("169.254.7.7", 9000)
     assert asked == [(8632, "192.168.1.20"), (9000, "169.254.7.7")]
@@ -214,6 +214,6 @@ def test_addresses_of_others_are_not_listened_on(
     def taken(*_: object) -> None:
         raise OSError("cannot assign")
 
-    monkeypatch.setattr(serve, "listening_socket", taken)
+    monkeypatch.setattr(lan, "listening_socket", taken)
     with pytest.raises(InputError, match=re.escape(said)):
         lan_listener(address)
