@@ -12,7 +12,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.instruments.bench.check_result import CheckResult
 from squeezefilm.instruments.session.loop.lateness import Lateness, lateness_of
-from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
@@ -39,7 +39,7 @@ def loop_lateness(rate: si.Hertz, duration: si.Second) -> Lateness:
         program=lower(square, largest_amplitude=1e-6),
         rate=rate,
         envelope=DrivenEnvelope(1e-3, 1e-3, 1e-6),
-        drive=DriveTable.linear(1e-6, 1.0),
+        drive=LinearDrive(1e-6, 1.0),
         estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
     )
     with LoopProcess(plan) as loop:

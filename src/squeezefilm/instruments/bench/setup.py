@@ -12,7 +12,7 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims
 from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
-from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.tick import make_tick
 from squeezefilm.instruments.session.play.plan import PlayPlan, TextureTile, tile_of
 from squeezefilm.physics.chain.friction_table import FrictionTable
@@ -147,7 +147,7 @@ def play_setup(
         program=lowered(texture, p, p.inverse),
         rate=rate,
         envelope=DrivenEnvelope(tau, tau, largest),
-        drive=DriveTable.linear(per_volt, largest / per_volt),
+        drive=LinearDrive(per_volt, largest / per_volt),
         estimator=MotionEstimator.for_sensor(device.sensor),
         compensation=compensation,  # type: ignore[arg-type] # checked with a message by LoopPlan
         relative_friction=FrictionTable.of_inverse(p.inverse),

@@ -98,8 +98,7 @@ def amplitude(session: PlayedSession) -> Figure:
         5.0,
     )
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
-    volts = np.abs(rows[inside, column.VOLTAGE])
-    commanded = np.interp(volts, plan.drive.voltage, plan.drive.amplitude)
+    commanded = plan.drive.amplitude_per_volt * np.abs(rows[inside, column.VOLTAGE])
     above.step(
         t + plan.output_delay,
         1e6 * commanded,

@@ -95,7 +95,7 @@ def test_the_plan_is_one_that_a_loop_has_work_with(loops: list[Loop]) -> None:
     plan = loops[0].plan
     assert plan.program.depends_on == {"x"}
     assert plan.drive.largest_amplitude == pytest.approx(1e-6)
-    assert plan.drive.voltage[-1] == 1.0
+    assert plan.drive.voltage_limit == 1.0
     assert plan.envelope.amplitude_limit == pytest.approx(1e-6)
     assert plan.compensation == "none"
 

@@ -43,8 +43,7 @@ def session(**changes: Any) -> Any:
     rows[100:, column.LAG] = np.linspace(0, 0.6e-3, 801)
     loop = SimpleNamespace(
         drive=SimpleNamespace(
-            largest_amplitude=LARGEST, voltage=np.array([0.0, 4.0, 16.0]),
-            amplitude=np.array([0.0, 1e-6, 2e-6]),
+            largest_amplitude=LARGEST, amplitude_per_volt=0.2e-6,
         ),
         envelope=SimpleNamespace(rise_time_constant=1.5e-3), output_delay=6e-3,
         compensation="inverse",
@@ -142,10 +141,8 @@ def test_the_amplitude_is_drawn_over_a_quarter_of_a_second_in_the_middle() -> No
     commanded, true, seen = lines.values()
     t = commanded.get_xdata() - 0.006
     assert t[[0, -1]] == pytest.approx([0.325, 0.575], abs=1.1e-3)
-    # 4 V make 1 µm, beyond it 12 V the next: the amplitude is that of the voltage's size.
-    volts = 8 * t
-    expected = np.where(volts < 4, volts / 4, 1 + (volts - 4) / 12)
-    assert commanded.get_ydata() == pytest.approx(expected)
+    # 5 V make 1 µm: the amplitude is that of the voltage's size.
+    assert commanded.get_ydata() == pytest.approx(8 * t / 5)
     assert commanded.get_drawstyle() == "steps-post"
     for line in (true, seen):
         assert line.get_xdata()[[0, -1]] == pytest.approx([0.325, 0.575], abs=1.1e-3)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
@@ -27,7 +27,7 @@ def plan_of() -> Callable[..., LoopPlan]:
             "program": lower(Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6), largest_amplitude=2e-6),
             "rate": 5e3,
             "envelope": DrivenEnvelope(0.5e-3, 0.7e-3, 1e-6),
-            "drive": DriveTable.linear(1e-8, 100.0),
+            "drive": LinearDrive(1e-8, 100.0),
             "estimator": MotionEstimator.for_sensor(LVDT_10_KHZ),
             "relative_friction": FrictionTable(
                 np.array([0.0, 2e-6]), np.zeros(1), np.array([[1.0, 0.0]]), 0.0

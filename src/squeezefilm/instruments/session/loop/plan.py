@@ -21,64 +21,28 @@ LoopCompensation = Literal["none", "inverse"]
 
 LEAST_RATE: si.Hertz = 10.0
 HIGHEST_RATE: si.Hertz = 50e3
-_METRE, _VOLT = si.Unit("m"), si.Unit("V")
 
 # Places in the settings.
-DT, LEAD, OUTPUT_DELAY, INVERSE, LONGEST_GAP = range(5)
-SETTINGS_SIZE = 5
+DT, LEAD, OUTPUT_DELAY, INVERSE, LONGEST_GAP, PER_VOLT = range(6)
+SETTINGS_SIZE = 6
 # Places in the memory that a tick carries to the next.
 TOUCHING, SILENCED, COMMAND, REPORTED_LEVEL, REPORTED_AMPLITUDE, STAMP, ROWS_DROPPED = range(7)
 MEMORY_SIZE = 7
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class DriveTable:
-    """The drive's voltage for a vibration amplitude: straight lines between knots from (0, 0).
+@si.checked_numbers
+@dataclass(frozen=True, slots=True)
+class LinearDrive:
+    """A resonator's amplitude per volt (m/V), up to a voltage (V), both zero-to-peak. Raises
+    `InputError` for one that is not above 0."""
 
-    Args:
-        amplitude: rising from 0 (m, zero-to-peak), shape (n,), n ≥ 2.
-        voltage: rising from 0 (V, zero-to-peak), shape (n,).
-
-    Raises:
-        InputError: knots that do not begin with 0 or do not rise.
-    """
-
-    amplitude: si.MetreArray
-    voltage: si.VoltArray
-
-    def __post_init__(self) -> None:
-        for name, unit in (("amplitude", _METRE), ("voltage", _VOLT)):
-            values = np.array(getattr(self, name), dtype=float)
-            object.__setattr__(self, name, values)
-            si.require(name, values, unit, at_least=0.0)
-            if not _rises_from_zero(values):
-                raise InputError(
-                    f"{name} of the drive's table must begin with 0 and rise from each of at least "
-                    "two knots to the next",
-                    quantity=name,
-                )
-        if self.amplitude.shape != self.voltage.shape:
-            raise InputError(
-                f"the drive's table has {self.amplitude.size} amplitudes and "
-                f"{self.voltage.size} voltages; give one for each"
-            )
-
-    @classmethod
-    def linear(cls, amplitude_per_volt: si.MetrePerVolt, voltage_limit: si.Volt) -> DriveTable:
-        """The table of a linear resonator (m/V) up to a voltage (V, zero-to-peak)."""
-        si.require("amplitude_per_volt", amplitude_per_volt, si.Unit("m/V"), above=0.0)
-        si.require("voltage_limit", voltage_limit, _VOLT, above=0.0)
-        top = amplitude_per_volt * voltage_limit
-        return cls(np.array([0.0, top]), np.array([0.0, voltage_limit]))
+    amplitude_per_volt: Annotated[si.MetrePerVolt, si.Above(0.0)]
+    voltage_limit: Annotated[si.Volt, si.Above(0.0)]
 
     @property
     def largest_amplitude(self) -> si.Metre:
-        """The amplitude at the table's highest voltage (m, zero-to-peak)."""
-        return float(self.amplitude[-1])
-
-
-def _rises_from_zero(knots: si.FloatArray) -> bool:
-    return knots.ndim == 1 and knots.size > 1 and knots[0] == 0 and bool(np.all(np.diff(knots) > 0))
+        """The amplitude at the highest voltage (m, zero-to-peak)."""
+        return self.amplitude_per_volt * self.voltage_limit
 
 
 @si.checked_numbers
@@ -111,7 +75,7 @@ class LoopPlan:
     program: Program
     rate: Annotated[si.Hertz, si.AtLeast(LEAST_RATE), si.AtMost(HIGHEST_RATE)]
     envelope: DrivenEnvelope
-    drive: DriveTable
+    drive: LinearDrive
     estimator: MotionEstimator
     compensation: LoopCompensation = "none"
     relative_friction: FrictionTable | None = None
@@ -122,7 +86,7 @@ class LoopPlan:
         if self.envelope.amplitude_limit > self.drive.largest_amplitude * (1 + 1e-9):
             raise InputError(
                 f"the envelope's limit is {self.envelope.amplitude_limit * 1e6:.4g} µm and the "
-                f"drive's table ends at {self.drive.largest_amplitude * 1e6:.4g} µm; lower the "
+                f"drive reaches {self.drive.largest_amplitude * 1e6:.4g} µm; lower the "
                 "limit, or extend the table",
                 quantity="envelope",
             )
@@ -153,8 +117,6 @@ class TickArrays(NamedTuple):
     motion_y: si.Array
     envelope: si.Array
     compensator: si.Array
-    drive_amplitude: si.Array
-    drive_voltage: si.Array
     friction_amplitude: si.Array
     friction_speed: si.Array
     friction: si.Array
@@ -171,6 +133,7 @@ def tick_arrays(plan: LoopPlan) -> TickArrays:
     settings[OUTPUT_DELAY] = plan.output_delay
     settings[INVERSE] = float(plan.compensation == "inverse")
     settings[LONGEST_GAP] = plan.host_timeout
+    settings[PER_VOLT] = plan.drive.amplitude_per_volt
     memory = np.zeros(MEMORY_SIZE)
     memory[[REPORTED_LEVEL, REPORTED_AMPLITUDE, STAMP]] = np.nan
     law = plan.relative_friction
@@ -190,8 +153,6 @@ def tick_arrays(plan: LoopPlan) -> TickArrays:
         motion_y=np.zeros(motion_kernel.STATE_SIZE),
         envelope=plan.envelope.parameters(plan.period),
         compensator=plan.envelope.new_state(),
-        drive_amplitude=plan.drive.amplitude,
-        drive_voltage=plan.drive.voltage,
         friction_amplitude=table[0],
         friction_speed=table[1],
         friction=table[2],

@@ -150,16 +150,13 @@ def _wanted(arrays: Any, meant: float) -> tuple[float, bool, int]:
 @compiled(error_model="numpy")
 def _driven(arrays: Any, command: float) -> tuple[float, float, int]:
     """The command that may be given (m), its voltage (V), and flags."""
-    volts = math.copysign(
-        interpolated(arrays.drive_amplitude, arrays.drive_voltage, abs(command)), command
-    )
     top, bottom = (
         arrays.envelope[compensation_kernel.TOP],
         arrays.envelope[compensation_kernel.BOTTOM],
     )
     # Written so that it refuses a NaN too.
-    if bottom <= command <= top and math.isfinite(volts):
-        return command, volts, 0
+    if bottom <= command <= top:
+        return command, command / arrays.settings[at.PER_VOLT], 0
     arrays.compensator[compensation_kernel.AMPLITUDE] = 0.0
     return 0.0, 0.0, column.REFUSED_COMMAND
 

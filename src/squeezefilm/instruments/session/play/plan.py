@@ -17,7 +17,7 @@ from squeezefilm.core.errors import InputError, UnreachableError
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims
 from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
 from squeezefilm.instruments.device.wire.states import Fault, State
-from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.rows import COLUMNS
 from squeezefilm.instruments.session.play.held import HELD_COLUMNS, HeldState
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
@@ -57,14 +57,14 @@ class TextureTile:
     mean_error: si.Metre
     made_for: MadeForSpeed | None
 
-    def voltage(self, drive: DriveTable) -> si.VoltArray:
+    def voltage(self, drive: LinearDrive) -> si.VoltArray:
         """The tile's levels (V, zero-to-peak), shape (size,).
 
         Raises:
             InputError: an amplitude above the drive's largest.
         """
         si.require("amplitude", self.amplitude, _METRE, at_most=drive.largest_amplitude)
-        return np.asarray(np.interp(self.amplitude, drive.amplitude, drive.voltage))
+        return np.asarray(self.amplitude / drive.amplitude_per_volt)
 
 
 def tile_of(
@@ -200,11 +200,11 @@ class PlayPlan:
         )
         if (self.mode == "tile") != (self.tile is not None):
             raise InputError("mode tile needs a tile, and mode stream has none")
-        highest = float(self.loop.drive.voltage[-1])
+        highest = self.loop.drive.voltage_limit
         if highest > limits.voltage * (1 + 1e-9):
             raise InputError(
                 f"the loop may command {highest:.4g} V and the limits allow {limits.voltage:.4g} "
-                "V; lower the loop's drive table",
+                "V; lower the loop's",
                 quantity="loop",
             )
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan, tick_arrays
+from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan, tick_arrays
 from squeezefilm.physics.chain.friction_table import FrictionTable
 
 PlanOf = Callable[..., LoopPlan]
@@ -24,7 +24,7 @@ PlanOf = Callable[..., LoopPlan]
         ({"output_delay": -1e-3}, "output_delay"),
         ({"host_timeout": 0.0}, "host_timeout"),
         ({"compensation": "preview"}, "Allowed: none, inverse"),
-        ({"drive": DriveTable.linear(1e-8, 50.0)}, "1 µm and the drive's table ends at 0.5 µm"),
+        ({"drive": LinearDrive(1e-8, 50.0)}, "1 µm and the drive reaches 0.5 µm"),
     ],
 )
 def test_a_plan_refuses_what_it_cannot_do(
@@ -32,15 +32,6 @@ def test_a_plan_refuses_what_it_cannot_do(
 ) -> None:
     with pytest.raises(InputError, match=words):
         plan_of(**changes)
-
-
-@pytest.mark.parametrize(
-    ("amplitude", "voltage"),
-    [([0.0], [0.0]), ([0.1, 1.0], [0.0, 1.0]), ([0.0, 1.0], [0.0, 0.0]), ([0.0, 1.0], [0, 1, 2.0])],
-)
-def test_a_drives_table_must_rise_from_zero(amplitude: list[float], voltage: list[float]) -> None:
-    with pytest.raises(InputError, match="drive's table"):
-        DriveTable(np.array(amplitude), np.array(voltage))
 
 
 def test_a_friction_curve_must_be_one() -> None:

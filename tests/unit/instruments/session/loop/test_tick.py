@@ -14,7 +14,7 @@ from tests.simulated_loop import SimulatedLoop
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.shared import COMMANDS, ROWS
 from squeezefilm.instruments.session.loop.tick import interpolated
 from squeezefilm.physics.chain.friction_table import FrictionTable
@@ -233,12 +233,12 @@ def test_every_flag_of_the_renderer_is_explained() -> None:
     assert column.flag_meanings(0.0) == []
 
 
-def test_volts_are_read_as_numpy_reads_a_table() -> None:
-    table = DriveTable(np.array([0.0, 0.2e-6, 1e-6]), np.array([0.0, 10.0, 90.0]))
+def test_friction_is_read_as_numpy_reads_a_table() -> None:
+    amplitude, friction = np.array([0.0, 0.2e-6, 1e-6]), np.array([0.0, 10.0, 90.0])
     for place in np.linspace(0.0, 1.2e-6, 41):
-        found = interpolated(table.amplitude, table.voltage, place)
-        assert found == pytest.approx(np.interp(place, table.amplitude, table.voltage))
-    assert math.isnan(interpolated(table.amplitude, table.voltage, math.nan))
+        found = interpolated(amplitude, friction, place)
+        assert found == pytest.approx(np.interp(place, amplitude, friction))
+    assert math.isnan(interpolated(amplitude, friction, math.nan))
     assert math.isnan(interpolated(np.zeros(0), np.zeros(0), 1.0))
 
 

@@ -10,7 +10,7 @@ import pytest
 from squeezefilm.core.errors import InputError, UnreachableError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.device.machine.playing import Tile
-from squeezefilm.instruments.session.loop.plan import DriveTable
+from squeezefilm.instruments.session.loop.plan import LinearDrive
 from squeezefilm.instruments.session.play.plan import tile_of
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, lower
@@ -40,7 +40,7 @@ def test_a_tile_holds_the_textures_own_amplitudes() -> None:
 def test_a_device_reads_from_it_what_the_texture_wants() -> None:
     square = Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6)
     tile = tile_of(_program(square), 0.0, 20e-6, 512)
-    volts = tile.voltage(DriveTable.linear(1e-8, 100.0))
+    volts = tile.voltage(LinearDrive(1e-8, 100.0))
     device = Tile(0, 20, 512, [round(v * 1e6) for v in volts])
     for x in range(0, 10_000, 20):
         wanted = float(square(x * 1e-6 + 1e-9, 0.0, 0.0, 0.0))
@@ -74,7 +74,7 @@ def test_the_devices_units_and_size_are_kept() -> None:
     with pytest.raises(InputError, match="pitch"):
         tile_of(program, 0.0, 0.0, 100)
     with pytest.raises(InputError, match="amplitude"):
-        tile_of(program, 0.0, 50e-6, 100).voltage(DriveTable.linear(1e-8, 10.0))
+        tile_of(program, 0.0, 50e-6, 100).voltage(LinearDrive(1e-8, 10.0))
 
 
 def _law(amplitude: FloatArray, speed: FloatArray) -> FloatArray:
