@@ -177,16 +177,12 @@ def test_the_amplifier_keeps_to_its_current_and_slew_rate() -> None:
     plant.advance(200_000, 20_000_000, carrier())
     assert column(plant, "current_A")[-100:] == pytest.approx(0.02, rel=1e-6)
     assert plant.voltage < 20
-    assert plant.counts.at_current > 3000
     slow = TwinAmplifier(slew_rate=1e6)
     plant = Plant(point(), replace(CALM, amplifier=slow))
     plant.advance(20_000, 20_000_000, carrier())
     assert plant.voltage == pytest.approx(1e6 / (2 * math.pi * carrier() * 1e-3))
-    assert plant.counts.at_slew == 400
-    given, limit = voltage_given(
-        9.0, 0j, 1e5, Electrical(1e-8, 0.0, 0.0), EnvelopeLimits(5.0, 1.0, 1e9)
-    )
-    assert (given, limit) == (5.0, 1)
+    given = voltage_given(9.0, 0j, 1e5, Electrical(1e-8, 0.0, 0.0), EnvelopeLimits(5.0, 1.0, 1e9))
+    assert given == 5.0
 
 
 @pytest.mark.parametrize("force", [0.2, 0.5, 1.0])

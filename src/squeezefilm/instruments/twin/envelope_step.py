@@ -19,8 +19,6 @@ from typing import Any, NamedTuple
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 
-# What keeps the amplifier from giving the voltage wanted.
-WITHIN, RAIL, SLEW, CURRENT = range(4)
 _STILL = 1e-15  # m; below it the plate stands, and no number becomes subnormal
 
 
@@ -130,24 +128,19 @@ def drawn_current(voltage: float, z: complex, omega: float, plate: Electrical) -
 @compiled()
 def voltage_given(
     wanted: float, z: complex, omega: float, plate: Electrical, limits: EnvelopeLimits
-) -> Any:
-    """The voltage on the plate (V) and what limits it: rail, slew rate or current."""
+) -> float:
+    """The voltage on the plate (V) within the amplifier's rail, slew rate and current."""
     capacitance, loss, force_factor = plate
     highest_voltage, highest_current, slew_rate = limits
-    given, limit = wanted, WITHIN
-    if given > highest_voltage:
-        given, limit = highest_voltage, RAIL
-    if given * omega > slew_rate:
-        given, limit = slew_rate / omega, SLEW
-    if abs(drawn_current(given, z, omega, plate)) > highest_current:
-        # |ωC(tan δ + i) V + ωφ z| = I, the larger root; zero where even that is too much.
-        a = (omega * capacitance) ** 2 * (1.0 + loss * loss)
-        b = omega * omega * capacitance * force_factor * (loss * z.real + z.imag)
-        c = (omega * force_factor * abs(z)) ** 2 - highest_current**2
-        under = b * b - a * c
-        most = 0.0 if under < 0.0 else (math.sqrt(under) - b) / a
-        given, limit = max(0.0, min(given, most)), CURRENT
-    return given, limit
+    given = min(wanted, highest_voltage, slew_rate / omega)
+    if abs(drawn_current(given, z, omega, plate)) <= highest_current:
+        return given
+    # |ωC(tan δ + i) V + ωφ z| = I, the larger root; zero where even that is too much.
+    a = (omega * capacitance) ** 2 * (1.0 + loss * loss)
+    b = omega * omega * capacitance * force_factor * (loss * z.real + z.imag)
+    c = (omega * force_factor * abs(z)) ** 2 - highest_current**2
+    under = b * b - a * c
+    return 0.0 if under < 0.0 else max(0.0, min(given, (math.sqrt(under) - b) / a))
 
 
 class FrictionTables(NamedTuple):

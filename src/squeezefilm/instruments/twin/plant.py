@@ -36,13 +36,10 @@ _BUFFER = 2000  # rows between two visits to Python
 class PlantCounts:
     """Numbers of steps of the plant, since it began, in which something was not as wanted.
 
-    `at_rail`, `at_slew`, `at_current`: the amplifier's limits held the voltage back. `beyond`: the
-    amplitude left the tables. `failed`: the skin chattered without end. `lost`: sensor samples.
+    `beyond`: the amplitude left the tables. `failed`: the skin chattered without end. `lost`:
+    sensor samples.
     """
 
-    at_rail: int
-    at_slew: int
-    at_current: int
     beyond: int
     failed: int
     lost: int
@@ -240,8 +237,7 @@ class Plant:
     @property
     def counts(self) -> PlantCounts:
         """Numbers of steps in which something was not as wanted."""
-        which = (k.AT_RAIL, k.AT_SLEW, k.AT_CURRENT, k.BEYOND, k.FAILED, k.LOST_SAMPLES)
-        return PlantCounts(*(int(self._n[i]) for i in which))
+        return PlantCounts(*(int(self._n[i]) for i in (k.BEYOND, k.FAILED, k.LOST_SAMPLES)))
 
     def sensed(self) -> tuple[int, int, bool]:
         """Reading of the device's position sensor now: x and y (µm), and contact."""

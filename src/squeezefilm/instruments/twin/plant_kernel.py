@@ -30,9 +30,6 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.instruments.twin.envelope_step import (
-    CURRENT,
-    RAIL,
-    SLEW,
     Electrical,
     EnvelopeLimits,
     Fingers,
@@ -62,8 +59,8 @@ FELT = 22  # the amplitude that friction has followed (m)
 STATE = 23
 # The counts, int64; times in µs.
 NOW, SEEN_TAKEN, SEEN_TOUCHING, SAMPLE, HEAD, TAIL, ARRIVED, ROWS = range(8)
-AT_RAIL, AT_SLEW, AT_CURRENT, BEYOND, FAILED, LOST_SAMPLES, CARRIER = range(8, 15)
-COUNTS = 15
+BEYOND, FAILED, LOST_SAMPLES, CARRIER = range(8, 12)
+COUNTS = 12
 # The constants, float64: steps; plate; its drift; amplifier; arm and skin; friction; sensor.
 C_STEP, C_ROW, C_SEED, C_F0, C_Q, C_PER_VOLT, C_FACTOR = range(7)
 C_OFFSET, C_AGEING, C_COEFFICIENT, C_SWING, C_PERIOD = range(7, 12)
@@ -324,10 +321,7 @@ def advance(
         if level > 0 or before > 0.0:
             omega = 2.0 * math.pi * frequency
             asked = level * 1e-6 * c[C_GAIN]
-            s[VOLTAGE], limited = voltage_given(asked, z, omega, plate, limits)
-            n[AT_RAIL] += limited == RAIL
-            n[AT_SLEW] += limited == SLEW
-            n[AT_CURRENT] += limited == CURRENT
+            s[VOLTAGE] = voltage_given(asked, z, omega, plate, limits)
             swing = Resonance(frequency / f0, quality, quality / (math.pi * f0))
             held = c[C_PER_VOLT] * s[CHARGE] * quality / c[C_Q] * s[VOLTAGE]
             z = envelope_step(z, held, h, swing, 0.5 * (began + force), fingers)

@@ -327,22 +327,6 @@ def test_pieces_that_end_with_steps_change_nothing() -> None:
     np.testing.assert_array_equal(whole.ring, parts.ring)
 
 
-def test_each_limit_that_bites_is_counted_apart() -> None:
-    for name, changes in (
-        ("AT_RAIL", {"RAIL": 5.0}),
-        ("AT_SLEW", {"SLEW": 1e6}),
-        ("AT_CURRENT", {"CURRENT": 1e-3}),
-    ):
-        plant = bench(**changes)
-        plant.advance(1_000, 20_000_000, 40_000_000)
-        counted = {one: int(plant.counts[getattr(k, one)]) for one in k_counts()}
-        assert counted == {one: 20 if one == name else 0 for one in k_counts()}
-
-
-def k_counts() -> tuple[str, ...]:
-    return ("AT_RAIL", "AT_SLEW", "AT_CURRENT", "BEYOND", "FAILED")
-
-
 def test_a_plate_without_carrier_or_level_is_at_rest_and_one_rings_down_at_its_own() -> None:
     plant = bench()
     plant.advance(1_000)
