@@ -34,7 +34,7 @@ class IdentifiedPlate:
         ratio: the pickup's amplitude over the drive's at resonance (V/V).
         phase: of the pickup against the drive at resonance (rad), by electronics and delay alone.
         delay: by which that phase falls with frequency (s): half a sample of a converter's hold
-            is 1/(2 rate), `hold_phase` at one frequency.
+            is 1/(2 rate).
 
     Raises:
         InputError: a value outside its range.
@@ -107,17 +107,6 @@ class LoopAims:
                 f"{self.highest_voltage:g} V; take less",
                 quantity="search_voltage",
             )
-
-
-@si.checked_numbers
-def hold_phase(
-    frequency: Annotated[si.Hertz, si.Above(0.0)], rate: Annotated[si.Hertz, si.Above(0.0)]
-) -> si.Radian:
-    """The phase (rad, at most 0) of a converter that holds each sample of a `rate` (Hz): −π f/rate.
-
-    37.5° at 40 kHz and 192 kHz.
-    """
-    return -math.pi * frequency / rate
 
 
 @si.checked_numbers

@@ -8,7 +8,7 @@ import pytest
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.instruments.control.gains import hold_phase, identified_plate, loop_gains
+from squeezefilm.instruments.control.gains import identified_plate, loop_gains
 from squeezefilm.instruments.control.plate_loop import LOCKED
 
 from .simulated_plate import FREQUENCY, MODE, RE, held
@@ -21,7 +21,7 @@ def sweep(
     """The free plate of the loops' tests as a lock-in shows it (V/V), with its chain's phase."""
     half = F0 / (2 * quality)
     f = np.linspace(F0 - width * half, F0 + width * half, 81)
-    phase = hold_phase(F0, RATE) - 2 * math.pi * 0.5 / RATE * (f - F0)
+    phase = -math.pi * F0 / RATE - 2 * math.pi * 0.5 / RATE * (f - F0)
     random = np.random.default_rng(seed)
     disturbed = noise * (random.standard_normal(f.size) + 1j * random.standard_normal(f.size))
     return f, RATIO * np.exp(1j * phase) / (1 + 1j * (f - F0) / half) + disturbed

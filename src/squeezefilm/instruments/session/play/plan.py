@@ -29,7 +29,6 @@ from squeezefilm.physics.render.program.renderer import render
 
 _METRE = si.Unit("m")
 _MICROMETRE: si.Metre = 1e-6
-_FINER = 16
 # What a position may miss a whole number of micrometres by.
 _ROUNDING = 1e-6
 
@@ -42,9 +41,6 @@ class TextureTile:
         program: the texture it was sampled from.
         origin, pitch: place of the first amplitude and from each to the next (m), whole µm.
         amplitude: there (m, zero-to-peak), shape (size,).
-        largest_error: how far the tile is from the texture at most, at 16 places per pitch (m);
-            at a square grating's edges that is the whole step, within one pitch.
-        mean_error: the same on average (m).
         made_for: the finger's speed for which friction became amplitude, and the error in friction
             at half and double of it; None where no law was there to say.
     """
@@ -53,8 +49,6 @@ class TextureTile:
     origin: si.Metre
     pitch: si.Metre
     amplitude: si.MetreArray
-    largest_error: si.Metre
-    mean_error: si.Metre
     made_for: MadeForSpeed | None
 
     def voltage(self, drive: LinearDrive) -> si.VoltArray:
@@ -121,16 +115,11 @@ def tile_of(
         float(size)
     )
     amplitude = _amplitudes(program, places, speed)
-    between: si.FloatArray = np.linspace(places[0], places[-1], (size - 1) * _FINER + 1)
-    wanted = _amplitudes(program, between, speed)
-    missed = np.abs(np.interp(between, places, amplitude) - wanted)
     return TextureTile(
         program=program,
         origin=origin,
         pitch=pitch,
         amplitude=amplitude,
-        largest_error=float(np.max(missed)),
-        mean_error=float(np.mean(missed)),
         made_for=None if law is None else MadeForSpeed.of(law, amplitude, speed),
     )
 

@@ -40,7 +40,6 @@ class TraceWriter:
         form. sync_period: how often rows are forced onto the disk (s), by a thread, since a disk
         may
             take longer than a real-time caller can wait; 0: before `append` returns.
-        replace: write over a file that exists.
 
     Raises:
         InputError: no columns, metadata with no JSON form.
@@ -54,7 +53,6 @@ class TraceWriter:
         metadata: Mapping[str, Any],
         *,
         sync_period: si.Second = SYNC_PERIOD,
-        replace: bool = False,
     ) -> None:
         si.require("sync_period", sync_period, si.Unit("s"), at_least=0.0)
         if not columns or len(set(columns)) < len(columns):
@@ -68,8 +66,7 @@ class TraceWriter:
         self._sync_error: OSError | None = None
         self._sync_failed = False
         self._metadata = _json_bytes({**metadata, "columns": list(columns)})
-        mode = os.O_WRONLY | os.O_CREAT | os.O_APPEND | getattr(os, "O_BINARY", 0)
-        mode |= os.O_TRUNC if replace else os.O_EXCL
+        mode = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINARY", 0)
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             self._file = os.open(self.path, mode, 0o644)
@@ -89,7 +86,7 @@ class TraceWriter:
             self._sync_name()
         except RecordError:
             self._closed = True
-            if not replace and os.path.samestat(os.fstat(self._file), self.path.stat()):
+            if os.path.samestat(os.fstat(self._file), self.path.stat()):
                 # Nothing was acknowledged in it, and it would keep its name from a next one.
                 with contextlib.suppress(OSError):
                     self.path.unlink()

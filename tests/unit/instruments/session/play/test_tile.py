@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 
@@ -32,9 +30,6 @@ def test_a_tile_holds_the_textures_own_amplitudes() -> None:
     tile = tile_of(_program(sine), -2e-3, 50e-6, 401)
     x = -2e-3 + 50e-6 * np.arange(401)
     np.testing.assert_allclose(tile.amplitude, sine(x, 0.0, 0.0, 0.0), atol=1e-18)
-    # Of straight lines over a pitch p a sine is missed by (2 pi p/L)^2/8 of half its swing.
-    expected = 0.5e-6 * (2 * math.pi * 50e-6 / 4e-3) ** 2 / 8
-    assert tile.largest_error == pytest.approx(expected, rel=0.01)
 
 
 def test_a_device_reads_from_it_what_the_texture_wants() -> None:
@@ -45,8 +40,6 @@ def test_a_device_reads_from_it_what_the_texture_wants() -> None:
     for x in range(0, 10_000, 20):
         wanted = float(square(x * 1e-6 + 1e-9, 0.0, 0.0, 0.0))
         assert device.level(x) == pytest.approx(wanted * 1e14, rel=1e-9)
-    assert tile.largest_error == pytest.approx(0.7e-6 * 15 / 16)
-    assert 0 < tile.mean_error < 0.01e-6
 
 
 @pytest.mark.parametrize(
