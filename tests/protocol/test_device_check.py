@@ -18,6 +18,7 @@ from squeezefilm.instruments.bench.check import check_device
 from squeezefilm.instruments.bench.check_result import DeviceCheck
 from squeezefilm.instruments.bench.conversation import Conversation
 from squeezefilm.instruments.bench.loop_check import loop_result
+from squeezefilm.instruments.bench.reading_check import reading_checks
 from squeezefilm.instruments.device.machine import device
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.playing import Finger
@@ -285,6 +286,17 @@ def test_a_sensor_that_is_not_as_believed_is_found_out(
     assert name in failed(check)
     assert measured in result.measured
     assert result.advice
+
+
+def test_readings_come_as_often_as_asked_by_the_devices_clock() -> None:
+    wire = Bench(with_sensor())
+    talk = Conversation(wire, wire.clock, wire.wait)
+    talk.ask(m.Hello(1))
+    results = reading_checks(talk, duration=0.2)
+    assert [result.name for result in results] == ["readings", "device clock", "finger sensor"]
+    assert all(result.passed for result in results)
+    # A reading each millisecond, the first one after it was asked for.
+    assert int(results[0].measured.split()[0]) == pytest.approx(200, abs=3)
 
 
 @pytest.mark.slow
