@@ -2,7 +2,7 @@
 
 Run `python benchmarks/study.py` (some 60 s). The verb is timed as it is typed, in processes of its
 own: with nothing felt on disk (but compiled), with it there, with pages, and for a thousand people;
-beside each its processor time (its second process's too) and the ratio to a Python that only loads
+beside each its processor time and the ratio to a Python that only loads
 what every verb needs. Then 10 000 simulated participants with 60 trials each are analysed with
 everything `analyze_identification` does, 1 000 resamples of people included; and the same confusion
 matrix, information transfer and participant bootstrap in plain pandas (rows of drawn people put

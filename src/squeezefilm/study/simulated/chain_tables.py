@@ -98,7 +98,7 @@ def chain_tables(
 ) -> ChainTables:
     """The chain for every display, finger class and surface.
 
-    What was computed before is read from disk; of what was not, a second process computes a part.
+    What was computed before is read from disk.
 
     Args:
         design: the study; surfaces of its catch trials and adaptive series are felt when asked.

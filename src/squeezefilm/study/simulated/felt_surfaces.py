@@ -1,8 +1,7 @@
-"""Percepts of surfaces under fingers: felt once, kept on disk, and shared by two processes."""
+"""Percepts of surfaces under fingers: felt once, and kept on disk."""
 
 from __future__ import annotations
 
-import contextlib
 import functools
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squeezefilm.core.blas_threads import one_blas_thread
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import config_hash
-from squeezefilm.core.second_process import is_present, later, second_process, values
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.perception.observer import FingerClass, Observer
 from squeezefilm.physics.perception.percepts import Apparatus, grating_percept, percept
@@ -23,10 +22,6 @@ from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 
 if TYPE_CHECKING:
     from squeezefilm.physics.render.motion.finger_path import FingerPath
-
-_AT_ONCE = 12
-"""Fingers that each of two processes has between two words of progress."""
-
 
 _KEPT: Kept[Candidates] = Kept("percepts", Candidates)
 _MOST_REMEMBERED = 8192
@@ -45,47 +40,19 @@ class Asked:
     def known(self) -> list[Candidates] | None:
         """Percepts computed before; None unless all was."""
         percepts = [_known(_name(self.feel, surface, self.rest)) for surface in self.surfaces]
-        return None if None in percepts else [one for one in percepts if one is not None]
-
-    def remember(self, percepts: list[Candidates]) -> None:
-        """Keep percepts of another process, which need not be computed nor read again."""
-        for surface, felt in zip(self.surfaces, percepts, strict=True):
-            _remember(_name(self.feel, surface, self.rest), felt)
-
-
-def _felt_of(
-    feel: Callable[..., Candidates], surfaces: tuple[Any, ...], *rest: Any
-) -> list[Candidates]:
-    return [feel(surface, *rest) for surface in surfaces]
+        return None if None in percepts else [felt for felt in percepts if felt is not None]
 
 
 def felt_surfaces(asked: list[Asked], tell: SayProgress) -> list[list[Candidates]]:
-    """Percepts of each finger; two processes compute what is not known yet."""
-    found = [request.known() for request in asked]
-    lacking = [at for at, known in enumerate(found) if known is None]
-    with contextlib.ExitStack() as stack:
-        # One that is started when nothing lacks would still be loading when all is done.
-        if lacking and not is_present():
-            stack.enter_context(second_process(_load))
-        half = -(-len(lacking) // 2)
-        for first in range(0, half, _AT_ONCE):
-            # One process begins with the first, the other with the last: of two displays each
-            # solves one.
-            now = lacking[:half][first : first + _AT_ONCE]
-            now += lacking[half:][first : first + _AT_ONCE]
-            tell(f"what fingers feel: {2 * first + 1} of {len(lacking)}")
-            pieces = [
-                later(_felt_of, asked[at].feel, asked[at].surfaces, *asked[at].rest) for at in now
-            ]
-            for at, felt in zip(now, values(*pieces), strict=True):
-                found[at] = felt
-                asked[at].remember(felt)
-    return [known for known in found if known is not None]
-
-
-def _load() -> None:
-    """Load the modules that a second process needs before it takes fingers."""
-    import squeezefilm.physics.chain.rendered_texture  # noqa: F401
+    """Percepts of each finger; those that are not known yet are computed."""
+    felt = [request.known() for request in asked]
+    lacking = [at for at, known in enumerate(felt) if known is None]
+    with one_blas_thread():
+        for number, at in enumerate(lacking, 1):
+            tell(f"what fingers feel: {number} of {len(lacking)}")
+            request = asked[at]
+            felt[at] = [request.feel(surface, *request.rest) for surface in request.surfaces]
+    return [known for known in felt if known is not None]
 
 
 def _name(feel: Callable[..., Candidates], surface: Stimulus | Grating, rest: Any) -> str:
