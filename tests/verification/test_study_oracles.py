@@ -26,8 +26,8 @@ from squeezefilm.study.adaptive.placement import Placement
 from squeezefilm.study.design.tasks.two_surfaces import QUARTILE
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior
-from squeezefilm.study.tasks.on_grid import on_grid
 from squeezefilm.study.tasks.scales import exponents
+from squeezefilm.study.tasks.thresholds import on_grid
 
 SETS = range(20)
 FEW = pytest.mark.parametrize(

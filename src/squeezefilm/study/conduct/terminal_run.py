@@ -196,7 +196,7 @@ def _sitting(conditions: Path | None, consent: bool) -> SessionConditions:
 
 def _free_path(display: Display) -> FingerPath:
     """Path by which the hand of a twin explores freely: as a median simulated person would."""
-    from squeezefilm.study.simulated.felt_surfaces import free_path
+    from squeezefilm.study.simulated.chain_tables import free_path
 
     observer = load_observer()
     return free_path(display, observer, observer.median_finger())

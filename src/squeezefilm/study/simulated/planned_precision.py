@@ -26,9 +26,8 @@ from squeezefilm.study.simulated.participants import simulate_matches
 from squeezefilm.study.simulated.planned_power import Planned, PlannedStudies, on_one_display
 from squeezefilm.study.tasks.by_condition import MEASURE, unlike_persons
 from squeezefilm.study.tasks.findings import PARTS, PersonEstimate
-from squeezefilm.study.tasks.on_grid import PeopleOnGrid, on_grid
 from squeezefilm.study.tasks.scales import exponents, rank_exponents
-from squeezefilm.study.tasks.settings import settings_of
+from squeezefilm.study.tasks.thresholds import PeopleOnGrid, on_grid, settings_of
 
 PEOPLE = 400
 """Simulated people that studies are drawn from; each one's fit takes some 20 ms."""

@@ -24,7 +24,6 @@ from squeezefilm.study.tasks.findings import (
     PersonFunction,
     of_population,
 )
-from squeezefilm.study.tasks.on_grid import on_grid
 from squeezefilm.study.tasks.scales import (
     exponents,
     magnitude_conditions,
@@ -32,7 +31,7 @@ from squeezefilm.study.tasks.scales import (
     rank_exponents,
     strengths,
 )
-from squeezefilm.study.tasks.settings import of_settings, settings_of
+from squeezefilm.study.tasks.thresholds import of_settings, on_grid, settings_of
 
 Tell = Callable[[str], None]
 _POPULATION = "posterior, mixed model"

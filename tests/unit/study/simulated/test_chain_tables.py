@@ -15,7 +15,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.study.design.study_design import StudyDesign, load_design
-from squeezefilm.study.simulated import felt_surfaces as felt
+from squeezefilm.study.simulated import chain_tables as felt
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 
 

@@ -14,8 +14,8 @@ from squeezefilm.physics.perception import path_percepts
 from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.physics.perception.stimuli import Stimulus
-from squeezefilm.study.simulated import felt_surfaces as module
-from squeezefilm.study.simulated.felt_surfaces import felt_freely, free_path
+from squeezefilm.study.simulated import chain_tables as module
+from squeezefilm.study.simulated.chain_tables import felt_freely, free_path
 
 PLATE, PEOPLE = load_display("biet2008-plate"), load_observer()
 FINGER = PEOPLE.median_finger()

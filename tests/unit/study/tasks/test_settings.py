@@ -7,16 +7,16 @@ import pytest
 from tests.recovery.task_people import EVERY, Person, answered
 
 from squeezefilm.study.adaptive.staircase import Ending
-from squeezefilm.study.tasks import settings
+from squeezefilm.study.tasks import thresholds
 
 
 def test_runs_from_above_and_from_below_keep_their_names(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever stops late ends runs from above low and those from below high."""
     runs = [Ending(-0.5, True), Ending(-0.5, True), Ending(1.0, False), Ending(7.0, False)]
-    monkeypatch.setattr(settings, "endings", lambda main, person: runs)
+    monkeypatch.setattr(thresholds, "endings", lambda main, person: runs)
     random = np.random.default_rng(1)
     main = answered(EVERY["adjustment"], [Person(0.1, 1.0, 0.0)] * 2, random).main(0)
-    _, persons, conditions, _, notes = settings.settings_of(main, 0.95)
+    _, persons, conditions, _, notes = thresholds.settings_of(main, 0.95)
     means = {found.name: found.magnitude.value for found in conditions if found.magnitude}
     # Means of logarithms: a half, and twice and eight times make four.
     assert means == pytest.approx({"from above": -0.5, "from below": 3.0})

@@ -21,8 +21,8 @@ from squeezefilm.study.tasks.analyze import analyze_answers
 from squeezefilm.study.tasks.by_condition import comparisons, false_alarms
 from squeezefilm.study.tasks.findings import TaskAnalysis
 from squeezefilm.study.tasks.methods import methods_text
-from squeezefilm.study.tasks.on_grid import PeopleOnGrid, on_grid
 from squeezefilm.study.tasks.scales import exponents, magnitude_conditions
+from squeezefilm.study.tasks.thresholds import PeopleOnGrid, on_grid
 
 SHARP = Person(0.02, 0.9, 0.0)
 

@@ -28,7 +28,7 @@ from squeezefilm.study.simulated.planned_precision import person_values
 from squeezefilm.study.tasks.analyze import analyze_answers, analyze_study
 from squeezefilm.study.tasks.by_condition import comparisons
 from squeezefilm.study.tasks.findings import TaskAnalysis
-from squeezefilm.study.tasks.on_grid import on_grid
+from squeezefilm.study.tasks.thresholds import on_grid
 
 PRESETS = (
     "friction-yes-no",

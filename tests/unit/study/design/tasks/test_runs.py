@@ -27,7 +27,7 @@ from squeezefilm.study.report.page import write_study
 from squeezefilm.study.report.words import read_first
 from squeezefilm.study.tasks.analyze import analyze_study
 from squeezefilm.study.tasks.findings import PersonEstimate, TaskAnalysis
-from squeezefilm.study.tasks.settings import _own, of_settings
+from squeezefilm.study.tasks.thresholds import _own, of_settings
 
 PERIODS, YES_NO = load_design("period-direction"), load_design("friction-yes-no")
 
