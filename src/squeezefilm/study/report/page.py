@@ -24,7 +24,6 @@ from squeezefilm.core.kit.page_style import (
     text_table,
 )
 from squeezefilm.study.report import figures as draw
-from squeezefilm.study.report import figures as times
 from squeezefilm.study.report import task_figures
 from squeezefilm.study.report.words import (
     PERSON_HEAD,
@@ -48,7 +47,7 @@ if TYPE_CHECKING:
 
 
 _TIMES = FigureOf(
-    "times", "Response times", times.response_times, has=lambda one: one.response_times
+    "times", "Response times", draw.response_times, has=lambda one: one.response_times
 )
 FIGURES = (
     FigureOf("confusion", "Confusion matrix", draw.confusion),

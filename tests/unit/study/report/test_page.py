@@ -20,7 +20,6 @@ from squeezefilm.study.identification.power import (
     power_curve,
 )
 from squeezefilm.study.report import figures as study_figures
-from squeezefilm.study.report import figures as study_time_figures
 from squeezefilm.study.report.page import study_figures as figures_of
 from squeezefilm.study.report.page import study_page, write_study
 
@@ -99,7 +98,7 @@ def test_titles_carry_the_numbers(analysis: IdentificationAnalysis) -> None:
 def test_of_one_stimulus_no_time_is_the_longest(analysis: IdentificationAnalysis) -> None:
     times = analysis.response_times
     one, two = (
-        " ".join(study_time_figures.response_times(few).get_suptitle().split())
+        " ".join(study_figures.response_times(few).get_suptitle().split())
         for few in (replace(analysis, response_times=times[:count]) for count in (1, 2))
     )
     assert "takes longest" in two
@@ -112,7 +111,7 @@ def test_power_is_drawn_with_what_is_needed() -> None:
         DirichletParticipants(ordered_observer(1.5), 3, 20.0),
         lambda n: distinction(n, 3, 4), (4, 12), studies=50,
     )  # fmt: skip
-    figure = study_time_figures.power(curve)
+    figure = study_figures.power(curve)
     assert curve.needed == 12
     assert "12 people reach 80" in " ".join(figure.get_suptitle().split())
     axes = figure.axes[0]
@@ -130,7 +129,7 @@ def test_more_or_fewer_people_than_were_simulated_are_needed() -> None:
             needed=needed, needed_surely=surely, target=0.8, studies=20, alpha=0.05,
             participants=np.array([4, 8]), power=shares, low=shares - 0.1, high=shares + 0.1,
         )  # fmt: skip
-        assert words(study_time_figures.power(made).get_suptitle()) == said
+        assert words(study_figures.power(made).get_suptitle()) == said
 
 
 @pytest.mark.parametrize("needed", [12, None])
@@ -143,7 +142,7 @@ def test_precision_says_how_many_people_give_it(measure: str, needed: int | None
     )  # fmt: skip
     held = np.array([0.94, 0.96])
     found: Any = SimpleNamespace(precision=0.1, measure=measure, curve=curve, held=held)
-    figure = study_time_figures.precision(found)
+    figure = study_figures.precision(found)
     said = words(figure.get_suptitle())
     within = "± 10 %" if measure == "Weber fraction" else "± 0.1"
     assert within in said
