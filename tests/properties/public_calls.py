@@ -119,9 +119,7 @@ NOT_CALLED = {
     physics.plate.ring.elements.RingMesh physics.plate.ring.elements.harmonic_system
     physics.plate.ring.ceramic_disc.DiscSystem physics.plate.ring.ceramic_disc.disc_system
     physics.plate.elements.block_ldl.PartialLDL physics.plate.elements.block_ldl.partial_ldl
-    physics.plate.elements.slab_cells.MirroredElement physics.plate.elements.slab_cells.Cell
-    physics.plate.elements.slab_cells.Group physics.plate.elements.slab_cells.Group.inside
-    physics.plate.elements.slab_cells.Group.node physics.plate.elements.slab_cells.mirrors
+    physics.plate.elements.mirrored_element.MirroredElement
     physics.plate.elements.box_model.BoxModel physics.plate.elements.box_model.ModelElectrode
     physics.plate.elements.box_model.Foundation physics.plate.elements.box_model.Medium
     physics.plate.elements.box_model.Medium.gradient_matrix

@@ -38,37 +38,20 @@ class Slabs:
 
     @functools.cached_property
     def sections(self) -> list[CrossSection]:
-        """The matrices of every slice."""
-        return self._sliced[0]
-
-    @functools.cached_property
-    def patterns(self) -> list[bytes]:
-        """Patterns of the slices, alike but for the numbers of their ceramics."""
-        return self._sliced[1]
-
-    @functools.cached_property
-    def _sliced(self) -> tuple[list[CrossSection], list[bytes]]:
-        model = self.model
-        patterns: list[bytes] = []
-        in_order: list[CrossSection] = []
-        sections: dict[bytes, CrossSection] = {}
-        # Slices that differ only in the numbers of their ceramics share their matrices.
+        """The matrices of every slice: those that differ only in the numbers of their ceramics
+        share them."""
         shapes: dict[bytes, CrossSection] = {}
-        for e in range(model.x.elements):
-            exact, shape = _pattern(model, e)
-            if exact not in sections:
-                codes = None
-                if shape in shapes and len(model.electrodes) > 1:
-                    codes = _renumbered(model, shapes[shape], e)
-                sections[exact] = codes or cross_section(model, e)
-                shapes.setdefault(shape, sections[exact])
-            in_order.append(sections[exact])
-            patterns.append(shape)
-        return in_order, patterns
+        made: list[CrossSection] = []
+        for e in range(self.model.x.elements):
+            shape = _shape(self.model, e)
+            if shape not in shapes:
+                shapes[shape] = cross_section(self.model, e)
+            made.append(_renumbered(self.model, shapes[shape], e))
+        return made
 
     def __getstate__(self) -> dict[str, Any]:
         # Megabytes that are made anew in milliseconds, where anybody multiplies by them.
-        made_anew = ("sections", "patterns", "_sliced", "_alike")
+        made_anew = ("sections", "_alike")
         return {name: value for name, value in vars(self).items() if name not in made_anew}
 
     def _number(self) -> None:
@@ -151,13 +134,14 @@ class Slabs:
         return self._apply(U, sections or self.sections, mass=False)
 
     def weighted_sections(self, weight: Weight, springs: Springs) -> list[CrossSection]:
-        """Slice matrices with scaled constants: for energy shares and losses."""
+        """Slice matrices with scaled constants, for energy shares and losses; their codes are those
+        of one slice of each kind."""
         made: dict[int, CrossSection] = {}
         out = []
         for e, section in enumerate(self.sections):
-            if id(section) not in made:
-                made[id(section)] = cross_section(self.model, e, weight, springs=springs)
-            out.append(made[id(section)])
+            if id(section.P2) not in made:
+                made[id(section.P2)] = cross_section(self.model, e, weight, springs=springs)
+            out.append(made[id(section.P2)])
         return out
 
     def _apply(self, U: si.FloatArray, sections: list[CrossSection], mass: bool) -> si.FloatArray:
@@ -181,7 +165,7 @@ class Slabs:
         nodes, unknowns of the slice), and their integrals along x."""
         groups: dict[tuple[int, int], list[int]] = {}
         for e, section in enumerate(self.sections):
-            groups.setdefault((id(section), self.model.x.orders[e]), []).append(e)
+            groups.setdefault((id(section.P2), self.model.x.orders[e]), []).append(e)
         joined: list[tuple[list[int], si.IntArray, tuple[si.FloatArray, ...]]] = []
         for elements in groups.values():
             places = np.stack([np.stack(self._element_places[e]) for e in elements])
@@ -229,45 +213,25 @@ class Slabs:
         return out
 
 
-def relabelled(ceramic: si.IntArray) -> si.IntArray:
-    """Ceramic numbers replaced by their order of first appearance."""
-    seen = {n: k for k, n in enumerate(dict.fromkeys(ceramic[ceramic >= 0].tolist()))}
-    return np.array([seen.get(n, -1) for n in ceramic.ravel().tolist()]).reshape(ceramic.shape)
+def _shape(model: BoxModel, e: int) -> bytes:
+    """What a slice's matrices come from, with its ceramics numbered by themselves."""
+    springs = [f for f in model.foundations if f.x_elements[0] <= e < f.x_elements[1]]
+    numbers, ranks = np.unique(model.ceramic[e], return_inverse=True)
+    planes = [model.electrodes[n] for n in numbers if n >= 0]
+    return model.medium[e].tobytes() + ranks.tobytes() + repr((planes, springs)).encode()
 
 
-def _pattern(model: BoxModel, e: int) -> tuple[bytes, bytes]:
-    springs = repr(
-        [f for f in model.foundations if f.x_elements[0] <= e < f.x_elements[1]]
-    ).encode()
-    planes = repr(
-        [
-            model.electrodes[n]
-            for n in dict.fromkeys(model.ceramic[e].ravel().tolist())
-            if 0 <= n < len(model.electrodes)
-        ]
-    ).encode()
-    medium = model.medium[e].tobytes()
-    exact = medium + model.ceramic[e].tobytes() + planes + springs
-    return exact, medium + relabelled(model.ceramic[e]).tobytes() + planes + springs
-
-
-def _renumbered(model: BoxModel, section: CrossSection, element: int) -> CrossSection | None:
-    """The slice of `element`, from one that differs only in the numbers of its ceramics.
-
-    None where the unknowns would change their order, so that it has to be assembled anew.
-    """
-    own = model.ceramic[element].ravel().tolist()
-    numbers = [n for n in dict.fromkeys(own) if n >= 0]
+def _renumbered(model: BoxModel, section: CrossSection, element: int) -> CrossSection:
+    """The slice of `element`, from one that differs only in the numbers of its ceramics: these are
+    in ascending order the same ones."""
+    numbers = np.unique(model.ceramic[element])
+    numbers = numbers[numbers >= 0]
+    if numbers.tolist() == list(section.electrodes):
+        return section
     component, iy, iz = code_parts(model, section.codes)
-    electric = component == 3
-    base = potential_base(model)
-    ceramics = max(len(model.electrodes), 1)
-    old = (section.codes[electric] - base) % ceramics
-    # Ceramics in the order of their number, here and there, must be the same ones.
-    before, after = sorted(section.electrodes), sorted(numbers)
-    if len(before) != len(after):
-        return None
-    new = np.array(after, dtype=np.int64)[np.searchsorted(before, old)] if before else old
+    electric, base, ceramics = component == 3, potential_base(model), len(model.electrodes)
+    rank = np.searchsorted(section.electrodes, (section.codes[electric] - base) % ceramics)
     codes = section.codes.copy()
-    codes[electric] = base + (iy * model.z.nodes.size + iz)[electric] * ceramics + new
-    return dataclasses.replace(section, codes=codes, electrodes=tuple(after))
+    node = (iy * model.z.nodes.size + iz)[electric]
+    codes[electric] = base + node * ceramics + numbers[rank]
+    return dataclasses.replace(section, codes=codes, electrodes=tuple(numbers.tolist()))

@@ -73,7 +73,7 @@ def test_slices_that_differ_in_the_numbers_of_their_ceramics_are_assembled_once(
     other = dataclasses.replace(SHEET, patches=patches)
     solved = plate_model(other, 30e3, COARSE, all_classes(other)[0])
     assert {one.electrodes for one in solved.slabs.sections} == {(), (0,), (0, 1), (0, 2)}
-    assert len(made) == len(set(solved.slabs.patterns)) == 3
+    assert len(made) == 3
 
 
 def test_glass_with_small_ceramics_fits_into_four_gigabytes() -> None:
