@@ -65,12 +65,6 @@ def bill_of(
         if len(lead.electrodes) > 8:
             joined = f"{len(lead.electrodes)} electrodes to {lead.to}"
         rows.append(BillRow(f"Lead {lead.name}", 1, "wire", "", "", None, False, joined))
-    for electrode in electrodes:
-        if electrode.shunt_resistance is not None:
-            size = si.format_quantity(electrode.shunt_resistance, si.Unit("ohm"))
-            rows.append(
-                BillRow("Shunt resistor", 1, "", size, "", None, False, f"at {electrode.name}")
-            )
     return tuple(rows)
 
 

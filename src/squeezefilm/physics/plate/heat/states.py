@@ -14,7 +14,6 @@ from scipy.optimize import brentq
 
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.plate.heat.kernel import (
-    Drifts,
     Driven,
     conductance,
     lost,
@@ -97,32 +96,19 @@ def heat_capacity(thermal: Thermal, body: ThermalBody) -> si.JoulePerKelvin:
     return thermal.thermal_time * given if math.isfinite(given) else body.heat_capacity
 
 
-def drifts_of(thermal: Thermal) -> Drifts:
-    """The coefficients as compiled code takes them."""
-    return Drifts(
-        thermal.temperature_coefficient,
-        thermal.quality_temperature_coefficient,
-        thermal.charge_temperature_coefficient,
-        thermal.rayleigh_softening,
-        thermal.rayleigh_charge,
-    )
-
-
 class WarmCase:
     """A plate at one voltage, as compiled code takes it."""
 
-    def __init__(
-        self, source: HeatSource, thermal: Thermal, body: ThermalBody, drifts: Drifts
-    ) -> None:
+    def __init__(self, source: HeatSource, thermal: Thermal, body: ThermalBody) -> None:
         self.driven = Driven(
             float(source.frequency),
             float(source.quality_factor),
             float(source.amplitude),
             float(source.mechanical_power),
             float(source.dielectric_power),
-            float(source.field or 0.0),
         )
-        self.drifts, self.cooling = drifts, Cooling(*map(float, cooling_of(thermal, body)))
+        self.coefficient = float(thermal.temperature_coefficient)
+        self.cooling = Cooling(*map(float, cooling_of(thermal, body)))
         self.capacity = float(heat_capacity(thermal, body))
 
     def states(self, frequency: float) -> tuple[WarmState, ...]:
@@ -136,7 +122,7 @@ class WarmCase:
         while top < HOTTEST and self._surplus(0.0, top) > 0:
             top = min(1.5 * top, HOTTEST)
         grid = top * np.linspace(0, 1, _GRID) ** 2
-        left = surpluses(grid, frequency, self.driven, self.drifts, self.cooling)
+        left = surpluses(grid, frequency, self.driven, self.coefficient, self.cooling)
         stable = np.flatnonzero((left[:-1] > 0) & (left[1:] <= 0))
         if left[0] <= 0:
             return (self._state(frequency, 0.0),)
@@ -152,18 +138,19 @@ class WarmCase:
         """Time at which a tenth of the cold amplitude is gone (s)."""
         if not (cold > 0 and time > 0):
             return None
-        warm = (float(frequency), self.driven, self.drifts, self.capacity, self.cooling)
+        warm = (float(frequency), self.driven, self.coefficient, self.capacity, self.cooling)
         steps = 20 * _STEPS_OF_A_TIME_CONSTANT
         time_taken = time_until(_FALLEN * cold, time / _STEPS_OF_A_TIME_CONSTANT, steps, warm)
         return None if time_taken < 0 else float(time_taken)
 
     def _surplus(self, frequency: float, rise: float) -> float:
         rises = np.array([rise])
-        return float(surpluses(rises, frequency, self.driven, self.drifts, self.cooling)[0])
+        left = surpluses(rises, frequency, self.driven, self.coefficient, self.cooling)
+        return float(left[0])
 
     def _state(self, frequency: float, rise: si.Kelvin) -> WarmState:
-        moved, power = lost(frequency, rise, self.driven, self.drifts)
-        drift = resonance(rise, self.driven, self.drifts) - self.driven.frequency
+        moved, power = lost(frequency, rise, self.driven, self.coefficient)
+        drift = resonance(rise, self.driven, self.coefficient) - self.driven.frequency
         return WarmState(rise, drift, moved, power)
 
 
@@ -173,12 +160,12 @@ def warmth_ranges(
     """The least and the most that the tracked state is warm and has drifted over assumed ranges;
     no range of the warmth with a measured resistance or a known emissivity."""
     is_known = thermal.thermal_resistance is not None or thermal.emissivity is not None
-    nominal, states = drifts_of(thermal), []
+    states = []
     for emissivity in (thermal.emissivity,) if is_known else EMISSIVITIES:
-        changed = replace(thermal, emissivity=emissivity)
         for share in COEFFICIENT_SHARES:
-            shifted = nominal._replace(frequency=share * nominal.frequency)
-            states.append(WarmCase(source, changed, body, shifted).states(0.0)[0])
+            case = WarmCase(source, replace(thermal, emissivity=emissivity), body)
+            case.coefficient *= share
+            states.append(case.states(0.0)[0])
     rises, drifts = (
         sorted(getattr(state, name) for state in states)
         for name in ("temperature_rise", "resonance_drift")

@@ -1,19 +1,16 @@
-"""Shift of a mode's frequency by circuits at the electrodes: open terminals, floating electrodes,
-resistive shunts. All by a few bordered solves with the factorisation that has them shorted."""
+"""Open electrodes: the shift of a mode's frequency by open terminals, and floating electrodes. Both
+by a few bordered solves with the factorisation that has them shorted."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 import numpy as np
-from scipy.linalg import eig
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import ConvergenceError
 from squeezefilm.physics.plate.elements.krylov import modes_near, with_open_electrodes
 from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
 from squeezefilm.physics.plate.solid.model import PlateModel
-from squeezefilm.physics.plate.solid.reduced import plate_circuit
 from squeezefilm.physics.plate.solid.symmetry import drive_signs
 
 _HARDLY = 1e-9
@@ -83,61 +80,3 @@ def open_values(
     )
     out[moved] = np.maximum(pairs.values, values[moved])
     return out
-
-
-def shunted_frequencies(
-    solved: PlateModel, factor: SlabFactor, values: si.FloatArray, vectors: si.FloatArray
-) -> si.ComplexArray:
-    """Complex ω (rad/s, time factor e^{iωt}) of modes with their electrodes' resistors at work.
-
-    `values` and `vectors` (unit modal mass of the model) are those with shunts short. A resistor R
-    at an electrode of charge q and capacitance C adds iωR/(1 + iωRC) times the square of the
-    electrode's force to the stiffness: nothing for R → 0, that of an open electrode for R → ∞. The
-    eigenproblem, nonlinear in ω, is solved by iteration on the space of these modes and of the
-    static answers to the electrodes. Raises `ConvergenceError` where that does not settle.
-    """
-    omega = np.sqrt(values).astype(complex)
-    circuit = [resistor for resistor in plate_circuit(solved) if np.isfinite(resistor[1])]
-    if not circuit or values.size == 0:
-        return omega
-    slabs = solved.slabs
-    number = [resistor[0] for resistor in circuit]
-    weight = np.array([resistance * share for _, resistance, share in circuit])
-    G, C = slabs.electrode_columns
-    G, C = G[:, number], C[np.ix_(number, number)]
-    opened = _floating(solved)
-    solve = inverse_with_open(solved, factor)
-    answer = solve(G / np.max(np.abs(G)))
-    more = solve(slabs.mass_times(answer))
-    X = np.concatenate([vectors, answer, more, solve(slabs.mass_times(more))], axis=1)
-    X = X / np.sqrt(np.maximum(np.sum(X * slabs.mass_times(X), axis=0), 1e-300))
-    M = X.T @ slabs.mass_times(X)
-    size, turn = np.linalg.eigh((M + M.T) / 2)
-    X = X @ (turn[:, size > 1e-10] / np.sqrt(size[size > 1e-10]))
-    K = X.T @ slabs.stiffness_times(X)
-    if opened.size:
-        Go, Co = slabs.electrode_columns
-        force = X.T @ (Go @ opened)
-        K = K - force @ np.linalg.solve(opened.T @ Co @ opened, force.T)
-    force, start = X.T @ G, X.T @ slabs.mass_times(vectors)
-    for mode in range(values.size):
-        shape = start[:, mode].astype(complex)
-        for _ in range(60):
-            scale = 1j * omega[mode] * weight
-            stiffer = np.linalg.solve(
-                np.eye(weight.size) - scale[:, None] * C, scale[:, None] * force.T
-            )
-            squares, shapes = eig(K + force @ stiffer)
-            likeness = np.abs(shape.conj() @ shapes) / np.linalg.norm(shapes, axis=0)
-            best = int(np.argmax(likeness))
-            before, omega[mode] = omega[mode], np.sqrt(squares[best])
-            shape = shapes[:, best]
-            if abs(omega[mode] - before) <= 1e-10 * abs(before):
-                break
-        else:
-            raise ConvergenceError(
-                "the frequency of a mode with shunted electrodes did not settle; its mode passes "
-                "into another one, ask with the electrodes open or shorted",
-                iterations=60,
-            )
-    return omega

@@ -45,8 +45,7 @@ def mirror_map(plate: RectangularPlate, axis: int) -> list[int] | None:
             i
             for i, other in enumerate(plate.patches)
             if alike(place(other, False), want)
-            and (other.face, other.electrode, other.shunt_resistance)
-            == (patch.face, patch.electrode, patch.shunt_resistance)
+            and (other.face, other.electrode) == (patch.face, patch.electrode)
         ]
         if not found:
             return None
@@ -76,7 +75,7 @@ def only_stretches(plate: RectangularPlate) -> bool:
     def kind(part: CeramicPatch | FoamSupport) -> tuple[object, ...]:
         if isinstance(part, FoamSupport):
             return (part.stiffness_per_area, part.quality_factor)
-        return (part.drive_sign, part.electrode, part.shunt_resistance)
+        return (part.drive_sign, part.electrode)
 
     def mirrored(part: CeramicPatch | FoamSupport, other: CeramicPatch | FoamSupport) -> bool:
         near = all(abs(a - b) <= 1 for a, b in zip(place(part), place(other), strict=True))

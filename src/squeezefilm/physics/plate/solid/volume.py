@@ -20,7 +20,7 @@ from squeezefilm.physics.plate.elements.lobatto import LineMesh
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.modes import PlateModes
-from squeezefilm.physics.plate.solid.reduced import class_slices
+from squeezefilm.physics.plate.solid.reduced import class_slices, open_electrodes
 from squeezefilm.physics.plate.solid.response import HarmonicResponse
 
 _CORNERS = np.array(
@@ -171,13 +171,9 @@ def _mode_electrodes(solved: PlateModel, vector: si.FloatArray) -> si.FloatArray
     """The potential (V) of each electrode in free vibration: none but where a patch is open and
     carries no charge."""
     G, C = solved.slabs.electrode_columns
-    V = np.zeros(C.shape[0])
-    is_open = np.zeros(V.size, dtype=bool)
-    for number, patch in enumerate(solved.plate.patches):
-        if patch.electrode == "open" and solved.share_of[number] != 0:
-            is_open[solved.electrode_of[number]] = True
-    if is_open.any():
-        V[is_open] = np.linalg.solve(C[np.ix_(is_open, is_open)], -(G.T @ vector)[is_open])
+    V, opened = np.zeros(C.shape[0]), list(open_electrodes(solved))
+    if opened:
+        V[opened] = np.linalg.solve(C[np.ix_(opened, opened)], -(G.T @ vector)[opened])
     return V
 
 
