@@ -317,7 +317,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "physics.plate.solid.size.solve_size": {"label": (4, 0), "frequency": 60e3},
     "physics.plate.solid.size.band_seconds": {"highest": 60e3},
     "physics.plate.ring.stator.stator_section": {"mean_diameter": 53.6e-3, "ring_thickness": 3e-3},
-    "physics.plate.ring.stator.fit_stator": {"degree": 3},
     "physics.chain.prediction.predict": {
         "theory": "timoshenko",
         "model": "paper2008",

@@ -235,7 +235,7 @@ MADE: dict[Any, Callable[[], Any]] = {
         np.linspace(0, 0.02, 9), np.linspace(0, 0.01, 5), np.ones((9, 5)) + 0j, 30e3
     ),
     StatorAssumptions: StatorAssumptions,
-    StatorFit: lambda: fit_stator(degree=3),
+    StatorFit: fit_stator,
     WorkingMode: lambda: working_mode(PLATE, "timoshenko"),
     PadPlace: lambda: PadPlace(made(SurfaceShape), 5e-3, 5e-3),
     SurfaceShape: lambda: surface_shape(PLATE, working_mode(PLATE, "timoshenko")),

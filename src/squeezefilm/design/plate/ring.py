@@ -139,9 +139,7 @@ class RingAnalysis(SolvedBody):
                 "frequency_Hz": fit.mode.frequency,
                 "half_wavelength_m": fit.mode.half_wavelength,
             },
-            "tooth_model": fit.assumptions.tooth_model,
             "frequency_with_soft_and_stiff_teeth_Hz": list(fit.frequency_bounds),
-            "thickness_with_stiff_and_soft_teeth_m": list(fit.thickness_bounds),
             "assumed": to_json(fit.assumptions),
         }
 

@@ -109,7 +109,7 @@ def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
     if a.tooth_height > 0:
         low, high = fit.frequency_bounds
         said.append(
-            f"Teeth: an equivalent layer of {si.percent(a.tooth_fill)} metal ({a.tooth_model}). "
+            f"Teeth: an equivalent layer of {si.percent(a.tooth_fill)} metal. "
             f"Between teeth without hoop stiffness and teeth as stiff as their share of metal, "
             f"this body lies between {shown(low, HZ)} and {shown(high, HZ)}; real teeth are 7 to "
             "13 % of the way up."

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from squeezefilm.core import quantities as si
@@ -12,7 +12,6 @@ from squeezefilm.core.errors import UnreachableError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.plate.elements.box_model import isotropic_solid, piezoceramic_solid
 from squeezefilm.physics.plate.ring.modes import (
-    DEFAULT_DEGREE,
     AnnularMode,
     bending_frequency,
     bending_mode,
@@ -27,8 +26,8 @@ from squeezefilm.physics.plate.ring.section import (
 )
 
 ToothModel = Literal["soft", "stiff"]
-# Elements to begin a fit with, and how near it comes to the thickness (m).
-_ROUGH, _NEAR = 3, 1e-9
+# Between these thicknesses (m) the fitted one lies, and so near it comes to it.
+_ENDS, _NEAR = (0.3e-3, 10e-3), 1e-9
 _M, _HZ = si.Unit("m"), si.Unit("Hz")
 PHOSPHOR_BRONZE = ElasticMaterial("phosphor bronze", 112e9, 0.33, 8800.0)
 """Material of most motor stators; handbook values (C51900), assumed for the USR60."""
@@ -65,17 +64,15 @@ class StatorAssumptions:
     ceramic: Piezoceramic = HARD_PZT
     quality_factor: si.Dimensionless = 200.0
     driven_sectors: int = 8
-    tooth_model: ToothModel = "soft"
 
 
-@si.checked_numbers
 @dataclass(frozen=True, eq=False)
 class StatorFit:
     """A stator whose `ring_thickness` (metal between ceramic and teeth) was fitted.
 
     `assumptions` name what was assumed, in SI units; the section's mean diameter follows from the
-    given wavelength. How far the tooth layer is uncertain, `frequency_bounds` and
-    `thickness_bounds` say; they are computed when they are first asked for.
+    given wavelength. Its teeth are soft; `frequency_bounds` are the frequencies (Hz) that this
+    thickness has with the teeth soft (no hoop stiffness) and stiff (fill × E).
     """
 
     section: AnnularSection
@@ -83,42 +80,7 @@ class StatorFit:
     drive: SectorDrive
     ring_thickness: si.Metre
     assumptions: StatorAssumptions
-    _ring: _Ring = field(repr=False)
-
-    @functools.cached_property
-    def frequency_bounds(self) -> tuple[si.Hertz, si.Hertz]:
-        """The frequencies (Hz) that this thickness would have with the teeth soft (no hoop
-        stiffness) and stiff (fill × E)."""
-
-        def of(teeth: ToothModel) -> si.Hertz:
-            if teeth == self.assumptions.tooth_model:
-                return self.mode.frequency
-            return self._ring.frequency_of(self.ring_thickness, teeth)
-
-        return of("soft"), of("stiff")
-
-    @functools.cached_property
-    def thickness_bounds(self) -> tuple[si.Metre, si.Metre]:
-        """The thicknesses (m) that would have been fitted with the teeth stiff and soft: the
-        thinnest allowed where the stiff teeth's frequency is too high even so, the thickest where
-        the soft teeth's is too low."""
-        toothless = self.assumptions.tooth_height == 0
-
-        def of(teeth: ToothModel, without: si.Metre) -> si.Metre:
-            if toothless or teeth == self.assumptions.tooth_model:
-                return self.ring_thickness
-            try:
-                return self._ring.thickness(teeth)
-            except UnreachableError:
-                return without
-
-        thinnest, thickest = self._ring.ends
-        return of("stiff", thinnest), of("soft", thickest)
-
-    @si.checked_numbers
-    def amplitude(self, voltage: si.Volt) -> si.Metre:
-        """Zero-to-peak amplitude at resonance at a voltage amplitude (m), linear in it."""
-        return self.mode.amplitude_per_volt(self.drive) * voltage
+    frequency_bounds: tuple[si.Hertz, si.Hertz]
 
 
 @si.checked_numbers
@@ -157,102 +119,48 @@ def fit_stator(
     wavelength: Annotated[si.Metre, si.Above(0.0)] = 18.7e-3,
     waves: Annotated[int, si.AtLeast(2)] = 9,
     assumptions: StatorAssumptions | None = None,
-    *,
-    thinnest: Annotated[si.Metre, si.Above(0.0)] = 0.3e-3,
-    thickest: si.Metre = 10e-3,
-    degree: int = DEFAULT_DEGREE,
 ) -> StatorFit:
     """Fit the metal's thickness so that B(0, `waves`) falls on `frequency`.
 
     The mean diameter is `waves` × `wavelength`/π; everything else is assumed (see
     `StatorAssumptions`) and listed in the result. One frequency fits one dimension and validates
     nothing: the amplitude that follows is a prediction under these assumptions.
-    Raises `UnreachableError` if no thickness between `thinnest` and `thickest` has the frequency.
+    Raises `UnreachableError` if no thickness of 0.3 to 10 mm has the frequency.
     """
-    a = assumptions or StatorAssumptions()
-    si.require("thickest", thickest, _M, above=thinnest)
+    from scipy.optimize import brentq
+
+    assumed = assumptions or StatorAssumptions()
     mean_diameter = waves * wavelength / math.pi
-    ring = _Ring(frequency, waves, mean_diameter, (thinnest, thickest), degree, a)
-    thickness = ring.thickness(a.tooth_model if a.tooth_height > 0 else "soft")
-    return StatorFit(
-        section=stator_section(mean_diameter, thickness, a, a.tooth_model),
-        mode=ring.mode(thickness, a.tooth_model),
-        drive=alternate_sectors(a.driven_sectors, math.pi / waves),
-        ring_thickness=thickness,
-        assumptions=a,
-        _ring=ring,
-    )
 
+    def section(thickness: float, teeth: ToothModel) -> AnnularSection:
+        return stator_section(mean_diameter, thickness, assumed, teeth)
 
-@dataclass(frozen=True)
-class _Ring:
-    """A stator but for its metal's thickness, which lies between `ends` (m) and is fitted to put
-    B(0, `waves`) on the frequency (Hz)."""
+    # The ends are asked for twice.
+    @functools.cache
+    def above(thickness: float) -> float:
+        return bending_frequency(section(thickness, "soft"), waves) - frequency
 
-    frequency: float
-    waves: int
-    mean_diameter: float
-    ends: tuple[float, float]
-    degree: int
-    assumptions: StatorAssumptions
-
-    def mode(self, thickness: float, teeth: ToothModel) -> AnnularMode:
-        """The mode with a thickness (m) and one bound of the teeth."""
-        section = stator_section(self.mean_diameter, thickness, self.assumptions, teeth)
-        quality = self.assumptions.quality_factor
-        return bending_mode(section, self.waves, degree=self.degree, quality_factor=quality)
-
-    def frequency_of(self, thickness: float, teeth: ToothModel, degree: int | None = None) -> float:
-        """Frequency (Hz), by elements of this degree or another."""
-        section = stator_section(self.mean_diameter, thickness, self.assumptions, teeth)
-        return bending_frequency(section, self.waves, degree=degree or self.degree)
-
-    def thickness(self, teeth: ToothModel) -> float:
-        """The thickness (m) that has the frequency; raises `UnreachableError` where none does.
-
-        Sought with elements of a low degree, and from there with those of this one.
-        """
-        from scipy.optimize import root_scalar
-
-        if self.degree <= _ROUGH:
-            return self._crossing(teeth, self.degree, _NEAR)
-        try:
-            first = self._crossing(teeth, _ROUGH, 1e3 * _NEAR)
-        except UnreachableError:
-            # At the ends the two degrees may differ.
-            return self._crossing(teeth, self.degree, _NEAR)
-        root = root_scalar(
-            lambda t: self.frequency_of(t, teeth) - self.frequency,
-            method="secant",
-            x0=first,
-            # Towards the inside, whichever end is near.
-            x1=first + 1e-3 * (sum(self.ends) / 2 - first),
-            xtol=_NEAR,
-            maxiter=8,
+    low, high = (above(thickness) for thickness in _ENDS)
+    if low * high > 0:
+        raise UnreachableError(
+            f"no ring thickness from {si.format_quantity(_ENDS[0], _M)} to "
+            f"{si.format_quantity(_ENDS[1], _M)} puts B(0,{waves}) on "
+            f"{si.format_quantity(frequency, _HZ)}: it lies between "
+            f"{si.format_quantity(low + frequency, _HZ)} and "
+            f"{si.format_quantity(high + frequency, _HZ)}; change the assumptions",
+            quantity="frequency",
         )
-        inside = self.ends[0] <= root.root <= self.ends[1]
-        if root.converged and inside:
-            return float(root.root)
-        return self._crossing(teeth, self.degree, _NEAR)
-
-    def _crossing(self, teeth: ToothModel, degree: int, near: float) -> float:
-        """The same with elements of one degree, between the ends and to so many metres."""
-
-        from scipy.optimize import brentq
-
-        # The ends are asked for twice.
-        @functools.cache
-        def above(thickness: float) -> float:
-            return self.frequency_of(thickness, teeth, degree) - self.frequency
-
-        ends = [above(t) for t in self.ends]
-        if ends[0] * ends[1] > 0:
-            raise UnreachableError(
-                f"no ring thickness from {si.format_quantity(self.ends[0], _M)} to "
-                f"{si.format_quantity(self.ends[1], _M)} puts B(0,{self.waves}) with {teeth} teeth "
-                f"on {si.format_quantity(self.frequency, _HZ)}: it lies between "
-                f"{si.format_quantity(ends[0] + self.frequency, _HZ)} and "
-                f"{si.format_quantity(ends[1] + self.frequency, _HZ)}; change the assumptions",
-                quantity="frequency",
-            )
-        return float(brentq(above, *self.ends, xtol=near))
+    thickness = float(brentq(above, *_ENDS, xtol=_NEAR))
+    fitted = section(thickness, "soft")
+    mode = bending_mode(fitted, waves, quality_factor=assumed.quality_factor)
+    stiff = mode.frequency
+    if assumed.tooth_height > 0:
+        stiff = bending_frequency(section(thickness, "stiff"), waves)
+    return StatorFit(
+        section=fitted,
+        mode=mode,
+        drive=alternate_sectors(assumed.driven_sectors, math.pi / waves),
+        ring_thickness=thickness,
+        assumptions=assumed,
+        frequency_bounds=(mode.frequency, stiff),
+    )

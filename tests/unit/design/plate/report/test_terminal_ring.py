@@ -134,7 +134,7 @@ def test_a_fit_says_what_is_fitted_bounded_and_assumed() -> None:
         "Fitted: 2.346 mm of metal under the teeth, so that B(0,9) falls on 40.5 kHz, with the "
         "mean diameter of 53.57 mm from the wavelength."
     )
-    assert "80 % metal (soft)" in teeth
+    assert "80 % metal." in teeth
     assert "between 40.5 kHz and 44.12 kHz;" in teeth
     assert assumed == (
         "Assumed: phosphor bronze, hard PZT (assumed) of 0.5 mm, teeth of 1.5 mm, 8 half-wave "
