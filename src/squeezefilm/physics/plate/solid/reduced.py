@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.physics.plate.elements.krylov import orthonormal
 from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
 from squeezefilm.physics.plate.elements.slabs import Slabs
 from squeezefilm.physics.plate.layout import RectangularPlate
@@ -143,23 +144,9 @@ def _krylov_space(
     MQ = np.empty_like(Q)
     Q[:, :held], MQ[:, :held] = known, slabs.mass_times(known)
     for step in range(steps):
-        MX = slabs.mass_times(X)
-        norm = np.sqrt(np.maximum(np.sum(X * MX, axis=0), 1e-300))
-        X, MX = X / norm, MX / norm
-        # But for rounding a new direction meets the last two blocks only: these first, then all.
-        for against in (slice(max(0, held - 2 * X.shape[1]), held), slice(held)):
-            part = MQ[:, against].T @ X
-            X, MX = X - Q[:, against] @ part, MX - MQ[:, against] @ part
-        if np.sum(X * MX) < 1e-6 * X.shape[1]:
-            # Little is left: the product carried along has lost its digits.
-            MX = slabs.mass_times(X)
-        size, turn = np.linalg.eigh(_symmetric(X.T @ MX))
-        # What is left of a direction that the space already holds is rounding.
-        good = size > 1e-20
-        if not good.any():
+        X, MX = orthonormal(slabs, X, Q[:, :held], MQ[:, :held])
+        if not X.shape[1]:
             break
-        scale = turn[:, good] / np.sqrt(size[good])
-        X, MX = X @ scale, MX @ scale
         new = slice(held, held + X.shape[1])
         Q[:, new], MQ[:, new] = X, MX
         held = new.stop
