@@ -56,7 +56,7 @@ from squeezefilm.physics.uncertainty.drawn import description_of
 from squeezefilm.physics.uncertainty.uncertainty import (
     FrictionBand,
     UncertainFriction,
-    friction_band,
+    friction_bands,
 )
 
 BAND_POINTS, BAND_SAMPLES = 9, 64
@@ -135,7 +135,7 @@ class Analysis(Result):
             return None
         reach = BAND_REACH * self.prediction.vibration_amplitude
         at = reach * np.linspace(0.0, 1.0, BAND_POINTS) ** 1.5
-        return friction_band(self.display, self.prediction, at, samples=BAND_SAMPLES)
+        return friction_bands(self.display, self.prediction, at, samples=BAND_SAMPLES)[0]
 
     @functools.cached_property
     def rivals(self) -> dict[str, float]:

@@ -23,7 +23,6 @@ from squeezefilm.physics.uncertainty.draws import (
     Draw,
     Mixture,
     Refusals,
-    Tally,
     as_drawn,
     between_limits,
 )
@@ -200,7 +199,7 @@ def uncertain_voltage(
     )
     mixture = Mixture(display, unit, driven=True)
     points = sobol_points(mixture, POINTS * samples, seed)
-    tally = Tally()
+    refused = Refusals(len(points))
     volts = np.full(len(points), np.nan)
     every, first = max(len(points) // 20, 1), max(p.vibration_amplitude, 1e-6)
     for number, draw in enumerate(mixture.draws(points)):
@@ -212,8 +211,7 @@ def uncertain_voltage(
             kept = kept_at(mixture.mode(draw), law, amplitude) if np.isfinite(amplitude) else 1.0
             volts[number] = amplitude / (mixture.free(draw.display) * kept)
         except SqueezefilmError as error:
-            tally.refuse(draw.heights, error)
-    refused = tally.found(len(points))
+            refused.refuse(draw.heights, error)
     if refused.share > MOST_REFUSED:
         raise OutOfRangeError(refusal_words(refused))
     low, middle, high = (end if np.isfinite(end) else None for end in ends(volts))

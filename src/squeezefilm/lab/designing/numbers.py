@@ -27,7 +27,7 @@ from squeezefilm.physics.plate.electronics import load_of_mode
 from squeezefilm.physics.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.physics.plate.solid.working import response_frequencies, solid_mode
 from squeezefilm.physics.plausibility.checks import require_plausible
-from squeezefilm.physics.uncertainty.uncertainty import friction_band
+from squeezefilm.physics.uncertainty.uncertainty import friction_bands
 
 STRETCHED = "stretch the ceramics"
 """Word in place of a value."""
@@ -169,7 +169,7 @@ def banded(point: DesignPoint, quality: str, samples: int = 64) -> dict[str, Any
     p = predicted(display, quality, point)
     amplitude = np.linspace(0.0, max(2.0 * p.vibration_amplitude, _LEAST_SPAN), _POINTS)
     band: dict[str, Any] = to_json(
-        friction_band(display, p, amplitude[::3], samples=samples, progress=tell)
+        friction_bands(display, p, amplitude[::3], samples=samples, progress=tell)[0]
     )
     return band
 

@@ -5,6 +5,7 @@ Whoever analyses a display again, with another texture or report, asks for the s
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import io
 import json
@@ -22,7 +23,7 @@ from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import to_json
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.uncertainty.draws import Mixture, Outcome, Refusals, Tally, as_drawn
+from squeezefilm.physics.uncertainty.draws import Mixture, Outcome, Refusals, as_drawn
 
 _Found = TypeVar("_Found")
 
@@ -52,7 +53,9 @@ class KeptDraws(Generic[_Found]):
         return self._kept.found(_asked(mixture, points, more), make)
 
 
-_KEPT: KeptDraws[tuple[si.FloatArray, Tally]] = KeptDraws("draws", tuple[si.FloatArray, Tally])
+_KEPT: KeptDraws[tuple[si.FloatArray, Refusals]] = KeptDraws(
+    "draws", tuple[si.FloatArray, Refusals]
+)
 
 
 def evaluate(
@@ -68,9 +71,9 @@ def evaluate(
     make = functools.partial(_drawn_now, mixture, points, new, tell, what)
     worth_keeping = new.size >= _WORTH_KEEPING
     made = _KEPT.found(mixture, points[new], None, make) if worth_keeping else make()
-    outcomes[new], tally = made
+    outcomes[new], refused = made
     mixture.learn(points[new], outcomes[new])
-    return Outcome(*outcomes.T), tally.found(len(points))
+    return Outcome(*outcomes.T), dataclasses.replace(refused, evaluations=len(points))
 
 
 def description_of(display: Display, prediction: Prediction, more: object = None) -> str:
@@ -116,9 +119,9 @@ def _drawn_now(
     new: si.IntArray,
     tell: SayProgress,
     what: str,
-) -> tuple[si.FloatArray, Tally]:
+) -> tuple[si.FloatArray, Refusals]:
     """Outcome of the points numbered `new`, shape (n, 3), and what was refused."""
-    outcomes, tally = np.full((new.size, 3), np.nan), Tally()
+    outcomes, refused = np.full((new.size, 3), np.nan), Refusals(new.size)
     every = max(new.size // _TOLD, 1)
     draws = mixture.draws(points[new]) if new.size else iter(())
     for number, (point, draw) in enumerate(zip(points[new], draws, strict=True)):
@@ -127,8 +130,8 @@ def _drawn_now(
         try:
             outcomes[number] = mixture.outcome(point, draw)
         except SqueezefilmError as error:
-            tally.refuse(draw.heights, error)
-    return outcomes, tally
+            refused.refuse(draw.heights, error)
+    return outcomes, refused
 
 
 def require_samples(samples: int) -> None:

@@ -76,16 +76,33 @@ class Draw:
     friction_offset: si.Dimensionless = 0.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class Refusals:
-    """Draws that have no friction, of how many; why (with how often), under which law of heights,
-    and what the first of them said."""
+    """Draws that have no friction, of how many `evaluations`: why (with how often), under which
+    law of heights, and what the first of them said."""
 
-    count: int
     evaluations: int
-    reasons: Counter[str]
-    heights: Counter[str]
-    example: str
+    reasons: Counter[str] = field(default_factory=Counter)
+    heights: Counter[str] = field(default_factory=Counter)
+    example: str = ""
+
+    def refuse(self, draw_of: str, error: SqueezefilmError) -> None:
+        """Count one, under a law of heights."""
+        words = str(error)
+        known = {
+            "pressed through": "pressed through its asperities",
+            "nearly everything into contact": "pressed nearly flat",
+            "film is not tabulated": "outside of the film's table",
+        }
+        why = [short for part, short in known.items() if part in words]
+        self.reasons[why[0] if why else type(error).__name__] += 1
+        self.heights[draw_of] += 1
+        self.example = self.example or words
+
+    @property
+    def count(self) -> int:
+        """Number of draws that are refused."""
+        return sum(self.reasons.values())
 
     @property
     def share(self) -> si.Dimensionless:
@@ -95,7 +112,6 @@ class Refusals:
     def together_with(self, more: Refusals) -> Refusals:
         """Refusals of these and of other draws."""
         return Refusals(
-            self.count + more.count,
             self.evaluations + more.evaluations,
             self.reasons + more.reasons,
             self.heights + more.heights,
@@ -111,33 +127,6 @@ class Refusals:
             f"{self.count} of {self.evaluations} draws ({si.percent(self.share, 1)}) are refused: "
             f"{why}; by the law of heights {laws}"
         )
-
-
-@dataclass
-class Tally:
-    """Counts of what is refused, by reason and by law of heights, with the words of the first."""
-
-    reasons: Counter[str] = field(default_factory=Counter)
-    heights: Counter[str] = field(default_factory=Counter)
-    example: str = ""
-
-    def refuse(self, draw_of: str, error: SqueezefilmError) -> None:
-        """Count one."""
-        words = str(error)
-        known = {
-            "pressed through": "pressed through its asperities",
-            "nearly everything into contact": "pressed nearly flat",
-            "film is not tabulated": "outside of the film's table",
-        }
-        why = [short for part, short in known.items() if part in words]
-        self.reasons[why[0] if why else type(error).__name__] += 1
-        self.heights[draw_of] += 1
-        self.example = self.example or words
-
-    def found(self, evaluations: int) -> Refusals:
-        """Refusals that were counted, of so many."""
-        count = sum(self.reasons.values())
-        return Refusals(count, evaluations, self.reasons, self.heights, self.example)
 
 
 # Parts of drawn displays that are kept: those of some rows of the design.

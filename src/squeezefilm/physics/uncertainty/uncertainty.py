@@ -325,37 +325,22 @@ _BANDS: KeptDraws[si.DimensionlessArray] = KeptDraws("draws-band", si.Dimensionl
 
 
 @as_drawn()
-def friction_band(
-    display: Display,
-    prediction: Prediction,
-    amplitude: si.MetreArray,
-    *,
-    samples: int = 64,
-    progress: Callable[[str, float], None] | None = None,
-) -> FrictionBand:
-    """The band in which µ′/µ lies at each amplitude (m, zero-to-peak, shape (n,)).
-
-    Parameters, laws and mechanisms are drawn as in `uncertain_friction`, by `samples` Sobol' points
-    (a power of two); drive and actuator stand still, since the amplitude is the abscissa.
-    `progress` is called with a text and a fraction. Raises `InputError` for amplitudes below 0.
-    """
-    bands = friction_bands(
-        display, prediction, amplitude, (LEVEL,), samples=samples, progress=progress
-    )
-    return bands[0]
-
-
-@as_drawn()
 def friction_bands(
     display: Display,
     prediction: Prediction,
     amplitude: si.MetreArray,
-    levels: Sequence[si.Dimensionless],
+    levels: Sequence[si.Dimensionless] = (LEVEL,),
     *,
     samples: int = 64,
     progress: Callable[[str, float], None] | None = None,
 ) -> tuple[FrictionBand, ...]:
-    """`friction_band` at each of several levels (1), from the same draws."""
+    """The band of each level (1) in which µ′/µ lies at each amplitude (m, zero-to-peak, shape (n,)).
+
+    Parameters, laws and mechanisms are drawn as in `uncertain_friction`, by `samples` Sobol' points
+    (a power of two), the same for all levels; drive and actuator stand still, since the amplitude
+    is the abscissa. `progress` is called with a text and a fraction. Raises `InputError` for
+    amplitudes below 0.
+    """
     mixture = Mixture(display, prediction, driven=False)
     points = sobol_points(mixture, samples, seed=1)
     make = functools.partial(_drawn_curves, mixture, points, amplitude, progress)

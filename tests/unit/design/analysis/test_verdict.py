@@ -56,7 +56,7 @@ def unsure(low: float, high: float, samples: list[float], refused: int = 0) -> A
         nominal=0.51, median=0.4, interval=(low, high), level=0.9, samples=np.array(samples),
         amplitudes=np.zeros(len(samples)), draws=len(samples) + refused, influences=(),
         groups=(),
-        refused=Refusals(refused, 100, Counter(), Counter(), ""), seed=1, model="a-model",
+        refused=Refusals(100, Counter({"why": refused})), seed=1, model="a-model",
     )  # fmt: skip
 
 

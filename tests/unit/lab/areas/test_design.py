@@ -74,7 +74,7 @@ def test_an_edit(lab: Talk) -> None:
 def test_what_takes_seconds_is_computed_on_the_slow_line(
     lab: Talk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(numbers, "friction_band", _no_band)
+    monkeypatch.setattr(numbers, "friction_bands", _no_band)
     question = {
         "text": STATOR, "voltage": "100 V", "surface": "bare", "force": "0.7 N",
         "path": "finger.contact_length", "value": "8 mm",

@@ -251,9 +251,9 @@ def test_a_band_lies_on_every_third_amplitude_of_the_curve(monkeypatch: pytest.M
     def banded(display: Any, p: Any, amplitude: Any, *, samples: int, progress: Any) -> Any:
         asked.append((display, p.voltage, samples))
         low = np.where(amplitude > 0, 0.3, np.nan)
-        return FrictionBand(amplitude, low, low + 0.2, level=0.9, samples=samples - 1)
+        return (FrictionBand(amplitude, low, low + 0.2, level=0.9, samples=samples - 1),)
 
-    monkeypatch.setattr(numbers, "friction_band", banded)
+    monkeypatch.setattr(numbers, "friction_bands", banded)
     point = DesignPoint(STATOR, "100 V")
     found = numbers.banded(point, "screening")
     assert asked == [(display_of(STATOR), 100.0, 64)]

@@ -44,7 +44,7 @@ from squeezefilm.physics.uncertainty.parameters import (
 from squeezefilm.physics.uncertainty.uncertainty import (
     UncertainFriction,
     evaluate,
-    friction_band,
+    friction_bands,
     interval_or_reason,
     sobol_points,
     uncertain_friction,
@@ -462,7 +462,7 @@ def test_an_uncertain_friction_is_said_and_listed() -> None:
         samples=np.array([0.3, 0.7]), amplitudes=np.zeros(2), draws=3,
         influences=(Influence(parameter, 0.1, 0.2, 0.3, 0.4),),
         groups=(GroupInfluence("measurable", 0.5, 0.7, 0.1, 0.1),),
-        refused=Refusals(1, 64, Counter({"why": 1}), Counter(), ""), seed=5, model="a-model",
+        refused=Refusals(64, Counter({"why": 1})), seed=5, model="a-model",
     )  # fmt: skip
     assert found.sentence == "µ′/µ = 0.41 as described (0.28–0.55, median 0.43)"
     assert found.probability_below(0.5) == pytest.approx(1 / 3)
@@ -506,7 +506,7 @@ def test_a_band_ends_where_more_than_two_per_cent_are_refused(
     monkeypatch.setattr(Mixture, "law", lambda _, draw: Law(_length(draw)))
     told: list[tuple[str, float]] = []
     amplitude = np.array([1e-6, 2e-6, 3e-6])
-    band = friction_band(
+    (band,) = friction_bands(
         stator, point, amplitude, samples=128, progress=lambda *said: told.append(said)
     )
     assert band.amplitude is amplitude

@@ -184,7 +184,7 @@ def compare_friction_curve(
     `display` that was given, or the one that it names; the friction at rest alone is fitted.
 
     A force or speed that the recording does not tell is the display's. The interval is that of
-    `friction_band`: 90 % of draws over parameters, laws and mechanisms. Raises `InputError` for a
+    `friction_bands`: 90 % of draws over parameters, laws and mechanisms. Raises `InputError` for a
     curve without a display, and what `predict` raises for its display at its largest amplitude.
     """
     tell = said_with_time_left(progress or (lambda _: None))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections import Counter
 from types import SimpleNamespace
 from typing import Any
 
@@ -32,7 +31,7 @@ VOLTS = VoltageInterval(
     beyond=0.3,
     never=0.04,
     voltages=np.zeros(2),
-    refused=Refusals(0, 128, Counter(), Counter(), ""),
+    refused=Refusals(128),
     seed=1,
 )
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -78,7 +77,7 @@ UNSURE = UncertainFriction(
     nominal=0.62, median=0.6, interval=(0.41, 0.83), level=0.9,
     samples=np.array([0.01, 0.41, 0.43, 0.83, 0.99]), amplitudes=np.full(5, 1.5e-6), draws=5,
     influences=tuple(influence(number, path) for number, path in enumerate(PATHS)),
-    groups=(), refused=Refusals(0, 77, Counter(), Counter(), ""), seed=1,
+    groups=(), refused=Refusals(77), seed=1,
     model="a model of nothing",
 )  # fmt: skip
 FORCES = np.geomspace(0.04, 1.6, 5)

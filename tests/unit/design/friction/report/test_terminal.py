@@ -86,7 +86,7 @@ SURE = UncertainFriction(
         GroupInfluence("measurable", 0.6, 0.7, 0.1, 0.05),
         GroupInfluence("unknown", -0.02, 0.4, 0.2, 0.03),
     ),
-    refused=Refusals(2, 640, Counter({"pressed flat": 2}), Counter({"persson": 2}), ""), seed=5,
+    refused=Refusals(640, Counter({"pressed flat": 2}), Counter({"persson": 2}), ""), seed=5,
     model="a-model",
 )  # fmt: skip
 
