@@ -334,7 +334,7 @@ def friction_bands(
     samples: int = 64,
     progress: Callable[[str, float], None] | None = None,
 ) -> tuple[FrictionBand, ...]:
-    """The band of each level (1) in which µ′/µ lies at each amplitude (m, zero-to-peak, shape (n,)).
+    """The band of each level (1) in which µ′/µ lies at each amplitude (m, shape (n,)).
 
     Parameters, laws and mechanisms are drawn as in `uncertain_friction`, by `samples` Sobol' points
     (a power of two), the same for all levels; drive and actuator stand still, since the amplitude

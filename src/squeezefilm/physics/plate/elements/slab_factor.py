@@ -61,7 +61,7 @@ class SlabFactor:
             left.append(made[key][1])
         self._alike = [self._places(made[key][0], elements) for key, elements in alike.items()]
         self._chain(left)
-        inner = sum(some.element.negative * some.inner.shape[1] for some in self._alike)
+        inner: int = sum(some.element.negative * some.inner.shape[1] for some in self._alike)
         self._negative = inner + sum(link.negative for link in (*self._links, self._final))
 
     @property

@@ -218,7 +218,8 @@ def _shape(model: BoxModel, e: int) -> bytes:
     springs = [f for f in model.foundations if f.x_elements[0] <= e < f.x_elements[1]]
     numbers, ranks = np.unique(model.ceramic[e], return_inverse=True)
     planes = [model.electrodes[n] for n in numbers if n >= 0]
-    return model.medium[e].tobytes() + ranks.tobytes() + repr((planes, springs)).encode()
+    shape: bytes = model.medium[e].tobytes() + ranks.tobytes()
+    return shape + repr((planes, springs)).encode()
 
 
 def _renumbered(model: BoxModel, section: CrossSection, element: int) -> CrossSection:
