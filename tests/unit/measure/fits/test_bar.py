@@ -10,7 +10,7 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.bar import BarConstants, bar_constants
-from squeezefilm.measure.fits.ceramic.constants import DECISIVE, CeramicConstants, resonance_peaks
+from squeezefilm.measure.fits.ceramic.constants import CeramicConstants, resonance_peaks
 from squeezefilm.measure.recordings.kinds import CeramicBar, ImpedanceSweep
 
 BAR = CeramicBar(12e-3, 3e-3, 1e-3, 7850.0)
@@ -47,17 +47,10 @@ def test_its_constants_are_given_back() -> None:
     assert found.observations == ()
 
 
-@pytest.mark.parametrize("number", [2, 3])
-def test_a_higher_mode_is_taken_for_what_it_is(number: int) -> None:
-    """The formula has all modes; which was recorded is told by what ceramics are."""
-    band = (2 * number - 1) * np.linspace(124e3, 134e3, 301)
-    found = bar_constants(bar_sweep(0.002, band), BAR)
-    assert found.mode.number == number
-    assert found.mode.preference > DECISIVE
-    assert f"taken for mode {number}" in found.adequacy.sentence
-    assert found.compliance_11.value == pytest.approx(S11, rel=1e-3)
-    assert found.charge_coefficient_31.value == pytest.approx(D31, rel=0.02)
-    assert found.free_permittivity_33.value == pytest.approx(EPS33, rel=0.02)
+def test_a_higher_mode_is_told_to_be_another() -> None:
+    found = bar_constants(bar_sweep(0.002, 3 * np.linspace(124e3, 134e3, 301)), BAR)
+    assert not found.adequacy.adequate
+    assert "another mode was probably recorded" in found.adequacy.sentence
 
 
 def test_intervals_hold_them_under_noise() -> None:

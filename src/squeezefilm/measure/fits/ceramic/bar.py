@@ -12,19 +12,15 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.constants import (
     CeramicConstants,
-    ceramic_prior,
     constants_of,
     coupling_read,
     permittivity_read,
-    recorded_mode,
     resonance_peaks,
 )
-from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, fit_complex
+from squeezefilm.measure.fits.complex_fit import fit_complex
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import CeramicBar, ImpedanceSweep
-
-_MODES = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,8 +31,7 @@ class BarConstants(CeramicConstants):
 
 
 def bar_constants(sweep: ImpedanceSweep, bar: CeramicBar) -> BarConstants:
-    """Fit one or more length resonances of a free bar, with all losses; which of the lowest four
-    the most conductance is of is found and said (`recorded_mode`).
+    """Fit the lowest length resonance of a free bar, or it and others, with all losses.
 
     Y = iω (l w/t) [ε33T (1 − k31²) + ε33T k31² tan X/X], X = (ωl/2) √(ρ s11E), k31² = d31²/(s11E
     ε33T), all constants complex (IEEE standard on piezoelectricity 176-1987, section 6.4.1; losses
@@ -49,15 +44,8 @@ def bar_constants(sweep: ImpedanceSweep, bar: CeramicBar) -> BarConstants:
     Raises `InputError` as `fit_impedance` does.
     """
     require_passive(sweep)
-    starts = [_start(sweep, bar, number) for number in range(1, _MODES + 1)]
     omega = 2 * np.pi * sweep.frequency
-
-    def fitted_as(number: int) -> ComplexFit:
-        return fit_complex(lambda p: _curve(bar, p, omega), starts[number - 1], sweep.admittance)
-
-    known, at = ceramic_prior(of_class=True), [0, 2, 3, 4, 5, 6]
-    prior = Prior(known.mean[at], known.spread[at])
-    fit, mode = recorded_mode(starts, fitted_as, prior)
+    fit = fit_complex(lambda p: _curve(bar, p, omega), _start(sweep, bar), sweep.admittance)
     curve = _curve(bar, fit.parameters, omega)[0]
 
     def coupling(p: si.FloatArray) -> float:
@@ -65,18 +53,17 @@ def bar_constants(sweep: ImpedanceSweep, bar: CeramicBar) -> BarConstants:
 
     return BarConstants(
         coupling_31=fit.estimate(coupling, "1"),
-        **constants_of(fit, sweep, curve, (0, 1, 2, 3, 4, 5), "The formula of a bar", mode),
+        **constants_of(fit, sweep, curve, (0, 1, 2, 3, 4, 5), "The formula of a bar"),
     )
 
 
-def _start(sweep: ImpedanceSweep, bar: CeramicBar, number: int) -> si.FloatArray:
-    """ln s11, ln |d31|, ln ε33, and the losses of the three, read off the sweep as if it were of
-    that mode, where X is an odd multiple of π/2."""
+def _start(sweep: ImpedanceSweep, bar: CeramicBar) -> si.FloatArray:
+    """ln s11, ln |d31|, ln ε33, and the losses of the three, read off the sweep of the lowest mode,
+    where X is π/2."""
     peaks = resonance_peaks(sweep)
     series = peaks.conductance_frequency
-    compliance = ((2 * number - 1) / (2 * bar.length * series)) ** 2 / bar.density
-    shares = [8 / ((2 * k - 1) * math.pi) ** 2 for k in range(1, number + 1)]
-    square = coupling_read(peaks, shares, number)
+    compliance = 1 / (2 * bar.length * series) ** 2 / bar.density
+    square = coupling_read(peaks, 8 / math.pi**2)
     low = slice(0, max(3, sweep.frequency.size // 20))
     capacitance = float(np.median(sweep.admittance.imag[low] / (2 * np.pi * sweep.frequency[low])))
     if capacitance <= 0:
@@ -85,7 +72,7 @@ def _start(sweep: ImpedanceSweep, bar: CeramicBar, number: int) -> si.FloatArray
             f"{0.95 * series / 1e3:.4g} kHz",
             quantity="admittance",
         )
-    x = (number - 0.5) * math.pi * sweep.frequency / series * complex(1, -0.006)
+    x = math.pi / 2 * sweep.frequency / series * complex(1, -0.006)
     geometry = bar.length * bar.width / bar.thickness
     permittivity = permittivity_read(sweep, square, np.tan(x) / x, geometry)
     charge = math.sqrt(square * compliance * permittivity * VACUUM_PERMITTIVITY)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import partial
-from typing import Annotated
 
 import numpy as np
 
@@ -20,22 +19,19 @@ from squeezefilm.measure.fits.ceramic.constants import (
     constants_of,
     coupling_read,
     permittivity_read,
-    recorded_mode,
     resonance_peaks,
 )
-from squeezefilm.measure.fits.complex_fit import ComplexFit, Prior, fit_complex
+from squeezefilm.measure.fits.complex_fit import Prior, fit_complex
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.physics.plate.ring.ceramic_disc import (
     CeramicDisc,
     disc_admittance,
-    disc_system,
     weak_constants,
 )
 
 _LEAST_SLENDERNESS = 5.0
-_MODES = 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,11 +51,10 @@ class DiscConstants(CeramicConstants):
 
 
 def disc_constants(sweep: ImpedanceSweep, disc: CeramicDisc) -> DiscConstants:
-    """Fit the axisymmetric piezoelectric solution of the free disc to a sweep of one or more of its
-    radial modes, with elastic, piezoelectric and dielectric losses.
+    """Fit the axisymmetric piezoelectric solution of the free disc to a sweep of its lowest radial
+    mode, or of it and others, with elastic, piezoelectric and dielectric losses.
 
-    Which of the lowest four the most conductance is of is found by what ceramics are and by what is
-    left of the data (`recorded_mode`), and said. What the mode does not tell (Poisson's ratio,
+    What the mode does not tell (Poisson's ratio,
     everything along the thickness) is held by what the library's ceramics have in common, and its
     uncertainty stays in the intervals. Constants do not depend on frequency within
     the sweep. Range: discs at least 5 times as wide as thick (`CeramicDisc`), full electrodes,
@@ -74,14 +69,9 @@ def disc_constants(sweep: ImpedanceSweep, disc: CeramicDisc) -> DiscConstants:
             quantity="disc",
         )
     prior = ceramic_prior()
-    starts = _starts(sweep, disc, prior)
-
-    def fitted_as(number: int) -> ComplexFit:
-        curve = partial(disc_curve, disc, sweep.frequency, modes=number)
-        return fit_complex(curve, starts[number - 1], sweep.admittance, prior=prior)
-
-    fit, mode = recorded_mode(starts, fitted_as, ceramic_prior(of_class=True))
-    fitted = disc_curve(disc, sweep.frequency, fit.parameters, mode.number)[0]
+    curve = partial(disc_curve, disc, sweep.frequency)
+    fit = fit_complex(curve, _start(sweep, disc, prior), sweep.admittance, prior=prior)
+    fitted = curve(fit.parameters)[0]
     spread = np.sqrt(np.diag(fit.covariance))
 
     def coupling(p: si.FloatArray) -> float:
@@ -89,7 +79,7 @@ def disc_constants(sweep: ImpedanceSweep, disc: CeramicDisc) -> DiscConstants:
         return math.sqrt(2 * square / (1 - p[1]))
 
     return DiscConstants(
-        **constants_of(fit, sweep, fitted, (0, 2, 3, 4, 5, 6), "The solved disc", mode),
+        **constants_of(fit, sweep, fitted, (0, 2, 3, 4, 5, 6), "The solved disc"),
         disc=disc,
         compliance_12=fit.estimate(lambda p: -float(p[1]) * math.exp(p[0]), "m2/N"),
         poisson_ratio=fit.estimate(lambda p: float(p[1]), "1"),
@@ -99,16 +89,11 @@ def disc_constants(sweep: ImpedanceSweep, disc: CeramicDisc) -> DiscConstants:
 
 
 def disc_curve(
-    disc: CeramicDisc,
-    frequency: si.HertzArray,
-    p: si.DimensionlessArray,
-    modes: Annotated[int, si.AtLeast(1)] = 2,
+    disc: CeramicDisc, frequency: si.HertzArray, p: si.DimensionlessArray
 ) -> tuple[si.ComplexArray, si.ComplexArray]:
     """The admittance (S, (points,)) of a disc at frequencies (Hz) and its derivatives with the
-    parameters `p` in the order of `PARAMETERS` (parameters, points); up to that many of its radial
-    `modes` are resolved."""
-    system = disc_system(disc, max(7, 2 * modes + 2))
-    curve, slopes = disc_admittance(disc, weak_constants(*compliances(p)), frequency, system)
+    parameters `p` in the order of `PARAMETERS` (parameters, points)."""
+    curve, slopes = disc_admittance(disc, weak_constants(*compliances(p)), frequency)
     return curve, _constant_slopes(p) @ slopes
 
 
@@ -125,9 +110,9 @@ def _constant_slopes(p: si.FloatArray) -> si.ComplexArray:
     return np.array(rows)
 
 
-def _starts(sweep: ImpedanceSweep, disc: CeramicDisc, prior: Prior) -> list[si.FloatArray]:
-    """Sizes read off the sweep by the formulas of a thin disc as if it were of each of its modes,
-    the rest from the prior.
+def _start(sweep: ImpedanceSweep, disc: CeramicDisc, prior: Prior) -> si.FloatArray:
+    """Sizes read off the sweep by the formulas of a thin disc's lowest mode, the rest from the
+    prior.
 
     Y is iω times the free capacitance times 1 − k² + k² f(η), with f = (1 + σ) J1(η) / (η J0(η) −
     (1 − σ) J1(η)), η = (ω D/2) √(ρ s11 (1 − σ²)) and the planar coupling k (IEEE standard
@@ -137,26 +122,18 @@ def _starts(sweep: ImpedanceSweep, disc: CeramicDisc, prior: Prior) -> list[si.F
     from scipy.special import j0, j1, jn_zeros, jv
 
     ratio, loss = float(prior.mean[1]), complex(1, -float(prior.mean[4]) / 2)
-
-    def free(x: float) -> float:
-        return float(x * j0(x) - (1 - ratio) * j1(x))
-
-    ends = zip([1.0, *jn_zeros(1, _MODES - 1)], jn_zeros(0, _MODES), strict=True)
-    roots = [float(brentq(free, *pair)) for pair in ends]
-    shares = [2 * (1 + ratio) / (x**2 - 1 + ratio**2) for x in roots]
+    root = float(brentq(lambda x: x * j0(x) - (1 - ratio) * j1(x), 1.0, jn_zeros(0, 1)[0]))
     peaks = resonance_peaks(sweep)
     series = peaks.conductance_frequency
-    starts = []
-    for number, root in enumerate(roots, 1):
-        velocity = math.pi * series * disc.diameter / root
-        s11 = 1 / (disc.density * velocity**2 * (1 - ratio**2))
-        square = coupling_read(peaks, shares, number)
-        x = root * sweep.frequency / series * loss
-        motion = (1 + ratio) * jv(1, x) / (x * jv(0, x) - (1 - ratio) * jv(1, x))
-        geometry = math.pi / 4 * disc.diameter**2 / disc.thickness
-        eps33 = permittivity_read(sweep, square, motion, geometry)
-        d31 = math.sqrt(square * s11 * (1 - ratio) * eps33 * VACUUM_PERMITTIVITY / 2)
-        p = prior.mean.copy()
-        p[[0, 2, 3]] = math.log(s11), math.log(d31), math.log(eps33)
-        starts.append(p)
-    return starts
+    velocity = math.pi * series * disc.diameter / root
+    s11 = 1 / (disc.density * velocity**2 * (1 - ratio**2))
+    square = coupling_read(peaks, 2 * (1 + ratio) / (root**2 - 1 + ratio**2))
+    x = root * sweep.frequency / series * loss
+    motion = (1 + ratio) * jv(1, x) / (x * jv(0, x) - (1 - ratio) * jv(1, x))
+    eps33 = permittivity_read(
+        sweep, square, motion, math.pi / 4 * disc.diameter**2 / disc.thickness
+    )
+    d31 = math.sqrt(square * s11 * (1 - ratio) * eps33 * VACUUM_PERMITTIVITY / 2)
+    p = prior.mean.copy()
+    p[[0, 2, 3]] = math.log(s11), math.log(d31), math.log(eps33)
+    return p
