@@ -33,12 +33,14 @@ from squeezefilm.measure.calibration.priors import (
     with_calibrated,
 )
 from squeezefilm.measure.calibration.solved_answers import (
+    DRAW_TAKES,
     FRICTION,
+    PLATE_TAKES,
     asked_by,
+    in_parts,
     question,
     solved_answers,
 )
-from squeezefilm.measure.calibration.steps import DRAW_TAKES, PLATE_TAKES, Steps
 from squeezefilm.measure.calibration.written_display import actuator_digest
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.chain.prediction import predict
@@ -160,9 +162,9 @@ def predicted(
         how = f"the calibration in the description of {display.name}"
     solved = _SOLVED * PLATE_TAKES if drawn else 0.0
     seconds = _FRICTION * DRAW_TAKES if of_friction else 0.0, solved
-    steps = Steps(progress or (lambda _: None), seconds)
-    rows = known | _of_friction(display, of_friction, seed, steps.next())
-    rows |= _of_plate(display, drawn, seed, steps.next())
+    steps = in_parts(progress, seconds)
+    rows = known | _of_friction(display, of_friction, seed, next(steps))
+    rows |= _of_plate(display, drawn, seed, next(steps))
     predictions = tuple(_predicted(seen, rows[id(seen)]) for seen in what)
     return BlindPrediction(display.name, how, predictions, stamp(display, seed), "")
 

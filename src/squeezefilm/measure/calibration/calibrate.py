@@ -45,8 +45,13 @@ from squeezefilm.measure.calibration.plate_fit import (
     fitted_plate,
 )
 from squeezefilm.measure.calibration.priors import calibration_parameters, with_calibrated
-from squeezefilm.measure.calibration.solved_answers import FRICTION, MODE_FREQUENCY
-from squeezefilm.measure.calibration.steps import DRAW_TAKES, PLATE_TAKES, Steps
+from squeezefilm.measure.calibration.solved_answers import (
+    DRAW_TAKES,
+    FRICTION,
+    MODE_FREQUENCY,
+    PLATE_TAKES,
+    in_parts,
+)
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.touch import touch
@@ -115,17 +120,17 @@ def calibrate(
         effort.joint_draws * _TOUCH_TAKES,
         effort.joint_draws * DRAW_TAKES,
     )
-    steps = Steps(progress or (lambda _: None), seconds)
-    tell = steps.next()
+    steps = in_parts(progress, seconds)
+    tell = next(steps)
     if of_plate:
         plate = fitted_plate(display, chosen, of_plate, seed=seed, size=size, progress=tell)
     calibrated = display if plate is None else with_calibrated(display, plate.middle)
-    tell = steps.next()
+    tell = next(steps)
     tell("friction as described", 0.0)
     before = friction_before(display, seed)
-    finger = _fitted_finger(calibrated, likelihood, effort, seed, steps.next())
-    made = _joint(finger, plate, effort.joint_draws, seed, steps.next())
-    return _calibration(display, calibrated, every, plate, finger, before, made, seed, steps.next())
+    finger = _fitted_finger(calibrated, likelihood, effort, seed, next(steps))
+    made = _joint(finger, plate, effort.joint_draws, seed, next(steps))
+    return _calibration(display, calibrated, every, plate, finger, before, made, seed, next(steps))
 
 
 def friction_before(display: Display, seed: int) -> FrictionInterval | None:

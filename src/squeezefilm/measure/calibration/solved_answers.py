@@ -6,9 +6,10 @@ depends on, so that a calibration that was stopped goes on, and a second one cos
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept, in_passing
+from squeezefilm.core.progress import SayProgress, ShareProgress, said_with_time_left, within
 from squeezefilm.core.results import to_json
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.plate.electronics import ring_admittance
@@ -46,6 +48,17 @@ PLATE_ANSWERS = (
 _BAND, _READ_POINTS, _READ_NOISE = 8.0, 161, 0.01
 
 _KEPT: Kept[si.FloatArray] = Kept("plate_answers", si.FloatArray)
+
+PLATE_TAKES, DRAW_TAKES = 1.5, 0.008
+"""Seconds of one solved plate, and of one drawn finger."""
+
+
+def in_parts(say: SayProgress | None, seconds: Sequence[float]) -> Iterator[ShareProgress]:
+    """The listeners to parts of some work, each expected to take so long (s), which tell the time
+    that is left of all."""
+    tell = said_with_time_left(say or (lambda _: None))
+    ends = (np.cumsum([0.0, *seconds]) / (sum(seconds) or 1.0)).tolist()
+    return (within(tell, *pair) for pair in itertools.pairwise(ends))
 
 
 class Asked(NamedTuple):
