@@ -12,8 +12,8 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError
 from squeezefilm.measure.fits.ceramic.constants import compliances
 from squeezefilm.measure.fits.ceramic.disc import DiscConstants
+from squeezefilm.measure.fits.complex_fit import SweepPeaks, sweep_peaks
 from squeezefilm.measure.fits.estimate import Estimate
-from squeezefilm.measure.fits.sweep_reading import SweepPeaks, sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.physics.plate.ring.ceramic_disc import disc_admittance, weak_constants
 

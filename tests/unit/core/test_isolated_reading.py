@@ -23,7 +23,7 @@ from tests.pictures import picture_bytes
 from squeezefilm.core import isolated_reading
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.isolated_reading import IsolatedReader, Read, _received, _serve
-from squeezefilm.measure.recordings.files.matlab import read_matlab
+from squeezefilm.measure.recordings.files.scipy_files import read_matlab
 from squeezefilm.measure.recordings.read import check_folder
 from squeezefilm.physics.texture_files.image_file import picture_from
 

@@ -17,8 +17,8 @@ from squeezefilm.measure.calibration.calibration import (
     Calibration,
     FrictionInterval,
     Joint,
+    compared,
 )
-from squeezefilm.measure.calibration.compared import compared
 from squeezefilm.measure.calibration.friction_likelihood import FrictionLikelihood, Touching
 from squeezefilm.measure.calibration.friction_posterior import (
     DRAWS,

@@ -9,7 +9,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import ReadBy, reads_text
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.measure.fits.ceramic.bar import bar_constants
+from squeezefilm.measure.fits.ceramic.constants import bar_constants
 from squeezefilm.measure.fits.ceramic.disc import disc_constants
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.estimate import Adequacy, Observing

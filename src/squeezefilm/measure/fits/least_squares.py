@@ -17,8 +17,7 @@ from scipy import optimize
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Estimate, propagated
-from squeezefilm.measure.fits.misfit import correlation_factor
+from squeezefilm.measure.fits.estimate import Estimate, correlation_factor, propagated
 
 Columns = Callable[[si.FloatArray], tuple[si.Array, si.Array]]
 """Function from bending numbers (p,) to columns (points, m) and derivatives (p, points, m)."""

@@ -13,6 +13,7 @@ from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import Result, to_json, write_whole
 from squeezefilm.measure.recordings.assembled import assembled
+from squeezefilm.measure.recordings.circuits_read import fixture_description, without_fixture
 from squeezefilm.measure.recordings.described import Described
 from squeezefilm.measure.recordings.description import (
     KINDS,
@@ -23,14 +24,12 @@ from squeezefilm.measure.recordings.description import (
 )
 from squeezefilm.measure.recordings.doubts import doubts_of
 from squeezefilm.measure.recordings.files.analysers import is_4294a, read_4294a
-from squeezefilm.measure.recordings.files.matlab import read_matlab
 from squeezefilm.measure.recordings.files.raw_table import RawTable
-from squeezefilm.measure.recordings.files.sound import read_wav
+from squeezefilm.measure.recordings.files.scipy_files import read_matlab, read_wav
 from squeezefilm.measure.recordings.files.text_table import read_text_table
 from squeezefilm.measure.recordings.files.touchstone import SUFFIX as TOUCHSTONE
 from squeezefilm.measure.recordings.files.touchstone import read_touchstone
 from squeezefilm.measure.recordings.files.universal import SUFFIXES, read_universal
-from squeezefilm.measure.recordings.fixture import fixture_description, without_fixture
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, Recording, VoltageSweeps
 from squeezefilm.measure.recordings.quantities_read import Reading
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.measure.calibration.compared import UNITS, compared, said_of
+from squeezefilm.measure.calibration.calibration import UNITS, compared, said_of
 from squeezefilm.measure.calibration.discrepancy import BELIEVED
 from squeezefilm.measure.calibration.solved_answers import Asked
 from squeezefilm.measure.fits.estimate import Observation

@@ -9,8 +9,12 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import VACUUM_PERMITTIVITY
-from squeezefilm.measure.fits.ceramic.bar import BarConstants, bar_constants
-from squeezefilm.measure.fits.ceramic.constants import CeramicConstants, resonance_peaks
+from squeezefilm.measure.fits.ceramic.constants import (
+    BarConstants,
+    CeramicConstants,
+    bar_constants,
+    resonance_peaks,
+)
 from squeezefilm.measure.recordings.kinds import CeramicBar, ImpedanceSweep
 
 BAR = CeramicBar(12e-3, 3e-3, 1e-3, 7850.0)

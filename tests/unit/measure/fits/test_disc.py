@@ -28,8 +28,8 @@ from squeezefilm.measure.fits.ceramic.disc import (
     disc_constants,
     disc_curve,
 )
+from squeezefilm.measure.fits.complex_fit import SweepPeaks, sweep_peaks
 from squeezefilm.measure.fits.estimate import Adequacy
-from squeezefilm.measure.fits.sweep_reading import SweepPeaks, sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc, disc_admittance, weak_constants
 

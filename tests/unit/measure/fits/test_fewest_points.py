@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
+from squeezefilm.measure.fits.complex_fit import require_passive
 from squeezefilm.measure.fits.friction.strokes import sliding_strokes
-from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
 from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan
 from squeezefilm.measure.fits.vibration.line_scan import fit_line_scan

@@ -13,7 +13,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.circuit.branches import Layout, circuit_curve, relative_motion
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance, parallel_resonance
-from squeezefilm.measure.fits.sweep_reading import sweep_peaks
+from squeezefilm.measure.fits.complex_fit import sweep_peaks
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 
 FREQUENCY = np.linspace(25.5e3, 32.5e3, 401)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor, structure_of
+from squeezefilm.measure.fits.estimate import adequacy_of, correlation_factor, structure_of
 
 X = np.linspace(0, 6, 200)
 

@@ -12,7 +12,7 @@ from scipy.io import savemat
 
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.measure.recordings import kinds
-from squeezefilm.measure.recordings.files.matlab import read_matlab
+from squeezefilm.measure.recordings.files.scipy_files import read_matlab
 from squeezefilm.measure.recordings.read import check_recording
 
 F = np.linspace(29e3, 31e3, 41)

@@ -21,9 +21,8 @@ from squeezefilm.measure.fits.ceramic.constants import (
     permittivity_read,
     resonance_peaks,
 )
-from squeezefilm.measure.fits.complex_fit import Prior, fit_complex
+from squeezefilm.measure.fits.complex_fit import Prior, fit_complex, require_passive
 from squeezefilm.measure.fits.estimate import Estimate
-from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.physics.plate.ring.ceramic_disc import (
     CeramicDisc,

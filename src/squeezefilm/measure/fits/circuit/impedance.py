@@ -18,9 +18,8 @@ from squeezefilm.measure.fits.circuit.choice import (
     chosen_circuit,
     sweep_motion,
 )
-from squeezefilm.measure.fits.complex_fit import ComplexFit, sweep_adequacy
+from squeezefilm.measure.fits.complex_fit import ComplexFit, require_passive, sweep_adequacy
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate, FitResult, Observation
-from squeezefilm.measure.fits.sweep_reading import require_passive
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 

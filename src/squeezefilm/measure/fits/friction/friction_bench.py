@@ -19,12 +19,12 @@ from squeezefilm.measure.fits.estimate import (
     Estimate,
     FitResult,
     Observation,
+    adequacy_of,
     guarded_fit,
     interval_around,
 )
 from squeezefilm.measure.fits.friction.strokes import Strokes, sliding_strokes
 from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
-from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.recordings.kinds import FrictionBench
 
 _DRIFT = 2  # degree in time; a finger sweats or dries

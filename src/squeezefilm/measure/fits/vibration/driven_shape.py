@@ -11,9 +11,8 @@ from scipy.interpolate import RectBivariateSpline
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, adequacy_of
 from squeezefilm.measure.fits.least_squares import fit_separable
-from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.physics.plate.solid.working import SolidMode
 
 REST = "what else the drive moves"

@@ -14,11 +14,11 @@ from squeezefilm.measure.fits.estimate import (
     Estimate,
     FitResult,
     Observation,
+    adequacy_of,
     guarded_fit,
     inverse_of,
 )
 from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
-from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.recordings.kinds import FrequencyResponse
 
 

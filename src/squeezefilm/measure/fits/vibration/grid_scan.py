@@ -15,10 +15,10 @@ from squeezefilm.measure.fits.estimate import (
     Estimate,
     FitResult,
     Observation,
+    adequacy_of,
     guarded_fit,
 )
 from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
-from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.vibration.driven_shape import REST, DrivenShape
 from squeezefilm.measure.recordings.kinds import GridScan
 from squeezefilm.physics.plate.solid.modes import PlateModes

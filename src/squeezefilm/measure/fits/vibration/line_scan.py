@@ -14,10 +14,10 @@ from squeezefilm.measure.fits.estimate import (
     Estimate,
     FitResult,
     Observation,
+    adequacy_of,
     guarded_fit,
 )
 from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
-from squeezefilm.measure.fits.misfit import adequacy_of
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
 from squeezefilm.measure.fits.vibration.line_points import LinePoints, LineWaves
 from squeezefilm.measure.recordings.kinds import LineScan

@@ -14,6 +14,8 @@ from squeezefilm.measure.fits.estimate import (
     Estimate,
     FitResult,
     Observation,
+    adequacy_of,
+    correlation_factor,
     guarded_fit,
     inverse_of,
 )
@@ -23,7 +25,6 @@ from squeezefilm.measure.fits.least_squares import (
     fit_nonlinear,
     fit_separable,
 )
-from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor
 from squeezefilm.measure.recordings.kinds import RingDown
 
 _FEWEST_POINTS = 40

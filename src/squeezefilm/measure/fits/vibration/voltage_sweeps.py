@@ -16,11 +16,12 @@ from squeezefilm.measure.fits.estimate import (
     Estimate,
     FitResult,
     Observation,
+    adequacy_of,
+    correlation_factor,
     guarded_fit,
     inverse_of,
 )
 from squeezefilm.measure.fits.least_squares import NonlinearFit, fit_nonlinear
-from squeezefilm.measure.fits.misfit import adequacy_of, correlation_factor
 from squeezefilm.measure.fits.vibration.frequency_response import ModalCircle, modal_circle
 from squeezefilm.measure.recordings.kinds import VoltageSweeps
 from squeezefilm.physics.plate.free_plate import FreePlate
