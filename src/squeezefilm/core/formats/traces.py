@@ -14,7 +14,7 @@ import io
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
@@ -107,19 +107,28 @@ def table_from_csv(path: str | Path) -> Table:
             metadata = {"comment": metadata}
     if len(lines) <= start:
         raise ConfigError("has no header line", file=path)
-    rows = csv.reader(lines[start:])
-    try:
-        names = [name.strip() for name in next(rows)]
-        if len(set(names)) < len(names):
-            raise ConfigError("names a column twice", file=path, line=start + 1)
-        values = [_numbers(row, names, path, start + number) for number, row in enumerate(rows, 2)]
-    except csv.Error as error:
-        raise ConfigError(f"is no CSV: {error}", file=path) from error
+    rows = csv_rows(lines[start:], path)
+    names = [name.strip() for name in next(rows)[1]]
+    if len(set(names)) < len(names):
+        raise ConfigError("names a column twice", file=path, line=start + 1)
+    values = [_numbers(row, names, path, start + number) for number, row in rows]
     array = np.array(values, dtype=float).reshape(len(values), len(names))
     try:
         return Table({name: array[:, k].copy() for k, name in enumerate(names)}, metadata)
     except InputError as error:
         raise ConfigError(str(error), file=path, line=start + 1) from error
+
+
+def csv_rows(
+    lines: Sequence[str], path: str | Path, delimiter: str = ","
+) -> Iterator[tuple[int, list[str]]]:
+    """The cells of each row with the number of its last line. Raises `ConfigError` for no CSV."""
+    reader = csv.reader(lines, delimiter=delimiter)
+    try:
+        for row in reader:
+            yield reader.line_num, row
+    except csv.Error as error:
+        raise ConfigError(f"is no CSV: {error}", file=path, line=reader.line_num) from error
 
 
 def _numbers(row: list[str], names: list[str], path: str | Path, line: int) -> list[float]:

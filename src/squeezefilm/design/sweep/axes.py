@@ -8,7 +8,6 @@ surface=adhesive, bare                   words, where words are wanted
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -19,7 +18,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.core.formats.traces import text_of_file
+from squeezefilm.core.formats.traces import csv_rows, text_of_file
 from squeezefilm.core.hard_limits import SWEEP_STEPS, require_within
 from squeezefilm.design.sweep.verbs import OPTIONS, VerbOption
 from squeezefilm.physics.display import Display
@@ -149,9 +148,8 @@ def _rows(path: str | Path) -> Iterator[tuple[int, list[str]]]:
     # are none."""
     every = enumerate(text_of_file(path).lstrip("\ufeff").splitlines(), 1)
     lines = [(at, text) for at, text in every if text.strip() and not text.startswith("#")]
-    reader = csv.reader(text for _, text in lines)
-    for row in reader:
-        yield lines[reader.line_num - 1][0], row
+    for number, row in csv_rows([text for _, text in lines], path):
+        yield lines[number - 1][0], row
 
 
 def _head(cell: str) -> tuple[str, str]:

@@ -107,10 +107,13 @@ def detected_share(
     """Share of the mean friction (1) that has d′ = 1 as the size of a wave of friction, shape (n,).
 
     `wave` is of size 1, over each passage of the periods (m, shape (n,)), shape (n, samples).
+    Infinite of a period of which nothing is felt.
     """
     small = 1e-3
+    evidence = grating_evidence(observer, period, wave, lambda share: 1 + small * share, rubbed)
     # d′ is in proportion to the size.
-    return small / grating_evidence(observer, period, wave, lambda share: 1 + small * share, rubbed)
+    with np.errstate(divide="ignore"):
+        return np.asarray(small / evidence)
 
 
 def finest_felt(

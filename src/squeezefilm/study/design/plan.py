@@ -238,7 +238,8 @@ def doubts_of(design: StudyDesign, observer: Observer, reach: bool = False) -> t
 def predicted_depth(design: StudyDesign, observer: Observer) -> si.Dimensionless | None:
     """Change of relative friction (1) of a square grating with the period of a design's first
     textured stimulus that the observer tells from a flat surface in 75 % of two intervals, by a
-    display without limits; None without such a stimulus. Source: `physics.perception.felt`."""
+    display without limits; infinite where no depth is felt; None without such a stimulus.
+    Source: `physics.perception.felt`."""
     textured = [stimulus for stimulus in design.stimuli if stimulus.name != design.reference]
     if not textured or math.isnan(textured[0].period):
         return None
@@ -265,6 +266,8 @@ def _of_range(design: StudyDesign, observer: Observer) -> list[str]:
     if predicted is None:
         return []
     least = "from the reference" if design.reference else "between two surfaces"
+    if math.isinf(predicted):
+        return [f"no depth of the first stimulus' period is felt ('{observer.name}'); take another"]
     threshold = f"the predicted threshold of {si.percent(predicted, 1)} ('{observer.name}')"
     if min(ends) > predicted:
         return [

@@ -8,7 +8,6 @@ unit) are refused by their line.
 
 from __future__ import annotations
 
-import csv
 import itertools
 import math
 import re
@@ -17,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.core.formats.traces import text_of_file
+from squeezefilm.core.formats.traces import csv_rows, text_of_file
 from squeezefilm.core.hard_limits import FOREIGN_TRIALS, TABLE_BYTES, require_within
 from squeezefilm.core.regular_file import read_json
 from squeezefilm.study.design.study_design import StudyDesign
@@ -178,11 +177,11 @@ def _csv(path: str | Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
     """The names of columns, and each row's line and cells."""
     lines = text_of_file(path).lstrip("\ufeff").splitlines()
     head = lines[0] if lines else ""
-    reader = csv.reader(lines, delimiter=max(",;\t", key=head.count))
-    names = [name.strip() for name in next(reader, [])]
+    every = csv_rows(lines, path, max(",;\t", key=head.count))
+    names = [name.strip() for name in next(every, (0, []))[1]]
 
     def rows() -> Iterator[tuple[int, list[str]]]:
-        for number, cells in enumerate(reader, 2):
+        for number, cells in every:
             if not any(cell.strip() for cell in cells):
                 continue
             if len(cells) < len(names) or any(cell.strip() for cell in cells[len(names) :]):

@@ -48,6 +48,7 @@ def test_every_float_comes_back(values: list[float]) -> None:
         ("time_s,time_s\n0,1\n", r"line 1: names a column twice"),
         ("# {}\ntime_s,x m\n0,1\n", r"line 2: 'x m' is no name"),
         ("time_s\ninf\n", "infinity"),
+        ("time_s\n" + "1" * 140_000, "line 2: is no CSV: field larger"),
     ],
 )
 def test_what_is_broken_is_located(text: str, says: str, tmp_path: Path) -> None:

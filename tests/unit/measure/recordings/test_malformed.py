@@ -257,6 +257,11 @@ def test_missing_points_are_doubted(tmp_path: Path) -> None:
     assert any("points are missing between 29.65 kHz" in doubt for doubt in found.doubts)
 
 
+def test_a_quoted_text_longer_than_any_cell_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError):
+        check_recording(written(tmp_path, line(9, '{"a":' * 40_000)))
+
+
 @given(seed=st.integers(0, 10**9), of_data=st.booleans())
 def test_accidents_in_data_or_description_are_refused_or_read(
     seed: int, of_data: bool, tmp_path_factory: pytest.TempPathFactory

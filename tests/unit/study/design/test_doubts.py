@@ -64,3 +64,11 @@ def test_a_range_beside_the_depth_that_is_told_from_flat_is_said(name: str) -> N
         deep = dataclasses.replace(design, stimuli=(design.stimuli[0], *design.stimuli[-2:]))
         (said,) = doubts_of(deep, OBSERVER)
         assert said.startswith("the least difference from the reference, 6.0 %, is above")
+
+
+def test_a_period_of_which_no_depth_is_felt_is_said() -> None:
+    design = load_design("friction-detection")
+    flat, *others = design.stimuli
+    fine = [dataclasses.replace(stimulus, spatial_period=1e-5) for stimulus in others]
+    (said,) = doubts_of(dataclasses.replace(design, stimuli=(flat, *fine)), OBSERVER)
+    assert said.startswith("no depth of the first stimulus' period is felt")

@@ -56,7 +56,11 @@ class Notation:
         """The cells of a line that hold numbers, without quotation marks; all of them where it has
         another count of cells than the table. Empty ones may end it."""
         if '"' in line and self.delimiter is not None:
-            parts = next(csv.reader([line], delimiter=self.delimiter, skipinitialspace=True), [])
+            reader = csv.reader([line], delimiter=self.delimiter, skipinitialspace=True)
+            try:
+                parts = next(reader, [])
+            except csv.Error:  # A text longer than any cell is no row.
+                parts = [line]
         else:
             parts = line.split(self.delimiter)
         cells = [_unquoted(cell) for cell in parts]

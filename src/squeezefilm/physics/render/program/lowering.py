@@ -60,7 +60,8 @@ class Program:
     def depends_on(self) -> frozenset[str]:
         """Names of what its amplitude may depend on, of "x", "y", "speed", "direction" and "time".
 
-        Read off the instructions: what is not named has no influence, what is named may have none.
+        Read off the instructions: what is not named has no influence but on the
+        last digit, what is named may have none.
         """
         return self.wanted_depends_on | ({"speed"} if self.inverse_speeds.size else set())
 
