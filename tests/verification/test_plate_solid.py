@@ -26,7 +26,6 @@ from squeezefilm.physics.plate.layout import (
 )
 from squeezefilm.physics.plate.solid.layers import COARSE
 from squeezefilm.physics.plate.solid.mesh import plate_model
-from squeezefilm.physics.plate.solid.modes import tracked
 from squeezefilm.physics.plate.solid.reduced import (
     class_drive,
     harmonic_solution,
@@ -315,21 +314,17 @@ def test_foam_along_the_rim_damps_and_stiffens_a_glass_plate() -> None:
     held = solve_modes(dataclasses.replace(plate, supports=rim), **options)  # type: ignore[arg-type]
     assert "supports" in held.materials
     assert np.all(held.quality_factors < free.quality_factors)
-    matches = tracked(free, held)
-    assert all(likeness > 0.9 for _, likeness in matches)
-    assert all(held.frequencies[j] > free.frequencies[i] for i, (j, _) in enumerate(matches))
+    assert held.labels == free.labels
+    assert np.all(held.frequencies > free.frequencies)
 
 
 @pytest.mark.slow
-def test_modes_are_tracked_through_a_change_of_thickness() -> None:
+def test_a_thicker_plate_is_higher_by_what_was_measured_of_meshes() -> None:
     plate = monomorph()
     thicker = dataclasses.replace(plate, thickness=2.05e-3)
     before = solve_modes(plate, near=33.5e3, count=3, driven_only=True)
     after = solve_modes(thicker, near=33.8e3, count=4, driven_only=True)
-    at = before.index((8, 0))
-    match, likeness = tracked(before, after)[at]
-    assert after.labels[match] == (8, 0)
-    assert likeness > 0.98
+    at, match = before.index((8, 0)), after.index((8, 0))
     # PLATES.md: +1.6 % for +0.05 mm.
     assert after.frequencies[match] / before.frequencies[at] - 1 == pytest.approx(0.016, abs=0.003)
 

@@ -7,7 +7,6 @@ import struct
 import zlib
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -39,7 +38,6 @@ from squeezefilm.physics.plate.ring.section import (
     full_drive,
 )
 from squeezefilm.physics.plate.solid.guess import estimated_frequency
-from squeezefilm.physics.plate.solid.modes import tracked
 from squeezefilm.physics.render.texture.gates import Attack
 from squeezefilm.physics.render.texture.pattern import Greatest, Least, Times
 from squeezefilm.physics.texture_files.image_file import ImageFile, picture_from
@@ -63,11 +61,6 @@ def plate() -> RectangularPlate:
     return actuator
 
 
-def shapes(columns: int, rows: int) -> Any:
-    """Modes of so many places."""
-    return SimpleNamespace(shapes=np.ones((1, columns, rows, 3)), count=1)
-
-
 def harmonics(shape: tuple[int, ...], value: float = 1.0) -> Any:
     return lambda x: np.full((*shape, len(x)), value)
 
@@ -78,7 +71,6 @@ def harmonics(shape: tuple[int, ...], value: float = 1.0) -> Any:
         (lambda: mean_pressure_profile(np.zeros((2, 2)), GAP), "one-dimensional"),
         (lambda: solve_films(np.ones(2), np.full(3, 0.1)), "broadcast"),
         *((lambda n=n: require_samples(n), "power of two from 8") for n in (4, 12, 100, 131_072)),
-        (lambda: tracked(shapes(2, 3), shapes(3, 3)), "different grids"),
         (lambda: GapProfile(harmonics(()), "one row"), "one row .* shape"),
         (lambda: GapProfile(harmonics((1, 1)), "a block"), "a block .* shape"),
         (lambda: GapProfile(harmonics((1,), np.inf), "an endless gap"), "not finite"),

@@ -86,9 +86,6 @@ def exposure_guidance(
     return None
 
 
-REFERENCE_PRESSURE = 20e-6
-"""0 dB of sound pressure level in air, r.m.s., in Pa (ISO 1683)."""
-
 DISTANCES: tuple[si.Metre, ...] = (0.3, 0.5, 1.0)
 """Distances of levels unless asked otherwise: a bent head, a seated user, a bystander."""
 
@@ -248,7 +245,7 @@ def sound_pressure(surface: RadiatingSurface, points: si.MetreArray) -> si.Compl
 
 
 def pressure_level(pressure: si.ComplexArray) -> si.FloatArray:
-    """Sound pressure level (dB re 20 µPa) of zero-to-peak pressures (Pa)."""
+    """Sound pressure level (dB re 20 µPa r.m.s., ISO 1683) of zero-to-peak pressures (Pa)."""
     level: si.FloatArray = 20 * np.log10(np.maximum(np.abs(pressure), 1e-30) / math.sqrt(2) / 20e-6)
     return level
 

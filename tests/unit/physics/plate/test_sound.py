@@ -10,7 +10,6 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.plate.sound import (
     GUIDANCE,
-    REFERENCE_PRESSURE,
     RadiatingSurface,
     exposure_guidance,
     loudest,
@@ -168,7 +167,7 @@ def test_steps_may_be_a_quarter_of_the_wave_and_no_more() -> None:
 
 
 def test_levels_are_of_the_effective_pressure_and_silence_has_one() -> None:
-    level = pressure_level(np.array([math.sqrt(2) * REFERENCE_PRESSURE, 0.0]))
+    level = pressure_level(np.array([math.sqrt(2) * 20e-6, 0.0]))
     assert level[0] == pytest.approx(0.0, abs=1e-9)
     assert np.isfinite(level[1])
     assert level[1] < -400

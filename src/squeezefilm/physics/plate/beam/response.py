@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
-from typing import ClassVar
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -14,7 +13,6 @@ from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.core.materials import VACUUM_PERMITTIVITY
 from squeezefilm.physics.plate.beam.modes import BeamMode, BeamTheory, free_beam_mode
 from squeezefilm.physics.plate.beam.pieces import beam_pieces, pieced_beam_mode, stressed_span
-from squeezefilm.physics.plate.elements.again import SolvedAgain
 from squeezefilm.physics.plate.laminate import (
     CrossSection,
     Laminate,
@@ -45,7 +43,7 @@ cancels and does not move the mode."""
 
 
 @dataclass(frozen=True, eq=False)
-class BeamResponse(SolvedAgain):
+class BeamResponse:
     """A plate driven as a beam: its working mode, and how strongly the ceramics drive it.
 
     `section` is that of the plate where it carries ceramic.
@@ -59,8 +57,6 @@ class BeamResponse(SolvedAgain):
     cross_section: CrossSection
     mode: BeamMode
     force_per_width: float
-    _again: Callable[[], BeamResponse] | None = field(repr=False, default=None)
-    _bulk: ClassVar[tuple[str, ...]] = ("mode",)
 
     @property
     def model(self) -> str:
@@ -162,7 +158,6 @@ def _driven(
         cross_section,
         working,
         float(np.sum(forces)),
-        functools.partial(beam_response, plate, theory, cross_section),
     )
 
 

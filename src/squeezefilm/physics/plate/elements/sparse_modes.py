@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError
-
-Ordering = Literal["COLAMD", "MMD_AT_PLUS_A"]
-"""Orders of columns in SuperLU: the second for symmetric patterns."""
 
 Entries = tuple[si.IntArray, si.IntArray, si.FloatArray]
 """Rows, columns and values of entries of a matrix."""
@@ -32,18 +27,18 @@ def gathered(parts: list[Entries], size: int) -> sparse.csc_matrix:
 
 
 def shifted_inverse(
-    matrix: sparse.csc_matrix, mass: sparse.csc_matrix, shift: float, ordering: Ordering = "COLAMD"
+    matrix: sparse.csc_matrix, mass: sparse.csc_matrix, shift: float
 ) -> LinearOperator:
     """(K − `shift` M)⁻¹; unknowns of the matrix beyond those of the mass are potentials, which
-    have none and carry no load. `ordering` is SuperLU's of the columns."""
+    have none and carry no load."""
     n, size = mass.shape[0], matrix.shape[0]
     inertia = mass.tocoo()
     padded_mass = sparse.coo_matrix((inertia.data, (inertia.row, inertia.col)), shape=(size, size))
     factors = splu(
         (matrix - shift * padded_mass).tocsc(),
-        permc_spec=ordering,
+        permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
-        options={"SymmetricMode": ordering != "COLAMD"},
+        options={"SymmetricMode": True},
     )
     padded = np.zeros(size)
 
@@ -61,7 +56,6 @@ def nearest_modes(
     shift: float,
     count: int,
     name: str,
-    ordering: Ordering = "COLAMD",
 ) -> tuple[si.FloatArray, si.FloatArray]:
     """The `count` ω² nearest to a shift, rising, and their vectors of unit modal mass.
 
@@ -73,7 +67,7 @@ def nearest_modes(
             k=count,
             M=mass,
             sigma=shift,
-            OPinv=shifted_inverse(matrix, mass, shift, ordering),
+            OPinv=shifted_inverse(matrix, mass, shift),
             v0=np.random.default_rng(1).standard_normal(mass.shape[0]),
             tol=1e-11,
         )

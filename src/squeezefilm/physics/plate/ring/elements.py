@@ -75,7 +75,7 @@ class RingMesh:
     layer: np.ndarray
 
 
-def ring_mesh(section: AnnularSection, *, graded: bool = True) -> RingMesh:
+def ring_mesh(section: AnnularSection) -> RingMesh:
     """Edges on every layer's edges, graded towards the corners where layers meet the surface.
 
     Elements are no longer than 3 thicknesses or 1/6 of the radial extent, whichever is more.
@@ -92,8 +92,8 @@ def ring_mesh(section: AnnularSection, *, graded: bool = True) -> RingMesh:
     # Only where two layers meet is there a singular corner worth grading for; the free corners of
     # one homogeneous layer have smooth enough fields.
     single = len(layers) == 1
-    singular_r = [] if single or not graded else [x for x in r_breaks if x > 0]
-    singular_z = [] if single or not graded else z_breaks[1:-1]
+    singular_r = [] if single else [x for x in r_breaks if x > 0]
+    singular_z = [] if single else z_breaks[1:-1]
     shortest = 0.02 * section.thickness
     r_edges = graded_edges(r_breaks, longest, singular_r, shortest=shortest)
     z_edges = graded_edges(z_breaks, np.inf, singular_z, shortest=shortest)

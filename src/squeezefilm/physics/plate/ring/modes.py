@@ -258,7 +258,6 @@ def _eigenpairs(
         _shift(system, near),
         count,
         f"the modes of harmonic {system.harmonic} near {near:.6g} Hz",
-        "MMD_AT_PLUS_A",
     )
 
 

@@ -176,21 +176,6 @@ def label_of(surface: si.FloatArray, x: si.FloatArray, y: si.FloatArray) -> Labe
     return line_counts(w, x, y)
 
 
-def tracked(before: PlateModes, after: PlateModes) -> list[tuple[int, float]]:
-    """Match for each mode of `before`: the mode of `after` that moves most alike, and how alike.
-
-    The modal assurance criterion of the surface shapes, over relative coordinates: 1 for the same
-    shape, 0 for orthogonal ones. For plates whose parameters differ a little.
-    """
-    if before.shapes.shape[1:] != after.shapes.shape[1:]:
-        raise InputError("the shapes stand on different grids; solve both with the same points")
-    a = before.shapes.reshape(before.count, -1)
-    b = after.shapes.reshape(after.count, -1)
-    norm = np.sum(a**2, axis=1)[:, None] * np.sum(b**2, axis=1)[None, :]
-    likeness = (a @ b.T) ** 2 / norm
-    return [(int(k), float(row[k])) for row in likeness for k in [int(np.argmax(row))]]
-
-
 @si.checked_numbers
 def check_band(band: tuple[si.Hertz, si.Hertz]) -> None:
     """Refuse a band that is none."""

@@ -14,7 +14,6 @@ from squeezefilm.physics.plate.ring.elements import (
     graded_edges,
     harmonic_system,
     node_coordinates,
-    ring_mesh,
 )
 from squeezefilm.physics.plate.ring.section import AnnularSection, RingLayer
 
@@ -24,7 +23,7 @@ SOLID = isotropic_solid(ElasticMaterial("glass", 70e9, 0.22, 2500.0))
 @pytest.fixture(scope="module")
 def system() -> HarmonicSystem:
     section = AnnularSection((RingLayer(0.0, 10e-3, 0.0, 1e-3, SOLID),))
-    return harmonic_system(section, 2, 2, ring_mesh(section, graded=False))
+    return harmonic_system(section, 2, 2)
 
 
 def test_every_row_is_the_displacement_of_one_node(system: HarmonicSystem) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.plate.solid.modes import PlateModes, tracked
+from squeezefilm.physics.plate.solid.modes import PlateModes
 
 
 def found(label: tuple[int, int], wanted: float | None = None) -> int:
@@ -41,16 +41,3 @@ def test_the_working_mode_is_the_one_nearest_to_where_the_plate_works() -> None:
 def test_lines_that_no_mode_has_are_told_with_those_there_are() -> None:
     with pytest.raises(InputError, match=r"no mode \(6, 0\) is among those solved \(\(7, 0\), \(8"):
         found((6, 0))
-
-
-def test_a_mode_is_followed_by_its_shape_whatever_its_place_and_sign() -> None:
-    shapes = np.random.default_rng(4).standard_normal((3, 4, 5, 3))
-    before: Any = SimpleNamespace(shapes=shapes, count=3)
-    after: Any = SimpleNamespace(shapes=np.stack([-2 * shapes[2], shapes[0], shapes[1]]), count=3)
-    pairs = tracked(before, after)
-    assert [place for place, _ in pairs] == [1, 2, 0]
-    assert [alike for _, alike in pairs] == pytest.approx([1.0, 1.0, 1.0])
-    mixed: Any = SimpleNamespace(shapes=(shapes[:1] + 0.5 * shapes[1:2]), count=1)
-    a, b = shapes[0].ravel(), mixed.shapes[0].ravel()
-    ((place, alike), *_) = tracked(before, mixed)
-    assert (place, alike) == (0, pytest.approx((a @ b) ** 2 / (a @ a) / (b @ b)))
