@@ -16,7 +16,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.core.progress import NO_HURRY, Pace
 from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
-from squeezefilm.physics.plate.elements.nodal_lines import zero_crossings
+from squeezefilm.physics.plate.elements.nodal_lines import within_nodes, zero_crossings
 from squeezefilm.physics.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.physics.plate.ring.body import (
     RingBody,
@@ -137,7 +137,7 @@ class WorkingMode:
         if self.solid is not None:
             return self.solid.amplitude_per_volt_at(wanted)
         if self.beam is not None:
-            return self.beam.amplitude_at(wanted, _beam_lobe(self.beam)[0])
+            return self.beam.amplitude_at(wanted, _beam_lobe(self.beam))
         return np.asarray(self.amplitude_per_volt_at(wanted))
 
 
@@ -178,7 +178,7 @@ def _working_mode(actuator: Actuator, theory: PlateTheory, pace: Pace) -> Workin
         return solid_working_mode(actuator, solid_mode(actuator, pace=pace))
     beam = beam_response(actuator, theory)
     shape, middle = beam.mode, beam.plate.width / 2
-    lobe = _beam_lobe(beam)[0], middle
+    lobe = _beam_lobe(beam), middle
     return WorkingMode(
         label=label_name(actuator.working_label),
         resonance_frequency=shape.frequency,
@@ -187,7 +187,7 @@ def _working_mode(actuator: Actuator, theory: PlateTheory, pace: Pace) -> Workin
         amplitude_per_volt=beam.amplitude_per_volt,
         model=beam.model,
         lobe=lobe if actuator.lines_across == "length" else lobe[::-1],
-        modal_mass=_beam_mass(beam),
+        modal_mass=shape.modal_mass_per_width * beam.plate.width,
         line=ModeLine(shape.position, shape.deflection),
         beam=beam,
     )
@@ -270,19 +270,12 @@ def _diameter(mode: AnnularMode) -> ModeLine:
     return ModeLine(position, deflection)
 
 
-def _beam_mass(beam: BeamResponse) -> si.Kilogram:
-    """The modal mass for the largest interior lobe of the beam, all across the width."""
-    return beam.mode.modal_mass_per_width * beam.plate.width / _beam_lobe(beam)[1] ** 2
-
-
-def _beam_lobe(beam: BeamResponse) -> tuple[si.Metre, float]:
-    """Place of the largest lobe between the outermost nodal lines, and how far it goes."""
+def _beam_lobe(beam: BeamResponse) -> si.Metre:
+    """Place of the largest lobe between the outermost nodal lines, where the shape is 1."""
     shape = beam.mode
-    x, nodes = shape.position, shape.nodal_positions
-    inside = (x >= nodes[0]) & (x <= nodes[-1])
-    size = np.abs(shape.deflection[inside])
-    at = int(np.argmax(size))
-    return float(x[inside][at]), float(size[at])
+    inside = within_nodes(shape.position, shape.nodal_positions)
+    at = np.argmax(np.abs(shape.deflection[inside]))
+    return float(shape.position[inside][at])
 
 
 def _beam_beside(plate: RectangularPlate) -> BeamResponse | None:

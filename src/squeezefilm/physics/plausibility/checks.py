@@ -21,6 +21,7 @@ from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.syntax import locate
 from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.core.kit.numbers import dotted, printable
 from squeezefilm.core.progress import about
 from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.physics.display import Display, load_display
@@ -75,7 +76,6 @@ class Bound:
 
 # Units that people do not think in, and what they do, with the scale.
 _READ_AS = {"W/kg": (1e-3, "W/g"), "V/m": (1e-6, "kV/mm")}
-_MARKS = {" um": " µm", "kg/m3": "kg/m³", "m2/N": "m²/N", "C/m2": "C/m²", "s2/m2": "s²/m²"}
 
 
 def shown(value: float, unit: si.Unit) -> str:
@@ -86,9 +86,7 @@ def shown(value: float, unit: si.Unit) -> str:
     text = si.format_quantity(value, unit, 3)
     if "e" in text.partition(" ")[0]:
         text = " ".join([_plain(value), *([unit.symbol] if unit.symbol != "1" else [])])
-    for ascii_text, mark in _MARKS.items():
-        text = text.replace(ascii_text, mark)
-    return text
+    return printable(text)
 
 
 def _plain(value: float) -> str:
@@ -247,7 +245,6 @@ def described_numbers(owner: Any, path: Path = ()) -> Iterator[tuple[str, Path, 
 
 def _said(display: Display, bound: Bound, value: Ratio) -> Implausible:
     path = value.path
-    key = ".".join(str(part + 1) if isinstance(part, int) else part for part in path)
     told = shown(value.value if value.told is None else value.told, bound.unit)
     own = bound.of.rpartition(".")[2] == path[-1]
     refused = not bound.is_possible(value.value)
@@ -259,7 +256,7 @@ def _said(display: Display, bound: Bound, value: Ratio) -> Implausible:
         said += f" Did you mean {meant}?"
     elif refused:
         said += " Mend what is wrong."
-    return Implausible(key, path, said, refused)
+    return Implausible(dotted(path), path, said, refused)
 
 
 def _meant(bound: Bound, value: float) -> str:
