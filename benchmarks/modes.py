@@ -20,7 +20,7 @@ from pathlib import Path
 
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
-from squeezefilm.physics.plate.solid.screening import screened_modes
+from squeezefilm.physics.plate.solid.resonances import screened_modes
 from squeezefilm.physics.plate.solid.solve import solve_modes
 
 BAND = 20e3, 60e3

@@ -2,7 +2,7 @@
 """The time that a plate's solve is expected to take against the processor time that it takes.
 
 Plates of metal and of glass, thick and thin, small and large, by one thread; by these
-`physics/plate/solid/size.py` is calibrated.
+`physics/plate/solid/forecast.py` is calibrated.
 """
 
 from __future__ import annotations
@@ -20,8 +20,7 @@ from pathlib import Path
 
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.solid.guess import estimated_frequency
-from squeezefilm.physics.plate.solid.size import solve_size
+from squeezefilm.physics.plate.solid.forecast import estimated_frequency, solve_size
 from squeezefilm.physics.plate.solid.working import solid_mode
 
 

@@ -67,7 +67,7 @@ MINIMUM = {
         "physics.film.validity.crest_squeeze_number",
         "physics.contact.asperities.exponential_pressure",
         "physics.contact.finger.fingerpad.skin_displacement_per_friction",
-        "physics.plate.beam.modes.euler_bernoulli_frequency",
+        "physics.plate.beam_modes.euler_bernoulli_frequency",
     )
 }
 

@@ -38,7 +38,7 @@ from squeezefilm.core.hard_limits import RENDER_STEPS, SOLID_MEMORY
 from squeezefilm.core.presets import path as preset_path
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.elements import slab_count
+from squeezefilm.physics.plate.elements import slabs
 
 SEED = 14
 CHILD = Path(__file__).with_name("mutants.py")
@@ -100,7 +100,7 @@ def test_mutated_plates_are_solved_or_refused(
     source = preset_path("biet2008-plate")
     # The limit on memory is for a larger computer; that it is kept is seen with a lower one.
     lower = dataclasses.replace(SOLID_MEMORY, most=GIGABYTE / 2)
-    monkeypatch.setattr(slab_count, "SOLID_MEMORY", lower)
+    monkeypatch.setattr(slabs, "SOLID_MEMORY", lower)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         predict(load_display(source))

@@ -199,7 +199,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "frequency": np.array([60e3, 70e3]),
     },
     "design.plate.ring_pair.crest_speed": {"travelling": 1e-6},
-    "physics.plate.solid.screening.screened_modes": {"band": (30e3, 60e3)},
+    "physics.plate.solid.resonances.screened_modes": {"band": (30e3, 60e3)},
     "physics.plate.parts.Sector": {"inner_radius": 1e-3, "outer_radius": 2e-3},
     "physics.plate.parts.Part": {
         "kind": "glue",
@@ -217,8 +217,8 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "physics.plate.ring.section.AnnularSection": {"layers": Later(lambda: disc_section().layers)},
     "physics.plate.ring.section.SectorDrive": {"sectors": ((0.0, 1.0, 1),)},
-    "physics.plate.beam.modes.BeamMode.deflection_at": {"x": WAYS},
-    "physics.plate.beam.modes.BeamMode.rotation_at": {"x": WAYS},
+    "physics.plate.beam_modes.BeamMode.deflection_at": {"x": WAYS},
+    "physics.plate.beam_modes.BeamMode.rotation_at": {"x": WAYS},
     "physics.plate.laminate.Laminate.moment_arm": {"layer": 0},
     "physics.plate.layout.RectangularPlate": {
         "width": 10e-3,
@@ -250,8 +250,8 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "physics.plate.solid.response.HarmonicResponse.largest": {"at": 0},
     "physics.plate.solid.resonances.label_name": {"label": (4, 0)},
     "physics.plate.solid.response.harmonic_response": {"frequencies": np.array([30e3, 31e3])},
-    "physics.plate.beam.response.BeamResponse.amplitude_at": {"position": 10e-3},
-    "physics.plate.beam.response.BeamResponse.transfer": {
+    "physics.plate.beam_response.BeamResponse.amplitude_at": {"position": 10e-3},
+    "physics.plate.beam_response.BeamResponse.transfer": {
         "frequency": np.array([30e3]),
         "position": WAYS,
     },
@@ -314,9 +314,9 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "physics.plate.sound.sound_pressure": {"points": np.array([[0.0, 0.0, 0.3]])},
     "physics.plate.sound.pressure_level": {"pressure": np.array([1.0 + 1j])},
     "physics.plate.solid.solve.solve_modes": {"count": 1, "near": 60e3},
-    "physics.plate.solid.size.solve_size": {"label": (4, 0), "frequency": 60e3},
-    "physics.plate.solid.size.band_seconds": {"highest": 60e3},
-    "physics.plate.ring.stator.stator_section": {"mean_diameter": 53.6e-3, "ring_thickness": 3e-3},
+    "physics.plate.solid.forecast.solve_size": {"label": (4, 0), "frequency": 60e3},
+    "physics.plate.solid.forecast.band_seconds": {"highest": 60e3},
+    "physics.plate.ring.body.stator_section": {"mean_diameter": 53.6e-3, "ring_thickness": 3e-3},
     "physics.chain.prediction.predict": {
         "theory": "timoshenko",
         "model": "paper2008",

@@ -45,17 +45,16 @@ from squeezefilm.physics.display import Display, Surface, load_display
 from squeezefilm.physics.film.gap import PaperGap
 from squeezefilm.physics.film.periodic.profile import GapProfile, flexural_profile
 from squeezefilm.physics.film.planar.gap import PlanarGap
-from squeezefilm.physics.plate.beam.modes import BeamMode
-from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
+from squeezefilm.physics.plate.beam_modes import BeamMode
+from squeezefilm.physics.plate.beam_response import BeamResponse, beam_response
 from squeezefilm.physics.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.physics.plate.electronics import AMPLIFIERS, AmplifierPart
 from squeezefilm.physics.plate.elements.box_model import Medium, isotropic_solid
-from squeezefilm.physics.plate.heat.states import HeatSource
-from squeezefilm.physics.plate.heat.thermal import Thermal
+from squeezefilm.physics.plate.heat_states import HeatSource
 from squeezefilm.physics.plate.laminate import Laminate, LaminateLayer, plate_laminate
 from squeezefilm.physics.plate.layout import Actuator, CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.physics.plate.loaded_mode import LoadedMode
-from squeezefilm.physics.plate.ring.body import RingBody
+from squeezefilm.physics.plate.ring.body import RingBody, StatorAssumptions, StatorFit, fit_stator
 from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 from squeezefilm.physics.plate.ring.modes import AnnularMode, bending_mode
 from squeezefilm.physics.plate.ring.response import RingResponse, ring_response
@@ -66,7 +65,6 @@ from squeezefilm.physics.plate.ring.section import (
     bonded_disc,
     full_drive,
 )
-from squeezefilm.physics.plate.ring.stator import StatorAssumptions, StatorFit, fit_stator
 from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.solid.response import (
     HarmonicResponse,
@@ -82,6 +80,7 @@ from squeezefilm.physics.plate.surface_shape import (
     TrackSurface,
     surface_shape,
 )
+from squeezefilm.physics.plate.thermal import Thermal
 from squeezefilm.physics.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.physics.render.motion.estimator import MotionEstimator, MotionModel
 from squeezefilm.physics.render.motion.finger_path import FingerPath, OverPath

@@ -67,17 +67,17 @@ NOT_CALLED = {
     physics.film.validity.FilmValidity physics.film.validity.ValidityCheck
     physics.texture_files.hjif.HjifExport physics.plate.ring.modes.AnnularMode
     physics.plate.solid.resonances.DrivenMode
-    physics.plate.beam.modes.BeamMode physics.plate.solid.modes.PlateModes
-    physics.plate.solid.response.HarmonicResponse physics.plate.heat.thermal.ThermalBody
-    physics.plate.heat.warming.Warming physics.plate.heat.states.WarmState
-    physics.plate.solid.volume.PlateVolume physics.plate.beam.response.BeamResponse
+    physics.plate.beam_modes.BeamMode physics.plate.solid.modes.PlateModes
+    physics.plate.solid.response.HarmonicResponse physics.plate.thermal.ThermalBody
+    physics.plate.warming.Warming physics.plate.heat_states.WarmState
+    physics.plate.solid.volume.PlateVolume physics.plate.beam_response.BeamResponse
     physics.plate.ring.body.RingBody physics.plate.ring.response.RingResponse
     physics.plate.solid.working.SolidMode physics.plate.sound.ExposureGuidance
     physics.plate.sound.SoundField physics.plate.working_mode.ModeLine
     physics.plate.working_mode.WorkingMode physics.plate.surface_shape.BeamSurface
     physics.plate.surface_shape.DiscSurface physics.plate.surface_shape.SolvedSurface
     physics.plate.surface_shape.SurfaceShape physics.plate.surface_shape.TrackSurface
-    physics.plate.ring.stator.StatorFit physics.chain.prediction.Prediction
+    physics.plate.ring.body.StatorFit physics.chain.prediction.Prediction
     physics.render.resonator.compensation.CompensatedDrive
     physics.render.fidelity.report.FidelityReport physics.render.motion.estimator.MotionCounts
     physics.render.motion.estimator.MotionEstimate
@@ -89,10 +89,10 @@ NOT_CALLED = {
     measure.fits.circuit.branches.circuit_curve measure.fits.circuit.branches.relative_motion
     measure.fits.circuit.branches.start_at
     physics.contact.asperities.cubics physics.contact.sharing.balance.require_balanced
-    physics.plate.solid.size.SolveSize.require_within
+    physics.plate.solid.forecast.SolveSize.require_within
     actuators.motor.in_time.resting
-    physics.plate.elements.slab_count.require_countable
-    physics.plate.heat.states.WarmCase.states physics.plate.heat.states.WarmCase.time_to_fall
+    physics.plate.elements.slabs.require_countable
+    physics.plate.heat_states.WarmCase.states physics.plate.heat_states.WarmCase.time_to_fall
     physics.film.periodic.batch.check_film physics.film.periodic.batch.solve_all
     physics.film.planar.grid.edge_graded physics.film.planar.grid.edge_layer
     physics.film.planar.grid.refined_line
@@ -118,19 +118,19 @@ NOT_CALLED = {
     physics.plate.ring.elements.HarmonicSystem physics.plate.ring.elements.HarmonicSystem.field
     physics.plate.ring.elements.RingMesh physics.plate.ring.elements.harmonic_system
     physics.plate.ring.ceramic_disc.DiscSystem physics.plate.ring.ceramic_disc.disc_system
-    physics.plate.elements.block_ldl.PartialLDL physics.plate.elements.block_ldl.partial_ldl
-    physics.plate.elements.mirrored_element.MirroredElement
+    physics.plate.elements.elimination.PartialLDL physics.plate.elements.elimination.partial_ldl
+    physics.plate.elements.elimination.MirroredElement
     physics.plate.elements.box_model.BoxModel physics.plate.elements.box_model.ModelElectrode
     physics.plate.elements.box_model.Foundation physics.plate.elements.box_model.Medium
     physics.plate.elements.box_model.Medium.gradient_matrix
     physics.plate.elements.box_model.kept_products physics.plate.elements.box_model.held_components
     physics.plate.elements.box_model.require_aspect physics.plate.elements.cross_section.slice_codes
-    physics.plate.elements.block_ldl.LDLSteps physics.plate.solid.electrode_circuits.tied_electrodes
+    physics.plate.elements.elimination.LDLSteps physics.plate.solid.coarse_modes.tied_electrodes
     physics.plate.solid.coarse_modes.CoarseModes physics.plate.solid.coarse_modes.chosen_modes
     physics.plate.solid.coarse_modes.class_fits physics.plate.solid.coarse_modes.coarse_modes
-    physics.plate.solid.guess.estimated_frequency physics.plate.elements.cross_section.CrossSection
+    physics.plate.solid.forecast.estimated_frequency physics.plate.elements.cross_section.CrossSection
     physics.plate.elements.cross_section.cross_section
-    physics.plate.solid.electrode_circuits.open_values
+    physics.plate.solid.coarse_modes.open_values
     physics.plate.solid.refined_modes.extrapolated_class physics.plate.elements.krylov.modes_below
     physics.plate.elements.krylov.modes_near physics.plate.elements.krylov.prolonged
     physics.plate.elements.krylov.with_open_electrodes physics.plate.elements.lobatto.LineMesh
@@ -140,11 +140,11 @@ NOT_CALLED = {
     physics.plate.elements.lobatto.lobatto_nodes physics.plate.solid.solve.collected_modes
     physics.plate.solid.solve.energy_shares_of physics.plate.elements.lobatto.gauss_points
     physics.plate.ring.elements.graded_edges physics.plate.elements.lobatto.lagrange
-    physics.plate.elements.sparse_modes.nearest_modes physics.plate.elements.sparse_modes.entries
-    physics.plate.elements.sparse_modes.gathered physics.plate.elements.sparse_modes.shifted_inverse
+    physics.plate.ring.elements.nearest_modes physics.plate.ring.elements.entries
+    physics.plate.ring.elements.gathered physics.plate.ring.elements.shifted_inverse
     physics.plate.ring.elements.node_coordinates physics.plate.solid.model.PlateModel
     physics.plate.solid.resonances.driven_modes physics.plate.solid.resonances.antinode
-    physics.plate.solid.screening.forbidden_by physics.plate.solid.layers.Resolution
+    physics.plate.solid.symmetry.forbidden_by physics.plate.solid.layers.Resolution
     physics.plate.solid.layers.merged physics.plate.solid.layers.nearest
     physics.plate.solid.layers.snapped physics.plate.solid.mesh.plate_model
     physics.plate.solid.mesh.wave_number physics.plate.solid.model.PlateModel.evaluation
@@ -158,10 +158,10 @@ NOT_CALLED = {
     physics.plate.solid.solve.solve_for_response physics.plate.solid.reduced.surface_values
     physics.plate.solid.refined_modes.RefinedModes physics.plate.solid.refined_modes.extrapolated
     physics.plate.solid.refined_modes.refined_modes physics.plate.solid.refined_modes.with_label
-    physics.plate.solid.guess.bare_frequency physics.plate.solid.guess.pieced_frequency
+    physics.plate.solid.forecast.bare_frequency physics.plate.solid.forecast.pieced_frequency
     physics.plate.elements.nodal_lines.line_counts
-    physics.plate.beam.modes.scaled_mode physics.plate.beam.modes.wave_numbers
-    physics.plate.beam.pieces.pieced_beam_mode
+    physics.plate.beam_modes.scaled_mode physics.plate.beam_modes.wave_numbers
+    physics.plate.beam_pieces.pieced_beam_mode
     physics.plate.elements.slab_factor.SlabFactor physics.plate.elements.slabs.Slabs.grid
     physics.plate.elements.slabs.Slabs.mass_times
     physics.plate.elements.slabs.Slabs.places physics.plate.elements.slabs.Slabs.stiffness_times

@@ -5,8 +5,8 @@ from __future__ import annotations
 from types import FunctionType
 from typing import Any
 
-from squeezefilm.physics.plate.heat.states import WarmState
-from squeezefilm.physics.plate.heat.warming import Warming
+from squeezefilm.physics.plate.heat_states import WarmState
+from squeezefilm.physics.plate.warming import Warming
 
 
 def made_result(kind: type, **values: Any) -> Any:

@@ -9,7 +9,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.plate.elements.slabs import Slabs
 from squeezefilm.physics.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
-from squeezefilm.physics.plate.solid.guess import estimated_frequency
+from squeezefilm.physics.plate.solid.forecast import estimated_frequency
 from squeezefilm.physics.plate.solid.layers import Resolution
 from squeezefilm.physics.plate.solid.mesh import plate_model
 from squeezefilm.physics.plate.solid.symmetry import all_classes

@@ -14,19 +14,19 @@ from tests.verification.random_plates import random_plate
 
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.beam.modes import (
+from squeezefilm.physics.plate.beam_modes import (
     euler_bernoulli_frequency,
     euler_bernoulli_half_wavelength,
     free_beam_mode,
     timoshenko_frequency,
 )
-from squeezefilm.physics.plate.beam.pieces import (
+from squeezefilm.physics.plate.beam_pieces import (
     BeamPiece,
     beam_pieces,
     pieced_beam_mode,
     stressed_span,
 )
-from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
+from squeezefilm.physics.plate.beam_response import BeamResponse, beam_response
 from squeezefilm.physics.plate.laminate import Laminate, LaminateLayer, laminate, plate_laminate
 from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.physics.plate.working_mode import working_mode

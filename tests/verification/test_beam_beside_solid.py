@@ -11,8 +11,8 @@ import pytest
 from tests.verification.random_plates import random_glass, random_plate, screened_plate
 
 from squeezefilm.core.errors import SqueezefilmError
-from squeezefilm.physics.plate.beam import pieces
-from squeezefilm.physics.plate.beam.response import beam_response
+from squeezefilm.physics.plate import beam_pieces
+from squeezefilm.physics.plate.beam_response import beam_response
 from squeezefilm.physics.plate.layout import RectangularPlate, turned
 from squeezefilm.physics.plate.working_mode import working_mode
 
@@ -45,9 +45,9 @@ def test_the_beams_frequency_beside_the_solved_one(
         along = plate if plate.lines_across == "length" else turned(plate)
         for inset, ratios in others.items():
             with monkeypatch.context() as patch:
-                patch.setattr(pieces, "UNSTRESSED", inset)
-                made = pieces.beam_pieces(along, "plane_strain")
-            there = pieces.pieced_beam_mode(made, plate.nodal_lines).frequency
+                patch.setattr(beam_pieces, "UNSTRESSED", inset)
+                made = beam_pieces.beam_pieces(along, "plane_strain")
+            there = beam_pieces.pieced_beam_mode(made, plate.nodal_lines).frequency
             ratios.append(there / solved.resonance_frequency)
         print(
             f"plate {seed}, {plate.nodal_lines} lines, {plate.coverage:.2f} covered: frequency "

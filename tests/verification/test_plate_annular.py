@@ -18,6 +18,13 @@ from squeezefilm.core.errors import GeometryError, InputError, UnreachableError
 from squeezefilm.core.materials import ElasticMaterial
 from squeezefilm.physics.plate.elements.box_model import Medium, isotropic_solid, piezoceramic_solid
 from squeezefilm.physics.plate.layout import DiscPlate
+from squeezefilm.physics.plate.ring.body import (
+    HARD_PZT,
+    PHOSPHOR_BRONZE,
+    StatorAssumptions,
+    fit_stator,
+    stator_section,
+)
 from squeezefilm.physics.plate.ring.elements import harmonic_system
 from squeezefilm.physics.plate.ring.modes import (
     annular_admittance,
@@ -35,13 +42,6 @@ from squeezefilm.physics.plate.ring.section import (
     full_drive,
     soft_teeth,
     stiff_teeth,
-)
-from squeezefilm.physics.plate.ring.stator import (
-    HARD_PZT,
-    PHOSPHOR_BRONZE,
-    StatorAssumptions,
-    fit_stator,
-    stator_section,
 )
 
 STEEL = ElasticMaterial("steel", 200e9, 0.3, 7800.0)

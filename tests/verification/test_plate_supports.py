@@ -16,7 +16,7 @@ from squeezefilm.physics.plate.layout import (
     RectangularPlate,
     turned,
 )
-from squeezefilm.physics.plate.solid.guess import bare_frequency, pieced_frequency
+from squeezefilm.physics.plate.solid.forecast import bare_frequency, pieced_frequency
 from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.solid.response import harmonic_response
 from squeezefilm.physics.plate.solid.solve import energy_shares_of, solve_modes

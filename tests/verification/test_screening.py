@@ -11,8 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.solid.resonances import DrivenMode
-from squeezefilm.physics.plate.solid.screening import SCREENING_ERROR, screened_modes
+from squeezefilm.physics.plate.solid.resonances import SCREENING_ERROR, DrivenMode, screened_modes
 from squeezefilm.physics.plate.solid.solve import solve_modes
 
 from .random_plates import screened_plate

@@ -9,12 +9,11 @@ import pytest
 from tests.verification.random_plates import random_plate
 
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.elements.slab_count import slab_count
+from squeezefilm.physics.plate.elements.slabs import slab_count
 from squeezefilm.physics.plate.layout import RectangularPlate, turned
-from squeezefilm.physics.plate.solid.guess import estimated_frequency
+from squeezefilm.physics.plate.solid.forecast import estimated_frequency, solve_size
 from squeezefilm.physics.plate.solid.layers import COARSE, NORMAL
 from squeezefilm.physics.plate.solid.mesh import plate_model
-from squeezefilm.physics.plate.solid.size import solve_size
 from squeezefilm.physics.plate.solid.solve import solve_modes
 from squeezefilm.physics.plate.solid.symmetry import all_classes
 

@@ -10,8 +10,8 @@ from squeezefilm.instruments.twin.plant import Plant
 from squeezefilm.instruments.twin.settings import PlateDrift, TwinAmplifier, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.heat.thermal import Thermal
-from squeezefilm.physics.plate.heat.warming import Warming, warming_of_mode
+from squeezefilm.physics.plate.thermal import Thermal
+from squeezefilm.physics.plate.warming import Warming, warming_of_mode
 
 # A plate that is warm within seconds: what it settles to does not depend on its heat capacity.
 QUICK = 1.0

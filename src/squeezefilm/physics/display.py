@@ -21,8 +21,8 @@ from squeezefilm.core.hard_limits import FREQUENCY, ROUGHNESS
 from squeezefilm.core.materials import Gas
 from squeezefilm.core.results import Result, write_named, write_new
 from squeezefilm.physics.contact.finger.fingertip import Finger
-from squeezefilm.physics.plate.heat.thermal import Thermal
 from squeezefilm.physics.plate.layout import Actuator
+from squeezefilm.physics.plate.thermal import Thermal
 
 DECAY_LENGTH = "finger.contact_decay_length"
 """The dotted path of the length by which fingers differ."""

@@ -35,11 +35,11 @@ from squeezefilm.physics.film.gap import (
     squeeze_number_printed,
 )
 from squeezefilm.physics.film.validity import asymptotic_fraction
-from squeezefilm.physics.plate.beam.modes import (
+from squeezefilm.physics.plate.beam_modes import (
     euler_bernoulli_half_wavelength,
     timoshenko_frequency,
 )
-from squeezefilm.physics.plate.beam.response import beam_response
+from squeezefilm.physics.plate.beam_response import beam_response
 from squeezefilm.physics.plate.laminate import Laminate, LaminateLayer, laminate, plate_laminate
 from squeezefilm.physics.plate.layout import AnnularStator
 from squeezefilm.validation.explanations import MODAL_FREQUENCY, paper_plate, paper_points

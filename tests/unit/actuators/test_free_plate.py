@@ -12,7 +12,7 @@ from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.measure.fits.vibration.voltage_sweeps import fit_voltage_sweeps
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, VoltageSweeps
-from squeezefilm.physics.plate.free_plate import FreePlate
+from squeezefilm.physics.plate.loaded_mode import FreePlate
 
 from .test_motor import motor
 

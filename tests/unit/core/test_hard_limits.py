@@ -19,7 +19,7 @@ from squeezefilm.design.plate.command import parse_mode
 from squeezefilm.design.sweep.axes import axis_of
 from squeezefilm.physics.chain.played_texture import FingerMotion
 from squeezefilm.physics.display import Display, Surface, load_display
-from squeezefilm.physics.plate.beam.modes import free_beam_mode
+from squeezefilm.physics.plate.beam_modes import free_beam_mode
 from squeezefilm.physics.plate.laminate import plate_laminate
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.mesh import plate_model

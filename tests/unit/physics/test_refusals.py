@@ -21,8 +21,8 @@ from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.profile import GapProfile
 from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.percepts import along_way
-from squeezefilm.physics.plate.beam.modes import wave_numbers
-from squeezefilm.physics.plate.beam.response import beam_response
+from squeezefilm.physics.plate.beam_modes import wave_numbers
+from squeezefilm.physics.plate.beam_response import beam_response
 from squeezefilm.physics.plate.elements.box_model import isotropic_solid
 from squeezefilm.physics.plate.elements.lobatto import LineMesh, lobatto_nodes
 from squeezefilm.physics.plate.elements.nodal_lines import line_distance
@@ -37,7 +37,7 @@ from squeezefilm.physics.plate.ring.section import (
     RingLayer,
     full_drive,
 )
-from squeezefilm.physics.plate.solid.guess import estimated_frequency
+from squeezefilm.physics.plate.solid.forecast import estimated_frequency
 from squeezefilm.physics.render.texture.gates import Attack
 from squeezefilm.physics.render.texture.pattern import Greatest, Least, Times
 from squeezefilm.physics.texture_files.image_file import ImageFile, picture_from

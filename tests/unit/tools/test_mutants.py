@@ -20,7 +20,7 @@ def test_the_tests_of_a_module_come_first_then_those_that_name_it() -> None:
     named = ["squeezefilm.physics.film.gap" in nearness.texts[name] for name in files]
     assert named == sorted(named, reverse=True)
     assert 0 < len(files) < len(nearness.texts)
-    assert "tests/e2e/test_plate_cli.py" in nearness.tests("squeezefilm.physics.plate.ring.stator")
+    assert "tests/e2e/test_plate_cli.py" in nearness.tests("squeezefilm.physics.plate.ring.body")
 
 
 def test_a_line_that_was_cut_off_is_asked_again(tmp_path: Path) -> None:

@@ -13,8 +13,8 @@ from squeezefilm.actuators.motor.description import Motor
 from squeezefilm.actuators.motor.parts import Feet, Slider, Stator
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.physics.plate.heat.warming import FIELD_SHARE
 from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.warming import FIELD_SHARE
 from squeezefilm.physics.plate.working_mode import PlateTheory, WorkingMode, working_mode
 
 

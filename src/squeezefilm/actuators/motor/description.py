@@ -16,9 +16,9 @@ from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.config.references import References
 from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError
 from squeezefilm.core.results import Result
-from squeezefilm.physics.plate.free_plate import FreePlate
-from squeezefilm.physics.plate.heat.thermal import Thermal
 from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.loaded_mode import FreePlate
+from squeezefilm.physics.plate.thermal import Thermal
 
 _M = si.Unit("m")
 

@@ -13,8 +13,8 @@ from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.beam.modes import BeamTheory
-from squeezefilm.physics.plate.beam.response import beam_response
+from squeezefilm.physics.plate.beam_modes import BeamTheory
+from squeezefilm.physics.plate.beam_response import beam_response
 from squeezefilm.physics.plate.laminate import CrossSection
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.working import solid_mode

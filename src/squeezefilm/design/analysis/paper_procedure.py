@@ -15,7 +15,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, UnreachableError
 from squeezefilm.physics.contact.sharing.paper import vibration_amplitude_for
 from squeezefilm.physics.film.gap import PaperGap, frequency_for_squeeze_number
-from squeezefilm.physics.plate.beam.modes import (
+from squeezefilm.physics.plate.beam_modes import (
     euler_bernoulli_half_wavelength,
     free_beam_mode,
     timoshenko_frequency,

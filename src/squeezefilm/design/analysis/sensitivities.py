@@ -23,7 +23,7 @@ from squeezefilm.design.analysis.coarse_shift import CoarseShifts
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.touch import TOLERANCE
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.beam.response import beam_response
+from squeezefilm.physics.plate.beam_response import beam_response
 from squeezefilm.physics.plate.layout import Actuator, DiscPlate, RectangularPlate
 from squeezefilm.physics.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.physics.uncertainty.draws import Mixture, as_drawn, outcome_of

@@ -24,8 +24,8 @@ from squeezefilm.physics.chain.active_area import CRITERIA
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.heat.warming import too_hot
 from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.warming import too_hot
 from squeezefilm.physics.uncertainty.model_choices import MECHANISM
 from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 

@@ -22,7 +22,7 @@ from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left
 from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring
 from squeezefilm.design.plate.solved import Hurry, ModeRow, Remarks, SolvedBody, plate_sound
 from squeezefilm.physics.display import Display, NamedDisplay
-from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
+from squeezefilm.physics.plate.beam_response import BeamResponse, beam_response
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.elements.nodal_lines import line_distance
 from squeezefilm.physics.plate.layout import RectangularPlate

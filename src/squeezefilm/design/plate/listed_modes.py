@@ -9,8 +9,13 @@ from dataclasses import dataclass
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.plate.elements.nodal_lines import profiles
 from squeezefilm.physics.plate.layout import Actuator, RectangularPlate
-from squeezefilm.physics.plate.solid.resonances import DrivenMode, Moving, strongest_neighbour
-from squeezefilm.physics.plate.solid.screening import SCREENING_ERROR, symmetry_in_words
+from squeezefilm.physics.plate.solid.resonances import (
+    SCREENING_ERROR,
+    DrivenMode,
+    Moving,
+    strongest_neighbour,
+)
+from squeezefilm.physics.plate.solid.symmetry import symmetry_in_words
 from squeezefilm.physics.plate.working_mode import CROWDED, WorkingMode
 
 _HZ, _PER_VOLT = si.Unit("Hz"), si.Unit("m/V")

@@ -22,8 +22,8 @@ from squeezefilm.design.plate.listed_modes import (
 )
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.solid.resonances import DrivenMode
-from squeezefilm.physics.plate.solid.screening import forbidden_by, screened_modes
+from squeezefilm.physics.plate.solid.resonances import DrivenMode, screened_modes
+from squeezefilm.physics.plate.solid.symmetry import forbidden_by
 from squeezefilm.physics.plate.working_mode import WorkingMode
 
 _HZ, _PER_VOLT = si.Unit("Hz"), si.Unit("m/V")

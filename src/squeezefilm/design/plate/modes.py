@@ -32,9 +32,13 @@ from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.plate.layout import AnnularStator, RectangularPlate
 from squeezefilm.physics.plate.ring.body import ring_body
 from squeezefilm.physics.plate.ring.modes import DEFAULT_DEGREE, clamped_capacitance
-from squeezefilm.physics.plate.solid.resonances import DrivenMode, label_name
-from squeezefilm.physics.plate.solid.screening import SCREENING_ERROR, forbidden_by, screened_modes
-from squeezefilm.physics.plate.solid.symmetry import drive_classes, only_stretches
+from squeezefilm.physics.plate.solid.resonances import (
+    SCREENING_ERROR,
+    DrivenMode,
+    label_name,
+    screened_modes,
+)
+from squeezefilm.physics.plate.solid.symmetry import drive_classes, forbidden_by, only_stretches
 from squeezefilm.physics.plate.working_mode import WorkingMode, working_mode
 
 DEFAULT_BAND: tuple[si.Hertz, si.Hertz] = (15e3, 60e3)

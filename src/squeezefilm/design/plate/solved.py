@@ -16,15 +16,19 @@ from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.circuit import DrivenResponse
 from squeezefilm.physics.plate.electronics import ElectricalLoad, electrical_load
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.solid.guess import estimated_frequency
+from squeezefilm.physics.plate.solid.forecast import (
+    SolveSize,
+    band_seconds,
+    estimated_frequency,
+    solve_size,
+)
 from squeezefilm.physics.plate.solid.modes import Label, PlateModes
 from squeezefilm.physics.plate.solid.response import HarmonicResponse
-from squeezefilm.physics.plate.solid.size import SolveSize, band_seconds, solve_size
 from squeezefilm.physics.plate.sound import DISTANCES, SoundField, rectangular_surface, sound_field
 from squeezefilm.physics.plausibility.expected import expectation
 
 if TYPE_CHECKING:
-    from squeezefilm.physics.plate.heat.warming import Warming
+    from squeezefilm.physics.plate.warming import Warming
 
 ALONE = "the budget left no time for the other modes of the band"
 """Sentence where only the working mode was solved."""
@@ -114,7 +118,7 @@ class SolvedBody(Result):
         Of a stator, whose modal mass nobody measured, the power that its fitted body takes.
         """
         # Compiled code comes with it, which a list of modes has no use for.
-        from squeezefilm.physics.plate.heat.warming import heat_source, warming, warming_of_mode
+        from squeezefilm.physics.plate.warming import heat_source, warming, warming_of_mode
 
         volts, mode, thermal = self.display.drive.voltage, self.mode, self.display.thermal
         known = warming_of_mode(self.display.actuator, thermal, mode, volts)

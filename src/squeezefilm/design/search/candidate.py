@@ -29,7 +29,7 @@ from squeezefilm.design.search.sources import plate_sources, shared_sources
 from squeezefilm.design.search.space import VOLTAGE, Setting
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.physics.plate.beam.modes import timoshenko_frequency
+from squeezefilm.physics.plate.beam_modes import timoshenko_frequency
 from squeezefilm.physics.plate.laminate import plate_laminate, section_with
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.working_mode import PlateTheory

@@ -25,8 +25,8 @@ from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.contact.sliding.march import substeps
-from squeezefilm.physics.plate.heat.states import cooling_of, heat_capacity
-from squeezefilm.physics.plate.heat.thermal import thermal_body
+from squeezefilm.physics.plate.heat_states import cooling_of, heat_capacity
+from squeezefilm.physics.plate.thermal import thermal_body
 
 _PICKUP_RE, _PICKUP_IM = 11, 12  # streams of noise
 _BUFFER = 2000  # rows between two visits to Python

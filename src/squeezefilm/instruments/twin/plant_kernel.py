@@ -5,7 +5,7 @@ and the outcome does not depend on the pieces in which time is advanced. In each
 
 1. the amplifier gives what its limits allow,
 2. the plate's envelope is stepped in closed form, with the mode as warmth, speed and field leave
-   it, by the same functions as the prediction (`physics.plate.heat.kernel`),
+   it, by the same functions as the prediction (`physics.plate.heat_states`),
 3. the arm leads the finger, a mass on spring and damper, in closed form under the skin's pull,
    which is extrapolated to the middle of the step (second order),
 4. the skin follows by the compiled marches of `physics.contact.sliding`, under the friction of the
@@ -46,8 +46,8 @@ from squeezefilm.instruments.twin.hand import wanted
 from squeezefilm.physics.contact.sliding.kernel import Track, slide_march
 from squeezefilm.physics.contact.sliding.pieces import BoneDrive, Rows
 from squeezefilm.physics.contact.sliding.skin_motion import Forces, LumpedSkin, slide_by, transition
-from squeezefilm.physics.plate.heat.kernel import warmed
-from squeezefilm.physics.plate.heat.thermal import Cooling
+from squeezefilm.physics.plate.heat_states import warmed
+from squeezefilm.physics.plate.thermal import Cooling
 
 # The state, float64: plate; finger; skin and friction; output; what the sensor shows.
 Z_RE, Z_IM, WARMTH, RESONANCE, LOST = range(5)

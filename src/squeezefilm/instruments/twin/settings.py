@@ -13,7 +13,7 @@ from typing import Annotated, Literal
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.contact.sliding.dry_friction import DryFriction
-from squeezefilm.physics.plate.heat.thermal import LOSS_TANGENT, Thermal
+from squeezefilm.physics.plate.thermal import LOSS_TANGENT, Thermal
 from squeezefilm.physics.render.motion.sensor import TOUCH_PANEL_240_HZ, SensorModel
 
 PerSecond = Annotated[float, si.Unit("1/s")]
@@ -38,7 +38,7 @@ class PlateDrift:
         ambient_swing, ambient_period: the room's temperature goes to and fro by that much (K) as
             a sine of that period (s).
         temperature_coefficient, thermal_resistance, thermal_time: in place of what the display
-            says and its geometry gives (`physics.plate.heat.thermal.Thermal`): 1/K, K/W, s. At a
+            says and its geometry gives (`physics.plate.thermal.Thermal`): 1/K, K/W, s. At a
             resistance of 0 the plate keeps the room's temperature.
         quality_factor_ratio: Q over the predicted one (1); above 0. The drive's force per volt
             stays, so the amplitude at resonance changes with it.

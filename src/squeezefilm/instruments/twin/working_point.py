@@ -17,7 +17,7 @@ from squeezefilm.physics.chain.free_vibration import chosen_mode
 from squeezefilm.physics.chain.friction import TABLE_SPEEDS, friction_law
 from squeezefilm.physics.chain.touch import load_ratios
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.beam.response import patch_capacitance
+from squeezefilm.physics.plate.beam_response import patch_capacitance
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.working_mode import WorkingMode
 from squeezefilm.physics.plausibility.checks import require_plausible

@@ -32,8 +32,8 @@ from squeezefilm.physics.chain.touch import Touch, held_touch, touch
 from squeezefilm.physics.display import Display, NamedDisplay, Surface
 from squeezefilm.physics.film.gap import squeeze_number
 from squeezefilm.physics.film.validity import FilmValidity, film_validity
-from squeezefilm.physics.plate.heat.warming import Warming, warming_of_mode
 from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.warming import Warming, warming_of_mode
 from squeezefilm.physics.plate.working_mode import PlateTheory, WorkingMode
 from squeezefilm.physics.plausibility.checks import require_plausible
 from squeezefilm.physics.render.program.inverse import FrictionInverse

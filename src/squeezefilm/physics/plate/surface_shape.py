@@ -17,7 +17,7 @@ from scipy.interpolate import RectBivariateSpline
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.physics.plate.beam.response import BeamResponse
+from squeezefilm.physics.plate.beam_response import BeamResponse
 from squeezefilm.physics.plate.layout import Actuator, AnnularStator
 from squeezefilm.physics.plate.ring.body import surface_profile
 from squeezefilm.physics.plate.ring.modes import AnnularMode

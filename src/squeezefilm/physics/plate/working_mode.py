@@ -15,7 +15,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.core.progress import NO_HURRY, Pace
-from squeezefilm.physics.plate.beam.response import BeamResponse, beam_response
+from squeezefilm.physics.plate.beam_response import BeamResponse, beam_response
 from squeezefilm.physics.plate.elements.nodal_lines import within_nodes, zero_crossings
 from squeezefilm.physics.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.physics.plate.ring.body import (

@@ -26,9 +26,8 @@ from squeezefilm.core.progress import about
 from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.solid.size import SolveSize, solve_size
-from squeezefilm.physics.plausibility.expected import Expectation, expectation
-from squeezefilm.physics.plausibility.ratios import Path, Ratio, ratios
+from squeezefilm.physics.plate.solid.forecast import SolveSize, solve_size
+from squeezefilm.physics.plausibility.expected import Expectation, Path, Ratio, expectation, ratios
 
 Range = tuple[float, float]
 

@@ -22,8 +22,8 @@ from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.touch import Touch, touch
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.heat.warming import heat_source
 from squeezefilm.physics.plate.loaded_mode import LoadedMode
+from squeezefilm.physics.plate.warming import heat_source
 from squeezefilm.physics.plate.working_mode import WorkingMode
 from squeezefilm.physics.uncertainty.free_amplitude import FreeAmplitude
 from squeezefilm.physics.uncertainty.model_choices import (

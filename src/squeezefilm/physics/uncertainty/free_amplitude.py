@@ -13,7 +13,7 @@ from typing import Any
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.beam.response import beam_response
+from squeezefilm.physics.plate.beam_response import beam_response
 from squeezefilm.physics.plate.layout import (
     Actuator,
     AnnularStator,

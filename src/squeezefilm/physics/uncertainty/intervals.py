@@ -1,10 +1,19 @@
-"""The ends of an interval from draws, of which some may be refused and some out of reach."""
+"""What draws say: the ends of an interval, of which some may be refused and some out of reach, and
+the share of the variance that each input explains, by Sobol' indices from Saltelli's design.
+
+Most inputs of a display explain next to nothing, which some rows of the design show: the others are
+drawn for the rest alone.
+"""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.physics.uncertainty.draws import Input
+from squeezefilm.physics.uncertainty.parameters import Knowledge
 
 LEVEL: si.Dimensionless = 0.9
 MOST_REFUSED: si.Dimensionless = 0.02
@@ -54,3 +63,112 @@ def _quantile(values: si.FloatArray, share: float) -> float:
     if rest == 0 or row[below] == np.inf:
         return float(row[below])
     return float(row[below] + rest * (row[below + 1] - row[below]))
+
+
+# An input whose share of the variance is below this, its doubt included, is followed no further.
+_NEXT_TO_NOTHING = 0.02
+
+
+@dataclass(frozen=True)
+class Influence:
+    """Share of the variance of µ′/µ that one input explains, alone and with all its company.
+
+    First-order and total Sobol' indices with the half width of their 95 % confidence interval.
+    """
+
+    parameter: Input
+    first_order: si.Dimensionless
+    first_order_error: si.Dimensionless
+    total: si.Dimensionless
+    total_error: si.Dimensionless
+
+
+@dataclass(frozen=True)
+class GroupInfluence:
+    """Share of the variance of µ′/µ that goes away if all of a group were known (`alone`), and how
+    much would be left if all but the group were (`total`), each with the half width of its 95 %
+    confidence interval: no member has more of either, but for these errors and its own."""
+
+    knowledge: Knowledge
+    alone: si.Dimensionless
+    total: si.Dimensionless
+    error: si.Dimensionless
+    alone_error: si.Dimensionless
+
+
+def influences_of(
+    inputs: tuple[Input, ...], friction: si.DimensionlessArray
+) -> tuple[Influence, ...]:
+    """Influence of each input on the design's frictions, shape (samples, inputs + 4); the most
+    important first. An input that was not `followed` to the end has NaN in the last rows."""
+    a, b = friction[:, 0], friction[:, -3]
+    scale = float(np.mean((a - b) ** 2)) or 1.0
+    influences = []
+    for k, item in enumerate(inputs):
+        with_b = friction[:, k + 1]
+        there = np.isfinite(with_b)
+        of_a, of_b, with_b = a[there], b[there], with_b[there]
+        whole = (of_a - of_b) ** 2
+        total, total_error = _ratio((of_a - with_b) ** 2, whole, scale)
+        first = _ratio(_shared((of_a, of_b), with_b), whole)
+        influences.append(Influence(item, *first, total, total_error))
+    return tuple(sorted(influences, key=lambda item: -item.total))
+
+
+def followed(friction: si.DimensionlessArray) -> si.IntArray:
+    """The columns of the design, by number, that are worth drawing further after the frictions of
+    its first rows, shape (rows, inputs + 4): all but those of inputs that explain next to nothing.
+    Refused draws are NaN."""
+    known = friction[np.isfinite(friction).all(axis=1)]
+    every = np.arange(friction.shape[1])
+    if not len(known):
+        return every
+    a, b = known[:, 0], known[:, -3]
+    whole = (a - b) ** 2
+    small = [
+        k for k in every[1:-3] if sum(_ratio((a - known[:, k]) ** 2, whole)) < _NEXT_TO_NOTHING
+    ]
+    return np.setdiff1d(every, small)
+
+
+def groups_of(friction: si.DimensionlessArray) -> tuple[GroupInfluence, ...]:
+    """Influence on the design's frictions of what could be measured, and of what nobody knows.
+
+    Its last two columns share with A, and with B, what nobody knows.
+    """
+    a, b, like_a, like_b = friction[:, [0, -3, -2, -1]].T
+    whole = (a - b) ** 2 + (like_a - like_b) ** 2
+    measurable = _ratio((a - like_a) ** 2 + (b - like_b) ** 2, whole)
+    unknown = _ratio((b - like_a) ** 2 + (a - like_b) ** 2, whole)
+    # Each way round, A for B.
+    by_itself = [
+        _ratio(_shared((a, b), of_a) + _shared((b, a), of_b), whole)
+        for of_a, of_b in ((like_a, like_b), (like_b, like_a))
+    ]
+    return (
+        GroupInfluence("measurable", by_itself[0][0], *measurable, by_itself[0][1]),
+        GroupInfluence("unknown", by_itself[1][0], *unknown, by_itself[1][1]),
+    )
+
+
+def _shared(both: tuple[si.FloatArray, si.FloatArray], with_b: si.FloatArray) -> si.FloatArray:
+    """Product of what A with some columns of B has in common with B, beyond what A has: its mean is
+    twice the variance that these columns explain by themselves. Where they explain little its noise
+    is little, which that of 1 less the share of the others is not (Saltelli's of 2010)."""
+    a, b = both
+    return 2 * (b - (np.mean(a) + np.mean(b)) / 2) * (with_b - a)
+
+
+def _ratio(
+    part: si.FloatArray, whole: si.FloatArray, scale: float | None = None
+) -> tuple[float, float]:
+    """A share of the variance, and the half width of its 95 % interval.
+
+    The mean square of what differs where only some inputs do (Jansen), or what is `_shared`, over
+    the mean square where all differ: as a ratio of the same rows, in which most of the noise
+    cancels. `scale` is the mean of the whole where more rows of it are known. Jansen 1999,
+    10.1016/S0010-4655(98)00154-4; Saltelli et al. 2010, 10.1016/j.cpc.2009.09.018.
+    """
+    scale = scale or float(np.mean(whole)) or 1.0
+    share = float(np.mean(part)) / scale
+    return share, 1.96 * float(np.std(part - share * whole)) / scale / len(part) ** 0.5

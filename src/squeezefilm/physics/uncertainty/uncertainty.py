@@ -27,14 +27,17 @@ from squeezefilm.physics.uncertainty.draws import (
     mixture_of,
 )
 from squeezefilm.physics.uncertainty.free_amplitude import require_bent
-from squeezefilm.physics.uncertainty.influences import (
+from squeezefilm.physics.uncertainty.intervals import (
+    LEVEL,
+    MOST_REFUSED,
     GroupInfluence,
     Influence,
+    ends,
     followed,
     groups_of,
     influences_of,
+    quantiles,
 )
-from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, ends, quantiles
 
 SAMPLES, POINTS = 16, 8
 """Base samples where none are asked for, and how many points make the interval for each: chosen by

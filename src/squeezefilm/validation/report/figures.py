@@ -15,7 +15,7 @@ from squeezefilm.design.analysis.analyze import analyze
 from squeezefilm.design.analysis.curves import PAPER_CRITERION, pressure_profiles, wavelength_curves
 from squeezefilm.design.analysis.report.figures import criterion_line, working_point
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.beam.modes import euler_bernoulli_frequency, timoshenko_frequency
+from squeezefilm.physics.plate.beam_modes import euler_bernoulli_frequency, timoshenko_frequency
 from squeezefilm.physics.plate.laminate import Laminate, plate_laminate
 from squeezefilm.physics.plate.layout import RectangularPlate
 

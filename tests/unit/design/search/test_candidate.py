@@ -21,7 +21,7 @@ from squeezefilm.design.search.candidate import (
     screened,
 )
 from squeezefilm.design.search.evolution import Proposals
-from squeezefilm.physics.plate.beam.modes import timoshenko_frequency
+from squeezefilm.physics.plate.beam_modes import timoshenko_frequency
 from squeezefilm.physics.plate.laminate import plate_laminate, section_with
 
 WANTED = requirements()

@@ -12,9 +12,9 @@ from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid import mesh
+from squeezefilm.physics.plate.solid.forecast import solve_size
 from squeezefilm.physics.plate.solid.layers import COARSE, NORMAL
 from squeezefilm.physics.plate.solid.modes import COARSE_AMPLITUDE_ERROR, COARSE_ERROR
-from squeezefilm.physics.plate.solid.size import solve_size
 from squeezefilm.physics.plate.solid.working import solid_mode
 
 

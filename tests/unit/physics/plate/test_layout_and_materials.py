@@ -13,7 +13,7 @@ from squeezefilm.core.errors import (
     OutOfRangeError,
 )
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.beam.response import beam_response, patch_capacitance
+from squeezefilm.physics.plate.beam_response import beam_response, patch_capacitance
 from squeezefilm.physics.plate.layout import AnnularStator, CeramicPatch, RectangularPlate
 
 

@@ -9,7 +9,7 @@ from tests.verification.random_plates import SUBSTRATES, random_plate
 from squeezefilm.core import presets
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.physics.plate.beam.response import beam_response
+from squeezefilm.physics.plate.beam_response import beam_response
 from squeezefilm.physics.plausibility.checks import described_numbers
 
 Path = tuple[str | int, ...]

@@ -14,7 +14,7 @@ from squeezefilm.physics import display
 from squeezefilm.physics.contact.finger import fingertip
 from squeezefilm.physics.plate import layout
 from squeezefilm.physics.plate.round_layout import DiscPlate
-from squeezefilm.physics.plausibility import ratios
+from squeezefilm.physics.plausibility import expected
 from squeezefilm.physics.plausibility.checks import Bound, bounds, shown
 
 _M, _KG3 = si.Unit("m"), si.Unit("kg/m3")
@@ -57,7 +57,7 @@ def test_a_bound_of_a_field_is_of_one_that_is_there_in_its_unit_and_within_its_h
 
 
 def test_every_ratio_has_its_bound_and_every_bound_that_is_no_field_its_ratio() -> None:
-    text = typing.cast(str, ratios.__loader__.get_source(ratios.__name__))  # type: ignore[union-attr]
+    text = typing.cast(str, expected.__loader__.get_source(expected.__name__))  # type: ignore[union-attr]
     named = set(re.findall(r'"([a-zA-Z][^".]* [^".]*|[ds]\d\d over [ds]\d\d)"', text)) & set(
         bounds()
     )

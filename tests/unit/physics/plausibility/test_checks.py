@@ -14,7 +14,7 @@ from squeezefilm.physics.chain.wanted_voltage import voltage_for_friction
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import GlueLayer
 from squeezefilm.physics.plausibility.checks import foreseen, implausibilities, require_plausible
-from squeezefilm.physics.plausibility.ratios import ratios
+from squeezefilm.physics.plausibility.expected import ratios
 
 PLATE = "biet2008-plate"
 

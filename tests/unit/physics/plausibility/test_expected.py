@@ -6,9 +6,9 @@ import pytest
 from tests.verification.random_plates import random_plate
 
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.beam.response import beam_response
+from squeezefilm.physics.plate.beam_response import beam_response
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.solid.size import band_seconds, expected_seconds, solve_size
+from squeezefilm.physics.plate.solid.forecast import band_seconds, expected_seconds, solve_size
 from squeezefilm.physics.plate.working_mode import working_mode
 from squeezefilm.physics.plausibility.checks import foreseen
 from squeezefilm.physics.plausibility.expected import Expectation, expectation

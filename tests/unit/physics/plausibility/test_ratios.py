@@ -11,8 +11,7 @@ import pytest
 from squeezefilm.core.materials import Gas
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
-from squeezefilm.physics.plausibility.expected import expectation
-from squeezefilm.physics.plausibility.ratios import ratios
+from squeezefilm.physics.plausibility.expected import expectation, ratios
 
 
 def listed(display: Display, voltage: float | None = None) -> list[tuple[str, str, float]]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.physics.uncertainty.influences import followed, groups_of, influences_of
+from squeezefilm.physics.uncertainty.intervals import followed, groups_of, influences_of
 
 
 def _design(weights: list[float], rows: int) -> np.ndarray:

@@ -30,8 +30,7 @@ from squeezefilm.physics.uncertainty.draws import (
     outcome_of,
 )
 from squeezefilm.physics.uncertainty.free_amplitude import FreeAmplitude
-from squeezefilm.physics.uncertainty.influences import GroupInfluence, Influence
-from squeezefilm.physics.uncertainty.intervals import quantiles
+from squeezefilm.physics.uncertainty.intervals import GroupInfluence, Influence, quantiles
 from squeezefilm.physics.uncertainty.model_choices import HEIGHT_LAW, MOISTURE, SLIP
 from squeezefilm.physics.uncertainty.parameters import (
     FORCE,

@@ -12,7 +12,7 @@ from tests.unit.drawn import words
 
 from squeezefilm.core.kit.style import BLUE, ORANGE, message_figure
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.beam.modes import timoshenko_frequency
+from squeezefilm.physics.plate.beam_modes import timoshenko_frequency
 from squeezefilm.physics.plate.laminate import Laminate, plate_laminate
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.validation.report import figures

@@ -13,7 +13,7 @@ from squeezefilm.design.analysis.published_claims import missed_by
 
 if TYPE_CHECKING:
     from squeezefilm.design.analysis.analysis import Analysis
-    from squeezefilm.physics.uncertainty.influences import GroupInfluence
+    from squeezefilm.physics.uncertainty.intervals import GroupInfluence
     from squeezefilm.physics.uncertainty.parameters import Knowledge
     from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import HZ, M, Row, S, shown, signed
-from squeezefilm.physics.plate.heat.states import COEFFICIENT_SHARES, EMISSIVITIES
+from squeezefilm.physics.plate.heat_states import COEFFICIENT_SHARES, EMISSIVITIES
 
 if TYPE_CHECKING:
-    from squeezefilm.physics.plate.heat.warming import Warming
     from squeezefilm.physics.plate.sound import SoundField
+    from squeezefilm.physics.plate.warming import Warming
 
 KELVIN = si.Unit("K")
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from squeezefilm.design.plate.solved import ModeRow, SolvedBody
-    from squeezefilm.physics.plate.ring.stator import StatorFit
+    from squeezefilm.physics.plate.ring.body import StatorFit
     from squeezefilm.physics.plate.sound import SoundField
 
 OHM = si.Unit("ohm")

@@ -24,7 +24,7 @@ from squeezefilm.measure.fits.estimate import (
 from squeezefilm.measure.fits.least_squares import NonlinearFit, fit_nonlinear
 from squeezefilm.measure.fits.vibration.frequency_response import ModalCircle, modal_circle
 from squeezefilm.measure.recordings.kinds import VoltageSweeps
-from squeezefilm.physics.plate.free_plate import FreePlate
+from squeezefilm.physics.plate.loaded_mode import FreePlate
 
 BackboneLaw = Literal["quadratic", "linear"]
 BACKBONE_LAWS: tuple[BackboneLaw, ...] = get_args(BackboneLaw)

@@ -16,14 +16,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.plate.elements.block_ldl import PartialLDL, partial_ldl
 from squeezefilm.physics.plate.elements.cross_section import code_parts
-from squeezefilm.physics.plate.elements.lobatto import line_matrices
-from squeezefilm.physics.plate.elements.mirrored_element import (
+from squeezefilm.physics.plate.elements.elimination import (
     MirroredElement,
+    PartialLDL,
     SliceMatrices,
     mirrored_element,
+    partial_ldl,
 )
+from squeezefilm.physics.plate.elements.lobatto import line_matrices
 from squeezefilm.physics.plate.elements.slabs import Slabs
 
 Matrix = NDArray[Any]

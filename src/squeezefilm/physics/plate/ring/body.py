@@ -1,26 +1,175 @@
-"""Body to be solved of a described disc or stator: section, drive, working mode."""
+"""Body to be solved of a described disc or stator: section, drive, working mode.
+
+Of a motor's stator only frequency and wavelength are known: the rest is fitted and assumed.
+"""
 
 from __future__ import annotations
 
 import functools
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import UnreachableError
+from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
+from squeezefilm.physics.plate.elements.box_model import isotropic_solid, piezoceramic_solid
 from squeezefilm.physics.plate.elements.nodal_lines import zero_crossings
 from squeezefilm.physics.plate.layout import AnnularStator, DiscPlate
-from squeezefilm.physics.plate.ring.modes import AnnularMode, bending_mode
+from squeezefilm.physics.plate.ring.modes import AnnularMode, bending_frequency, bending_mode
 from squeezefilm.physics.plate.ring.section import (
     AnnularSection,
+    RingLayer,
     SectorDrive,
     alternate_sectors,
     bonded_disc,
     full_drive,
+    soft_teeth,
+    stiff_teeth,
 )
-from squeezefilm.physics.plate.ring.stator import StatorAssumptions, StatorFit, fit_stator
+
+ToothModel = Literal["soft", "stiff"]
+# Between these thicknesses (m) the fitted one lies, and so near it comes to it.
+_ENDS, _NEAR = (0.3e-3, 10e-3), 1e-9
+_M, _HZ = si.Unit("m"), si.Unit("Hz")
+PHOSPHOR_BRONZE = ElasticMaterial("phosphor bronze", 112e9, 0.33, 8800.0)
+"""Material of most motor stators; handbook values (C51900), assumed for the USR60."""
+
+HARD_PZT = Piezoceramic(
+    name="hard PZT (assumed)",
+    in_plane_stiffness=90e9,
+    in_plane_poisson_ratio=0.2897,
+    shear_modulus=30e9,
+    density=7700.0,
+    charge_coefficient=-120e-12,
+    relative_permittivity=700.0,
+    quality_factor=500.0,
+)
+"""A hard ceramic of the kind motors use, in round numbers; assumed for the USR60."""
+
+
+@si.checked_numbers
+@dataclass(frozen=True)
+class StatorAssumptions:
+    """Assumptions for what the paper does not give of its USR60 stator. Every default is assumed.
+
+    `outer_diameter` 60 mm is read off the motor's name; ceramic, teeth and materials are of the
+    usual size and kind for such motors. A channel of 8 half-wave sectors is what a 9-wave motor
+    with 4 + 4 waves driven, a quarter and three quarters of a wave left over, has (Sashida and
+    Kenjo, An Introduction to Ultrasonic Motors, 1993; from memory, to be checked).
+    """
+
+    outer_diameter: si.Metre = 60e-3
+    ceramic_thickness: si.Metre = 0.5e-3
+    tooth_height: si.Metre = 1.5e-3
+    tooth_fill: si.Dimensionless = 0.8
+    metal: ElasticMaterial = PHOSPHOR_BRONZE
+    ceramic: Piezoceramic = HARD_PZT
+    quality_factor: si.Dimensionless = 200.0
+    driven_sectors: int = 8
+
+
+@dataclass(frozen=True, eq=False)
+class StatorFit:
+    """A stator whose `ring_thickness` (metal between ceramic and teeth) was fitted.
+
+    `assumptions` name what was assumed, in SI units; the section's mean diameter follows from the
+    given wavelength. Its teeth are soft; `frequency_bounds` are the frequencies (Hz) that this
+    thickness has with the teeth soft (no hoop stiffness) and stiff (fill × E).
+    """
+
+    section: AnnularSection
+    mode: AnnularMode
+    drive: SectorDrive
+    ring_thickness: si.Metre
+    assumptions: StatorAssumptions
+    frequency_bounds: tuple[si.Hertz, si.Hertz]
+
+
+@si.checked_numbers
+def stator_section(
+    mean_diameter: si.Metre,
+    ring_thickness: Annotated[si.Metre, si.Above(0.0)],
+    assumptions: StatorAssumptions,
+    tooth_model: ToothModel,
+) -> AnnularSection:
+    """The section of a travelling-wave motor's stator: ceramic below, metal ring, teeth on top.
+
+    `tooth_model` is one of the two bounds of the tooth layer. Raises `InputError` if the outer
+    diameter does not exceed the mean diameter.
+    """
+    a = assumptions
+    si.require("outer_diameter", a.outer_diameter, _M, above=mean_diameter, below=2 * mean_diameter)
+    si.require("tooth_height", a.tooth_height, _M, at_least=0)
+    radial_width, loss_factor = a.outer_diameter - mean_diameter, 1 / a.quality_factor
+    inner, outer = (mean_diameter - radial_width) / 2, (mean_diameter + radial_width) / 2
+    solid = isotropic_solid(a.metal, loss_factor)
+    base = a.ceramic_thickness
+    layers = [
+        RingLayer(inner, outer, 0.0, base, piezoceramic_solid(a.ceramic, loss_factor)),
+        RingLayer(inner, outer, base, base + ring_thickness, solid),
+    ]
+    if a.tooth_height > 0:
+        low = base + ring_thickness
+        teeth = (stiff_teeth if tooth_model == "stiff" else soft_teeth)(solid, a.tooth_fill)
+        layers.append(RingLayer(inner, outer, low, low + a.tooth_height, teeth))
+    return AnnularSection(tuple(layers), wave_diameter=mean_diameter)
+
+
+@si.checked_numbers
+def fit_stator(
+    frequency: Annotated[si.Hertz, si.Above(0.0)] = 40.5e3,
+    wavelength: Annotated[si.Metre, si.Above(0.0)] = 18.7e-3,
+    waves: Annotated[int, si.AtLeast(2)] = 9,
+    assumptions: StatorAssumptions | None = None,
+) -> StatorFit:
+    """Fit the metal's thickness so that B(0, `waves`) falls on `frequency`.
+
+    The mean diameter is `waves` × `wavelength`/π; everything else is assumed (see
+    `StatorAssumptions`) and listed in the result. One frequency fits one dimension and validates
+    nothing: the amplitude that follows is a prediction under these assumptions.
+    Raises `UnreachableError` if no thickness of 0.3 to 10 mm has the frequency.
+    """
+    from scipy.optimize import brentq
+
+    assumed = assumptions or StatorAssumptions()
+    mean_diameter = waves * wavelength / math.pi
+
+    def section(thickness: float, teeth: ToothModel) -> AnnularSection:
+        return stator_section(mean_diameter, thickness, assumed, teeth)
+
+    # The ends are asked for twice.
+    @functools.cache
+    def above(thickness: float) -> float:
+        return bending_frequency(section(thickness, "soft"), waves) - frequency
+
+    low, high = (above(thickness) for thickness in _ENDS)
+    if low * high > 0:
+        raise UnreachableError(
+            f"no ring thickness from {si.format_quantity(_ENDS[0], _M)} to "
+            f"{si.format_quantity(_ENDS[1], _M)} puts B(0,{waves}) on "
+            f"{si.format_quantity(frequency, _HZ)}: it lies between "
+            f"{si.format_quantity(low + frequency, _HZ)} and "
+            f"{si.format_quantity(high + frequency, _HZ)}; change the assumptions",
+            quantity="frequency",
+        )
+    thickness = float(brentq(above, *_ENDS, xtol=_NEAR))
+    fitted = section(thickness, "soft")
+    mode = bending_mode(fitted, waves, quality_factor=assumed.quality_factor)
+    stiff = mode.frequency
+    if assumed.tooth_height > 0:
+        stiff = bending_frequency(section(thickness, "stiff"), waves)
+    return StatorFit(
+        section=fitted,
+        mode=mode,
+        drive=alternate_sectors(assumed.driven_sectors, math.pi / waves),
+        ring_thickness=thickness,
+        assumptions=assumed,
+        frequency_bounds=(mode.frequency, stiff),
+    )
+
 
 Direction = Literal["circumference", "diameter"]
 

@@ -17,8 +17,13 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.plate.elements.box_model import require_half_wave
-from squeezefilm.physics.plate.elements.sparse_modes import nearest_modes, shifted_inverse
-from squeezefilm.physics.plate.ring.elements import HarmonicSystem, harmonic_system, ring_mesh
+from squeezefilm.physics.plate.ring.elements import (
+    HarmonicSystem,
+    harmonic_system,
+    nearest_modes,
+    ring_mesh,
+    shifted_inverse,
+)
 from squeezefilm.physics.plate.ring.section import AnnularSection, SectorDrive
 
 DEFAULT_DEGREE = 5

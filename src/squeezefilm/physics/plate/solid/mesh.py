@@ -26,7 +26,7 @@ from squeezefilm.physics.plate.elements.box_model import (
     require_half_wave,
 )
 from squeezefilm.physics.plate.elements.lobatto import MAX_ORDER, LineMesh
-from squeezefilm.physics.plate.elements.slab_count import require_countable, require_memory
+from squeezefilm.physics.plate.elements.slabs import require_countable, require_memory
 from squeezefilm.physics.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
 from squeezefilm.physics.plate.solid.layers import (
     NORMAL,

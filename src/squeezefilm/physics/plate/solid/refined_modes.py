@@ -14,11 +14,12 @@ from squeezefilm.core.progress import Deadline
 from squeezefilm.physics.plate.elements.krylov import modes_near, orthonormal, prolonged
 from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.solid.coarse_modes import CoarseModes
-from squeezefilm.physics.plate.solid.electrode_circuits import (
+from squeezefilm.physics.plate.solid.coarse_modes import (
+    CoarseModes,
     inverse_with_open,
     open_values,
 )
+from squeezefilm.physics.plate.solid.forecast import expected_seconds
 from squeezefilm.physics.plate.solid.layers import COARSE, FINE, NORMAL, Resolution
 from squeezefilm.physics.plate.solid.mesh import plate_model
 from squeezefilm.physics.plate.solid.model import PlateModel
@@ -29,7 +30,6 @@ from squeezefilm.physics.plate.solid.modes import (
     surface_shapes,
 )
 from squeezefilm.physics.plate.solid.reduced import ReducedClass, resolved_frequency
-from squeezefilm.physics.plate.solid.size import expected_seconds
 
 LEVELS = (NORMAL, FINE)
 UNREFINED = -1

@@ -16,10 +16,9 @@ from squeezefilm.core.blas_threads import one_blas_thread
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import FREQUENCY
 from squeezefilm.physics.plate.circuit import DrivenResponse
-from squeezefilm.physics.plate.elements.again import SolvedAgain
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.layers import COARSE, NORMAL, Resolution
-from squeezefilm.physics.plate.solid.modes import MODEL, check_band
+from squeezefilm.physics.plate.solid.modes import MODEL, SolvedAgain, check_band
 from squeezefilm.physics.plate.solid.reduced import (
     ReducedClass,
     harmonic_solution,

@@ -30,7 +30,7 @@ from squeezefilm.physics.plate.solid.coarse_modes import (
     class_fits,
     coarse_modes,
 )
-from squeezefilm.physics.plate.solid.guess import estimated_frequency
+from squeezefilm.physics.plate.solid.forecast import estimated_frequency, expected_seconds
 from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.modes import (
     MODEL,
@@ -48,7 +48,6 @@ from squeezefilm.physics.plate.solid.refined_modes import (
     refined_modes,
     with_label,
 )
-from squeezefilm.physics.plate.solid.size import expected_seconds
 from squeezefilm.physics.plate.solid.symmetry import (
     Symmetry,
     all_classes,

@@ -1,4 +1,5 @@
-"""Mirror symmetry of a plate and of its drive: the classes S and A along each axis."""
+"""Mirror symmetry of a plate and of its drive: the classes S and A along each axis, and the modes
+that it forbids."""
 
 from __future__ import annotations
 
@@ -118,3 +119,50 @@ def told_of(parity: Symmetry) -> str:
         if own is not None
     ]
     return f"modes that move {' and '.join(said)}" if said else "all modes"
+
+
+_SIDES, _ENDS = ("length", "width"), ("left and right", "front and back")
+
+
+def forbidden_by(plate: RectangularPlate, label: tuple[int, int]) -> str | None:
+    """Reason why symmetry keeps the drive from a mode with these nodal lines, in a sentence; None
+    where it does not.
+
+    A mode with an odd number of lines across a side is turned over by the mirror in the middle of
+    that side, one with an even number is its own image. Where the plate is symmetric, a drive that
+    is its own image moves the second kind only, one that is turned over the first.
+    """
+    if only_stretches(plate):
+        return (
+            f"symmetry forbids ({label[0]},{label[1]}): every ceramic has its mirror image on the "
+            "other face, with the same sign, so that both stretch the plate alike and bend it "
+            "against each other. No mode of bending is driven; turn the polarity of the ceramics "
+            "on one face"
+        )
+    classes = drive_classes(plate)
+    for axis, lines in enumerate(label):
+        driven = {parity[axis] for parity in classes}
+        odd = lines % 2 == 1
+        if len(driven) > 1 or None in driven or ("A" in driven) == odd:
+            continue
+        kind, side = "odd" if odd else "even", _SIDES[axis]
+        pattern = (
+            f"the ceramics' signs are the same on both halves of the {side}"
+            if odd
+            else f"the ceramics' signs are opposite on the two halves of the {side}"
+        )
+        return (
+            f"symmetry forbids ({label[0]},{label[1]}): {pattern} ({_ENDS[axis]}), and in a mode "
+            f"with an {kind} number of nodal lines across the {side} "
+            + ("the two halves move against each other" if odd else "both halves move alike")
+            + f", so that what one half drives the other cancels. Modes with an "
+            f"{'even' if odd else 'odd'} number of lines across the {side} are driven; for this "
+            f"one turn the polarity of the ceramics on one half, or choose another nodal_lines"
+        )
+    return None
+
+
+def symmetry_in_words(parity: Symmetry) -> str:
+    """A class of symmetry as people say it."""
+    words = {"S": "even", "A": "odd", None: "no mirror"}
+    return f"{words[parity[0]]} along length, {words[parity[1]]} along width"

@@ -26,7 +26,7 @@ from squeezefilm.physics.plate.circuit import (
 )
 from squeezefilm.physics.plate.elements.nodal_lines import within_nodes, zero_crossings
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.solid.guess import estimated_frequency
+from squeezefilm.physics.plate.solid.forecast import estimated_frequency, solve_size
 from squeezefilm.physics.plate.solid.layers import Resolution
 from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.modes import COARSE_AMPLITUDE_ERROR, MODEL, Label, PlateModes
@@ -39,7 +39,6 @@ from squeezefilm.physics.plate.solid.resonances import (
     strongest_neighbour,
 )
 from squeezefilm.physics.plate.solid.response import HarmonicResponse, harmonic_response
-from squeezefilm.physics.plate.solid.size import solve_size
 from squeezefilm.physics.plate.solid.solve import solve_for_response
 
 RESPONSE_POINTS = 200

@@ -31,7 +31,7 @@ from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
 from squeezefilm.physics.contact.sharing.pad import FrictionRipple
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.uncertainty.draws import Refusals
-from squeezefilm.physics.uncertainty.influences import Influence
+from squeezefilm.physics.uncertainty.intervals import Influence
 from squeezefilm.physics.uncertainty.parameters import Knowledge, Parameter
 from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 

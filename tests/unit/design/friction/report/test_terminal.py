@@ -20,7 +20,7 @@ from squeezefilm.design.friction.command import Wanted
 from squeezefilm.design.friction.report.terminal import show_friction
 from squeezefilm.physics.chain.touch import Touch
 from squeezefilm.physics.uncertainty.draws import Refusals
-from squeezefilm.physics.uncertainty.influences import GroupInfluence, Influence
+from squeezefilm.physics.uncertainty.intervals import GroupInfluence, Influence
 from squeezefilm.physics.uncertainty.model_choices import LawChoice, LawOption
 from squeezefilm.physics.uncertainty.parameters import Parameter
 from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction

@@ -13,7 +13,7 @@ from squeezefilm.design.plate.report.terminal import fit_sentences, show_plate
 from squeezefilm.design.plate.ring import RingAnalysis
 from squeezefilm.design.plate.solved import ModeRow
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
-from squeezefilm.physics.plate.ring.stator import StatorAssumptions
+from squeezefilm.physics.plate.ring.body import StatorAssumptions
 
 WORKING = ModeRow("B(0,9)", 40523.4, 12.345, 212.34, 1.2e-7, 0.1234, 1.0, 9.3456e-3)
 ASIDE = ModeRow("T(0,2)", 41001.2, 12.0, 200.0, 1e-13, 0.0, 0.0, None)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import squeezefilm as sf
-from squeezefilm.physics.plate.elements.again import SolvedAgain
+from squeezefilm.physics.plate.solid.modes import SolvedAgain
 
 SOLVED = []
 

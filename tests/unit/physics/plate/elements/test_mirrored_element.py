@@ -5,9 +5,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.physics.plate.elements.block_ldl import partial_ldl
+from squeezefilm.physics.plate.elements.elimination import (
+    SliceMatrices,
+    mirrored_element,
+    partial_ldl,
+)
 from squeezefilm.physics.plate.elements.lobatto import line_matrices
-from squeezefilm.physics.plate.elements.mirrored_element import SliceMatrices, mirrored_element
 
 
 def slice_matrices(order: int, turned: int, straight: int, seed: int) -> SliceMatrices:

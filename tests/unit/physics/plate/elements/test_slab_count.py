@@ -13,13 +13,13 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import SOLID_MEMORY
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.elements import slab_count as counting
 from squeezefilm.physics.plate.elements import slabs
+from squeezefilm.physics.plate.elements import slabs as counting
 from squeezefilm.physics.plate.elements.box_model import BoxModel
 from squeezefilm.physics.plate.elements.cross_section import CrossSection
 from squeezefilm.physics.plate.elements.krylov import modes_near
-from squeezefilm.physics.plate.elements.slab_count import slab_count
 from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slabs import slab_count
 from squeezefilm.physics.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
 from squeezefilm.physics.plate.solid.layers import COARSE, FINE, NORMAL, Resolution
 from squeezefilm.physics.plate.solid.mesh import plate_model

@@ -8,7 +8,7 @@ from scipy import sparse
 from scipy.linalg import eigh
 
 from squeezefilm.core.errors import ConvergenceError
-from squeezefilm.physics.plate.elements.sparse_modes import entries, gathered, nearest_modes
+from squeezefilm.physics.plate.ring.elements import entries, gathered, nearest_modes
 
 SPRING = np.array([[1.0, -1.0], [-1.0, 1.0]])
 

@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 from squeezefilm.core.errors import InputError, UnreachableError
-from squeezefilm.physics.plate.ring import stator
+from squeezefilm.physics.plate.ring import body
+from squeezefilm.physics.plate.ring.body import StatorAssumptions, fit_stator, stator_section
 from squeezefilm.physics.plate.ring.section import alternate_sectors
-from squeezefilm.physics.plate.ring.stator import StatorAssumptions, fit_stator, stator_section
 
 
 def test_a_frequency_that_no_thickness_has_is_refused_with_those_that_some_has() -> None:
@@ -38,9 +38,9 @@ class Rings:
             _, thickness, _, teeth = made
             return (30e6 if teeth == "stiff" else 10e6) * thickness
 
-        monkeypatch.setattr(stator, "stator_section", section)
-        monkeypatch.setattr(stator, "bending_frequency", frequency)
-        monkeypatch.setattr(stator, "bending_mode", mode)
+        monkeypatch.setattr(body, "stator_section", section)
+        monkeypatch.setattr(body, "bending_frequency", frequency)
+        monkeypatch.setattr(body, "bending_mode", mode)
 
 
 def test_a_thickness_is_fitted(monkeypatch: pytest.MonkeyPatch) -> None:

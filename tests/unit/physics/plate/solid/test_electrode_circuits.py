@@ -10,8 +10,9 @@ import pytest
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.plate.elements.krylov import modes_near, with_open_electrodes
 from squeezefilm.physics.plate.layout import CeramicPatch, Electrode, RectangularPlate
-from squeezefilm.physics.plate.solid.coarse_modes import CoarseModes, coarse_modes
-from squeezefilm.physics.plate.solid.electrode_circuits import (
+from squeezefilm.physics.plate.solid.coarse_modes import (
+    CoarseModes,
+    coarse_modes,
     inverse_with_open,
     open_values,
     tied_electrodes,

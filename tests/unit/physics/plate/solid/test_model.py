@@ -18,8 +18,8 @@ from squeezefilm.physics.plate.solid.layers import COARSE
 from squeezefilm.physics.plate.solid.mesh import plate_model
 from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.refined_modes import with_coarse_modes
+from squeezefilm.physics.plate.solid.resonances import screened_modes
 from squeezefilm.physics.plate.solid.response import harmonic_response
-from squeezefilm.physics.plate.solid.screening import screened_modes
 from squeezefilm.physics.plate.solid.solve import solve_for_response, solve_modes
 from squeezefilm.physics.plate.solid.symmetry import Parity
 

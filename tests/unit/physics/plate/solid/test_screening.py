@@ -11,25 +11,25 @@ import pytest
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.beam.response import beam_response
+from squeezefilm.physics.plate.beam_response import beam_response
 from squeezefilm.physics.plate.layout import CeramicPatch, Electrode, RectangularPlate
-from squeezefilm.physics.plate.solid import screening
+from squeezefilm.physics.plate.solid import resonances
 from squeezefilm.physics.plate.solid.layers import SCREENING
 from squeezefilm.physics.plate.solid.resonances import (
+    SCREENING_ERROR,
     DrivenMode,
     Moving,
     antinode,
+    screened_modes,
     strongest_neighbour,
 )
 from squeezefilm.physics.plate.solid.response import harmonic_response
-from squeezefilm.physics.plate.solid.screening import (
-    SCREENING_ERROR,
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.solid.symmetry import (
+    drive_classes,
     forbidden_by,
-    screened_modes,
     symmetry_in_words,
 )
-from squeezefilm.physics.plate.solid.solve import solve_modes
-from squeezefilm.physics.plate.solid.symmetry import drive_classes
 from squeezefilm.physics.plate.solid.working import solid_mode
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480)
@@ -207,7 +207,7 @@ def test_a_space_grown_from_several_forces_holds_the_same_modes(
     assert isinstance(plate, RectangularPlate)
     band = 20e3, 45e3
     alone = screened_modes(plate, band)
-    monkeypatch.setattr(screening, "_LONG", 10)
+    monkeypatch.setattr(resonances, "_LONG", 10)
     together = [mode for mode in screened_modes(plate, band) if mode.alone_per_volt > 1e-12]
     assert len(together) == len(alone)
     for one, other in zip(alone, together, strict=True):

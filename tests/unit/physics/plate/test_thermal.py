@@ -8,7 +8,8 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import SOLID_HEAT
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.heat.thermal import (
+from squeezefilm.physics.plate.layout import AnnularStator, DiscPlate, RectangularPlate
+from squeezefilm.physics.plate.thermal import (
     CERAMIC_CONDUCTIVITY,
     GLASS_CONDUCTIVITY,
     STATOR_THICKNESS,
@@ -16,7 +17,6 @@ from squeezefilm.physics.plate.heat.thermal import (
     driven_thickness,
     thermal_body,
 )
-from squeezefilm.physics.plate.layout import AnnularStator, DiscPlate, RectangularPlate
 
 
 def test_a_plate_has_its_faces_and_the_heat_of_metal_and_ceramics() -> None:

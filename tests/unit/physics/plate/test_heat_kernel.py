@@ -1,4 +1,4 @@
-"""The compiled heat (`physics.plate.heat.kernel`) against textbooks, integrals and scipy."""
+"""The compiled heat (`physics.plate.heat_states`) against textbooks, integrals and scipy."""
 
 import math
 from typing import Any
@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from squeezefilm.physics.plate.heat import kernel as k
-from squeezefilm.physics.plate.heat.thermal import Cooling
+from squeezefilm.physics.plate import heat_states as k
+from squeezefilm.physics.plate.thermal import Cooling
 
 DRIVEN = k.Driven(30e3, 60.0, 2e-6, 5.0, 0.1)
 

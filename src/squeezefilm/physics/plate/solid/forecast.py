@@ -1,20 +1,28 @@
-"""Size of the three-dimensional solve of a plate, and how long it may take.
+"""Before a plate is solved: where to look for a mode, how large its meshes are, how long they take.
 
-Counted on the meshes that would be made, before anything is assembled.
+Sizes are counted on the meshes that would be made, before anything is assembled. For a frequency, a
+uniform beam takes ceramic to be everywhere; where a plate carries it on a part of its face only,
+the beam of pieces is the guide: it has the strips where they are.
 """
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
+import numpy as np
+
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import OutOfTimeError
+from squeezefilm.core.errors import InputError, OutOfTimeError, SqueezefilmError
 from squeezefilm.core.progress import Deadline
-from squeezefilm.physics.plate.elements.slab_count import SlabCount, slab_count
-from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.beam_modes import free_beam_mode, timoshenko_frequency
+from squeezefilm.physics.plate.beam_pieces import beam_pieces, pieced_beam_mode
+from squeezefilm.physics.plate.elements.slabs import SlabCount, slab_count
+from squeezefilm.physics.plate.laminate import plate_laminate, section_with
+from squeezefilm.physics.plate.layout import RectangularPlate, turned
 from squeezefilm.physics.plate.solid.coarse_modes import class_fits
 from squeezefilm.physics.plate.solid.layers import COARSE, NORMAL, Resolution
-from squeezefilm.physics.plate.solid.mesh import plate_model
+from squeezefilm.physics.plate.solid.mesh import plate_model, require_thin
 from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.modes import Label
 from squeezefilm.physics.plate.solid.reduced import resolved_frequency
@@ -26,6 +34,8 @@ from squeezefilm.physics.plate.solid.symmetry import all_classes, drive_classes
 _RATE, _RESPONSE_RATE = 2.0e9, 6.5e6
 # Around what a mesh takes besides (s).
 _BESIDES = 0.15
+# From this share of the plate on, ceramics stiffen it as if they were everywhere.
+_COVERED = 0.8
 
 
 class SolveSize(NamedTuple):
@@ -107,3 +117,76 @@ def band_seconds(plate: RectangularPlate, highest: si.Hertz) -> si.Second:
     """
     meshes = [plate_model(plate, highest, COARSE, parity) for parity in all_classes(plate)]
     return 3 * sum(expected_seconds(mesh) for mesh in meshes)
+
+
+def estimated_frequency(plate: RectangularPlate, label: Label) -> float:
+    """A first guess of a mode's frequency (Hz): a Timoshenko beam with the mode's wave number, or
+    `pieced_frequency` where ceramics cover little of it. Raises `InputError` for a mode that does
+    not bend the plate, `OutOfRangeError` for one of waves across the thickness."""
+    frequency = _guess(plate, label)
+    require_thin(plate, frequency, f"mode ({label[0]},{label[1]}) near")
+    return frequency
+
+
+def _guess(plate: RectangularPlate, label: Label) -> float:
+    section = plate_laminate(plate, "plane_strain")
+    k2 = _wave_number(plate, label) ** 2
+    k2 += 2 * (np.pi / plate.length) * (np.pi / plate.width) if label == (1, 1) else 0.0
+    if k2 == 0:
+        raise InputError(
+            f"a mode with nodal lines {label} is no elastic mode that can be guessed; solve near a "
+            "frequency or in a band",
+            quantity="mode",
+        )
+    if plate.coverage < _COVERED and _wave_number(plate, label):
+        return pieced_frequency(plate, label)
+    if label[1] == 0:
+        try:
+            return free_beam_mode(section, plate.length, label[0]).frequency
+        except SqueezefilmError:
+            pass
+    return float(timoshenko_frequency(float(np.pi / np.sqrt(k2)), section))
+
+
+def bare_frequency(plate: RectangularPlate, label: Label) -> si.Hertz:
+    """The frequency of the substrate alone (Hz), with free edges: k of a free-free beam along each
+    side, Kirchhoff's plate. Good to 10 % for plates thin against the half wavelength.
+
+    0 for labels that are no bending (fewer than two lines across a side do not bend it).
+    """
+    substrate, h = plate.substrate, plate.thickness
+    stiffness = substrate.plane_strain_modulus * h**3 / 12
+    k2 = _wave_number(plate, label) ** 2
+    return k2 / (2 * math.pi) * math.sqrt(stiffness / (substrate.density * h))
+
+
+def _wave_number(plate: RectangularPlate, label: Label) -> float:
+    """Wave number of a free plate's bending with these nodal lines (1/m): 0 for fewer than two."""
+    spans = (plate.length, plate.width)
+    return math.hypot(
+        *((n - 0.5) * math.pi / span for n, span in zip(label, spans, strict=True) if n > 1)
+    )
+
+
+def pieced_frequency(plate: RectangularPlate, label: Label) -> si.Hertz:
+    """The frequency of a bending mode of a plate that is covered in part (Hz).
+
+    By the beam of pieces where all lines run one way, within 13 % of solved plates as
+    `beam_response` is. With lines both ways that of a wave between the bare plate and the covered
+    one, by how much is covered.
+    """
+    if min(label) == 0:
+        pieces = beam_pieces(plate if label[0] else turned(plate), "plane_strain")
+        try:
+            return pieced_beam_mode(pieces, max(label)).frequency
+        except SqueezefilmError:
+            pass
+    half = math.pi / _wave_number(plate, label)
+    bare, covered = (
+        float(timoshenko_frequency(half, section))
+        for section in (
+            section_with(plate, "plane_strain", 0.0, 0.0),
+            plate_laminate(plate, "plane_strain"),
+        )
+    )
+    return bare + plate.coverage * (covered - bare)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import ConvergenceError
-from squeezefilm.physics.plate.elements.block_ldl import Matrix, partial_ldl
+from squeezefilm.physics.plate.elements.elimination import Matrix, partial_ldl
 
 
 def symmetric(size: int, dtype: type = float) -> Matrix:

@@ -11,8 +11,8 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.core.materials import VACUUM_PERMITTIVITY
-from squeezefilm.physics.plate.beam.modes import BeamMode, BeamTheory, free_beam_mode
-from squeezefilm.physics.plate.beam.pieces import beam_pieces, pieced_beam_mode, stressed_span
+from squeezefilm.physics.plate.beam_modes import BeamMode, BeamTheory, free_beam_mode
+from squeezefilm.physics.plate.beam_pieces import beam_pieces, pieced_beam_mode, stressed_span
 from squeezefilm.physics.plate.laminate import (
     CrossSection,
     Laminate,

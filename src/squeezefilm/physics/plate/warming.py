@@ -12,24 +12,25 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.plate.beam.response import patch_capacitance
-from squeezefilm.physics.plate.heat.kernel import conductance, lost
-from squeezefilm.physics.plate.heat.states import (
+from squeezefilm.physics.plate.beam_response import patch_capacitance
+from squeezefilm.physics.plate.heat_states import (
     ASSUMED_EMISSIVITY,
     HOTTEST,
     HeatSource,
     WarmCase,
     WarmState,
+    conductance,
+    lost,
     warmth_ranges,
 )
-from squeezefilm.physics.plate.heat.thermal import (
+from squeezefilm.physics.plate.layout import Actuator, RectangularPlate
+from squeezefilm.physics.plate.thermal import (
     LOSS_TANGENT,
     Thermal,
     ThermalBody,
     driven_thickness,
     thermal_body,
 )
-from squeezefilm.physics.plate.layout import Actuator, RectangularPlate
 from squeezefilm.physics.plate.working_mode import WorkingMode
 
 HARD_QUALITY = 200.0
@@ -121,7 +122,7 @@ def warming(
     `frequency` (Hz) is the fixed one; the cold resonance without one. Coefficients are constant,
     which holds for some tens of kelvin, and neighbouring modes are left out. The plate is of one
     temperature, horizontal, free in still air: supports, leads, housing and finger take nothing.
-    Equations and sources: `squeezefilm.physics.plate.heat.kernel`.
+    Equations and sources: `squeezefilm.physics.plate.heat_states`.
 
     A plate that finds no state below 2000 K is given as 2000 K warm, with a doubt.
     """

@@ -8,21 +8,21 @@ import pytest
 from scipy.optimize import brentq
 
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.beam.response import patch_capacitance
-from squeezefilm.physics.plate.heat.kernel import conductance
-from squeezefilm.physics.plate.heat.states import (
+from squeezefilm.physics.plate.beam_response import patch_capacitance
+from squeezefilm.physics.plate.heat_states import (
     EMISSIVITIES,
     HeatSource,
+    conductance,
     cooling_of,
     heat_capacity,
 )
-from squeezefilm.physics.plate.heat.thermal import LOSS_TANGENT, Thermal, thermal_body
-from squeezefilm.physics.plate.heat.warming import (
+from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.thermal import LOSS_TANGENT, Thermal, thermal_body
+from squeezefilm.physics.plate.warming import (
     heat_source,
     warming,
     warming_of_mode,
 )
-from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.working_mode import working_mode
 
 DISPLAY = load_display("biet2008-plate")

@@ -1,7 +1,7 @@
 """A free–free Timoshenko beam that carries ceramic in places: its modes by high-order elements.
 
 Each piece along the beam has the bending and shear stiffness and the inertia of what lies there;
-the equations within a piece are those of `physics.plate.beam.modes`. A ceramic counts with its mass
+the equations within a piece are those of `physics.plate.beam_modes`. A ceramic counts with its mass
 from end to end. No stress passes through its end faces, so that it stiffens and drives from a part
 of its thickness further in (`UNSTRESSED`).
 """
@@ -18,7 +18,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import OutOfRangeError
-from squeezefilm.physics.plate.beam.modes import (
+from squeezefilm.physics.plate.beam_modes import (
     BeamMode,
     require_nodal_lines,
     scaled_mode,
