@@ -128,7 +128,8 @@ NOT_CALLED = {
     physics.plate.elements.elimination.LDLSteps physics.plate.solid.coarse_modes.tied_electrodes
     physics.plate.solid.coarse_modes.CoarseModes physics.plate.solid.coarse_modes.chosen_modes
     physics.plate.solid.coarse_modes.class_fits physics.plate.solid.coarse_modes.coarse_modes
-    physics.plate.solid.forecast.estimated_frequency physics.plate.elements.cross_section.CrossSection
+    physics.plate.solid.forecast.estimated_frequency
+    physics.plate.elements.cross_section.CrossSection
     physics.plate.elements.cross_section.cross_section
     physics.plate.solid.coarse_modes.open_values
     physics.plate.solid.refined_modes.extrapolated_class physics.plate.elements.krylov.modes_below
