@@ -68,7 +68,7 @@ class Screening:
         rule: of the design.
         people: everybody, judged.
         results: the main number (Weber fraction, exponent, d′ or share of right answers) of
-            "everybody", "without those named", and "robust, everybody".
+            "everybody" and "without those named".
         said: of all people together; empty for nothing.
     """
 

@@ -40,8 +40,6 @@ USUAL_SPREAD = 0.5
 """Scale of τ's half-normal prior (1): thresholds of most people lie within a factor of e of the
 middle one. Assumed."""
 _NARROWEST = 1e-3
-NOT_DOING_IT: si.Dimensionless = 0.1
-"""Share of people who do not do the task, as a robust estimate has it. Assumed."""
 # Spreads at which the scatter of people is computed; two people may bound theirs nowhere below.
 _TRIED = np.concatenate([[0.0], np.geomspace(1e-3, 1e3, 700)])
 
@@ -69,14 +67,11 @@ class PersonLikelihood:
         width: of each cell, likewise.
         likelihood: of the answers at x under each of `MEAN_LAPSES`, up to one factor, shape
             (lapses, cells).
-        otherwise: likelihood of the answers from somebody who does not do the task, up to the same
-            factor; 0 where it is not known.
     """
 
     x: si.FloatArray
     width: si.FloatArray
     likelihood: si.FloatArray
-    otherwise: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,18 +180,6 @@ class Population:
         # People who are more alike than chance makes them refuse every spread.
         least, most = min(least, spread), max(most, spread)
         return PopulationEstimate(mean, low, high, spread, least, most, level, logs.shape[0])
-
-    def robust(self, level: si.Dimensionless = 0.95) -> tuple[float, float, float]:
-        """Lower end, median and upper end of the mean over people who do the task, where each may
-        be one of the `NOT_DOING_IT` who do not: a mixture in place of a verdict."""
-        si.require("level", level, above=0.0, below=1.0)
-        greatest = [(person.likelihood * person.width).max() for person in self._people]
-        other = np.array([person.otherwise for person in self._people]) / np.array(greatest)
-        # The densities over x leave this factor out.
-        with np.errstate(divide="ignore"):
-            otherwise = np.log(NOT_DOING_IT * other * np.sqrt(2 * np.pi))
-        mixed = np.logaddexp(np.log(1 - NOT_DOING_IT) + self._logs, otherwise[:, None, None, None])
-        return self._mean(mixed.sum(axis=0), level)
 
     def _mean(self, total: si.FloatArray, level: float) -> tuple[float, float, float]:
         """Ends and median of μ from the logarithm of a likelihood of all people."""
