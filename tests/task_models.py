@@ -1,22 +1,86 @@
-"""Models of the tasks for `Placement`: of two answers and of many, with one parameter to three."""
+"""Models of tasks, of two answers and of many, with one parameter to three; and the choice of the
+stimulus whose answer is expected to tell the most of them."""
 
 from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
 from scipy.special import ndtr
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75
-from squeezefilm.study.adaptive.placement import PlacementModel
+from squeezefilm.study.adaptive.bayesian import information
 
 Rates = Annotated[si.DimensionlessArray, si.AtLeast(0.0), si.Below(1.0)]
 Positive = Annotated[si.FloatArray, si.Above(0.0)]
 LAPSES: si.DimensionlessArray = np.array([0.005, 0.02, 0.05, 0.1])
+
+
+@dataclass(frozen=True, eq=False)
+class PlacementModel:
+    """Chances of each answer, shape (answers, cells, stimuli), to stimuli under every combination
+    (cell) of the parameters' values, the last running fastest. The first `interest` parameters are
+    of interest; `prior` is of those that are not equally probable."""
+
+    parameters: Mapping[str, si.FloatArray]
+    stimuli: si.FloatArray
+    answers: tuple[str, ...]
+    chances: si.DimensionlessArray
+    prior: Mapping[str, si.FloatArray]
+    interest: int = 1
+
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Numbers of values of the parameters."""
+        return tuple(len(values) for values in self.parameters.values())
+
+    def first_weights(self) -> si.DimensionlessArray:
+        """Probability of each cell before any answer, shape (cells,); sums to 1."""
+        weights = np.ones(1)
+        for name, values in self.parameters.items():
+            own = np.asarray(self.prior.get(name, np.ones(len(values))), dtype=float)
+            weights = np.multiply.outer(weights, own / own.sum()).ravel()
+        return weights
+
+
+class Placement:
+    """A choice of stimuli as it runs: `next_stimulus`, then `update`, until `finished`."""
+
+    def __init__(self, model: PlacementModel, trials: int) -> None:
+        self.model, self.trials = model, trials
+        self._weights, self._given = model.first_weights(), 0
+
+    @property
+    def finished(self) -> bool:
+        """True where it has its trials."""
+        return self._given >= self.trials
+
+    @property
+    def probability(self) -> si.DimensionlessArray:
+        """Posterior probability of each cell, an axis for each parameter; sums to 1."""
+        return self._weights.reshape(self.model.sizes)
+
+    def expected_information(self) -> si.FloatArray:
+        """Information of the next answer to each stimulus on what is of interest (nat)."""
+        told = np.empty(len(self.model.stimuli))
+        nuisance = math.prod(self.model.sizes[self.model.interest :])
+        information(self._weights, np.ascontiguousarray(self.model.chances[:-1]), nuisance, told)
+        return told
+
+    def next_stimulus(self) -> int:
+        """The number of the stimulus whose answer tells the most; of equals the first."""
+        return int(np.argmax(self.expected_information()))
+
+    def update(self, stimulus: int, answer: int) -> None:
+        """Take in the answer to whatever stimulus was shown, both by number."""
+        weights = self._weights * self.model.chances[answer, :, stimulus]
+        self._weights = weights / weights.sum()
+        self._given += 1
 
 
 def _lapse_prior(lapses: si.DimensionlessArray) -> dict[str, si.FloatArray]:
@@ -34,7 +98,6 @@ def _two(
     return (first, second), np.stack([chance, 1.0 - chance])
 
 
-@si.checked_numbers
 def two_interval_model(
     differences: si.FloatArray,
     weber_fractions: Positive,
@@ -44,7 +107,7 @@ def two_interval_model(
     """Two intervals, which has more: λ/2 + (1 − λ) Φ((Δ − b)/s), s of the Weber fraction.
 
     `differences` are of the logarithms of first and second; `biases` b likewise (none without
-    them). Of interest is the Weber fraction. Raises `InputError` as `PlacementModel` does.
+    them). Of interest is the Weber fraction.
     """
     bias = np.zeros(1) if biases is None else biases
     weber, b, lapse = _grid(weber_fractions, bias, lapses)
@@ -61,7 +124,6 @@ def differencing_rate(d_prime: float, criterion: float) -> float:
     return float(ndtr((d_prime - criterion) / root) + ndtr((-d_prime - criterion) / root))
 
 
-@si.checked_numbers
 def same_different_model(
     differences: Annotated[si.FloatArray, si.AtLeast(0.0)],
     weber_fractions: Positive,
@@ -72,14 +134,8 @@ def same_different_model(
 
     `differences` are of the logarithms, 0 among them or the criterion is not told from the Weber
     fraction; `criteria` are in standard deviations of one percept. Of interest is the Weber
-    fraction. Raises `InputError` where 0 is not among the differences, or as `PlacementModel` does.
+    fraction.
     """
-    if not np.any(differences == 0.0):
-        raise InputError(
-            "without a pair that is the same nobody can tell who is sharp from who says "
-            "'different'; put 0 among the differences",
-            quantity="differences",
-        )
     weber, limit, lapse = _grid(weber_fractions, criteria, lapses)
     z = differences * D_PRIME_OF_75 / np.log1p(weber)
     rise = ndtr((z - limit) / math.sqrt(2)) + ndtr((-z - limit) / math.sqrt(2))
@@ -88,18 +144,14 @@ def same_different_model(
     return PlacementModel(parameters, differences, answers, chances, _lapse_prior(lapses))
 
 
-@si.checked_numbers
 def match_to_sample_model(
     values: Positive, weber_fractions: Positive, lapses: Rates = LAPSES
 ) -> PlacementModel:
     """Match to sample: an observer of the logarithm with criteria midway between the samples.
 
     `values` rise, two or more; each is a stimulus and the right answer to it. Who lapses says any
-    answer. Of interest is the Weber fraction. Raises `InputError` for values that do not rise, or
-    as `PlacementModel` does.
+    answer. Of interest is the Weber fraction.
     """
-    if np.any(np.diff(values) <= 0.0):
-        raise InputError("values must rise; sort them, each only once", quantity="values")
     weber, lapse = _grid(weber_fractions, lapses)
     places = np.log(values)
     limits = np.concatenate([[-np.inf], 0.5 * (places[1:] + places[:-1]), [np.inf]])
@@ -110,7 +162,6 @@ def match_to_sample_model(
     return PlacementModel(parameters, values, answers, chances, _lapse_prior(lapses))
 
 
-@si.checked_numbers
 def magnitude_model(
     values: Positive,
     exponents: si.FloatArray,
@@ -123,11 +174,8 @@ def magnitude_model(
 
     Numbers are told apart as far as `edges` do, rising: the number of an answer is
     ``np.searchsorted(edges, number)``. `scales` are numbers given to the mean, `noises` the
-    standard deviation of the logarithm. Of interest is the exponent. Raises `InputError` for edges
-    that do not rise, or as `PlacementModel` does.
+    standard deviation of the logarithm. Of interest is the exponent.
     """
-    if np.any(np.diff(edges) <= 0.0):
-        raise InputError("edges must rise; sort them, each only once", quantity="edges")
     exponent, scale, noise = _grid(exponents, scales, noises)
     places = np.log(values) - np.log(values).mean()
     limits = np.concatenate([[-np.inf], np.log(edges), [np.inf]])[:, None, None]

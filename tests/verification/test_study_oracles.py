@@ -15,6 +15,7 @@ import pytest
 from tests.recovery import task_people
 from tests.recovery.task_people import DESIGNS, Person, answered, somebody
 from tests.task_models import (
+    Placement,
     magnitude_model,
     match_to_sample_model,
     same_different_model,
@@ -22,7 +23,6 @@ from tests.task_models import (
 )
 
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.adaptive.placement import Placement
 from squeezefilm.study.design.tasks.two_surfaces import QUARTILE
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior

@@ -9,6 +9,7 @@ entropy of the answer, which is the same and needs one pass over the grid.
 from __future__ import annotations
 
 import functools
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,8 +17,8 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.compiled import compiled
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.adaptive.placement import information
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.function import (
     Axis,
@@ -208,3 +209,52 @@ def _probabilities(design: AdaptiveDesign, places: si.FloatArray) -> si.FloatArr
     guess = design.guess_rate
     psi = guess + np.maximum(1.0 - guess - lapse[None, :, None], 0.0) * rise[:, None, :]
     return np.ascontiguousarray(psi.reshape(-1, places.size))
+
+
+@compiled(error_model="numpy")
+def _term(p: float) -> float:
+    """−p ln p."""
+    return -p * math.log(p) if p > 0.0 else 0.0
+
+
+@compiled(error_model="numpy")
+def information(
+    weights: si.FloatArray, chances: si.FloatArray, nuisance: int, told: si.FloatArray
+) -> None:
+    """Mutual information (nat) of the next answer and what is of interest, of every stimulus.
+
+    `weights` (cells,) sum to 1; `chances` (answers − 1, cells, stimuli) are the probabilities of
+    all answers but the last. Of every `nuisance` cells in a row only the sum is of interest. Fills
+    `told` (stimuli,).
+    """
+    answers, cells, stimuli = chances.shape
+    total = np.zeros((answers, stimuli))
+    joint = np.empty((answers, stimuli))
+    told[:] = 0.0
+    for first in range(0, cells, nuisance):
+        share = 0.0
+        for cell in range(first, first + nuisance):
+            share += weights[cell]
+        if share <= 0.0:
+            continue
+        joint[:] = 0.0
+        for answer in range(answers):
+            here = joint[answer]
+            for cell in range(first, first + nuisance):
+                weight, chance = weights[cell], chances[answer, cell]
+                for at in range(stimuli):
+                    here[at] += weight * chance[at]
+        for at in range(stimuli):
+            rest, known = share, 0.0
+            for answer in range(answers):
+                rest -= joint[answer, at]
+                total[answer, at] += joint[answer, at]
+                known += _term(joint[answer, at] / share)
+            told[at] -= share * (known + _term(rest / share))
+    for at in range(stimuli):
+        rest, guessed = 1.0, 0.0
+        for answer in range(answers):
+            p = total[answer, at]
+            rest -= p
+            guessed += _term(p)
+        told[at] += guessed + _term(rest)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from scipy.special import ndtr
 
 from squeezefilm.core import quantities as si
-from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.adaptive.placement import Placement, PlacementModel
+from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive, information
 from squeezefilm.study.adaptive.staircase import Runs, Staircase, StaircaseRule
 from squeezefilm.study.design.rules import AdaptiveCondition
 from squeezefilm.study.design.tasks.every_task import TASKS
@@ -28,9 +28,26 @@ _SPREAD_EVERY = 4
 _LAPSES = np.array([0.01, 0.04, 0.1, 0.2, 0.35])
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _TaskModel:
+    """Chances of a task's answers under each combination (cell) of its parameters.
+
+    `differences` rise, of levels, shape (differences,); `answers` are two, `chances` those of the
+    first, shape (cells, differences); `prior` is of the cells, those of each of the `thresholds` in
+    a row, with everything else that is integrated out.
+    """
+
+    differences: si.FloatArray
+    thresholds: si.FloatArray
+    answers: tuple[str, str]
+    chances: si.DimensionlessArray
+    prior: si.DimensionlessArray
+
+
 class ModelSeries:
     """The differences of a series by the model of its task: those whose answers tell the most of
-    the threshold; every fourth goes through all differences in turn.
+    the threshold (QUEST+: Watson 2017, 10.1167/17.3.10); every fourth goes through all differences
+    in turn.
 
     What tells the most lies near one difference, from which nobody can tell a sharp person who
     lapses often from one who is less sharp; the fourths show the whole function. Trials of the
@@ -43,45 +60,57 @@ class ModelSeries:
     def __init__(self, series: AdaptiveCondition, task: Task) -> None:
         described = TASKS[task]
         in_amounts = described.compares_amounts(series.varied)
-        ends = series.lowest, series.highest
-        self._differences, model = _placement(ends, task, in_amounts)
+        self._model = _task_model((series.lowest, series.highest), task, in_amounts)
         # As intensities have them, in parts of the reference or amounts.
-        self._choices = self._differences if in_amounts else np.expm1(self._differences)
-        self._hears_choice = hears_choice(series, described)
-        self.placement = Placement(model, series.count)
+        differences = self._model.differences
+        self._choices = differences if in_amounts else np.expm1(differences)
+        self._hears_choice, self._count = hears_choice(series, described), series.count
+        self._weights = self._model.prior
+        self._trials = self._asked = 0
 
     @property
     def finished(self) -> bool:
         """True where it has its trials."""
-        return self.placement.finished
+        return self._trials >= self._count
+
+    def estimate(self) -> tuple[si.Dimensionless, si.Dimensionless]:
+        """Posterior mean and standard deviation of the threshold, in parts of the reference or as
+        an amount; for intervals use the task's own analysis."""
+        thresholds = self._model.thresholds
+        weights = self._weights.reshape(thresholds.size, -1).sum(axis=1)
+        mean = float(weights @ thresholds)
+        return mean, float(np.sqrt(weights @ (thresholds - mean) ** 2))
 
     def next_stimulus(self) -> si.Dimensionless:
         """The next difference other than 0, in parts of the reference or as an amount."""
-        real = np.flatnonzero(self._differences)
-        asked = sum(self._differences[number] != 0 for number, _ in self.placement.given)
-        if asked % _SPREAD_EVERY == _SPREAD_EVERY - 1:
+        model = self._model
+        real = np.flatnonzero(model.differences)
+        if self._asked % _SPREAD_EVERY == _SPREAD_EVERY - 1:
             # Steps of 17 come to each of the forty once before any comes again.
-            return float(self._choices[real[17 * (asked // _SPREAD_EVERY) % real.size]])
-        told = self.placement.expected_information()[real]
-        return float(self._choices[real[int(np.argmax(told))]])
+            return float(self._choices[real[17 * (self._asked // _SPREAD_EVERY) % real.size]])
+        told = np.empty(model.differences.size)
+        nuisance = model.prior.size // model.thresholds.size
+        information(self._weights, model.chances[None], nuisance, told)
+        return float(self._choices[real[int(np.argmax(told[real]))]])
 
     def update(self, intensity: si.Dimensionless, answered: bool | str) -> None:
         """Take in an answer to a difference: the answer itself of one surface, else whether it was
         right; 0 is the reference alone."""
-        number = int(np.argmin(np.abs(self._choices - intensity)))
+        number, model = int(np.argmin(np.abs(self._choices - intensity))), self._model
+        # The first answer, which is counted, is right of all but the reference alone.
+        is_first = answered == (intensity > 0)
         if self._hears_choice:
-            answer = self.placement.model.answers.index(str(answered))
-        else:
-            # The first answer, which is counted, is right of all but the reference alone.
-            answer = int(answered != (intensity > 0))
-        self.placement.update(number, answer)
+            is_first = answered == model.answers[0]
+        chance = model.chances[:, number]
+        weights = self._weights * (chance if is_first else 1.0 - chance)
+        self._weights = weights / float(weights.sum())
+        self._trials += 1
+        self._asked += bool(model.differences[number])
 
 
 @functools.lru_cache(maxsize=8)
-def _placement(
-    ends: tuple[float, float], task: Task, in_amounts: bool
-) -> tuple[si.FloatArray, PlacementModel]:
-    """Differences to choose from, rising, and the chances of a task's answers to them."""
+def _task_model(ends: tuple[float, float], task: Task, in_amounts: bool) -> _TaskModel:
+    """The model of a task's answers to the differences that a series may choose between."""
     described = TASKS[task]
     model = described.model
     assert model is not None
@@ -93,9 +122,8 @@ def _placement(
     thresholds = np.geomspace(ends[0] / 4, 4 * ends[1], _THRESHOLDS)
     within = model.criteria[model.criteria <= _LARGEST_CRITERION]
     criteria = within[within.size // 2 % 3 :: 3]
-    parameters = {"threshold": thresholds, "criterion": criteria, "lapse rate": _LAPSES}
     # Every combination, the last running fastest.
-    grid = np.meshgrid(*parameters.values(), indexing="ij")
+    grid = np.meshgrid(thresholds, criteria, _LAPSES, indexing="ij")
     threshold, criterion, lapse = (axis.reshape(-1, 1) for axis in grid)
     deviation = (threshold if in_amounts else np.log1p(threshold)) / model.threshold
     if model.rate is None:
@@ -105,9 +133,10 @@ def _placement(
     counted = model.lapses * lapse + (1.0 - lapse) * rise
     answers = ("right", "wrong") if model.counts < 0 else described.answers[:: 1 - 2 * model.counts]
     # The prior of psychometric functions, Beta(1, 10).
-    prior = {"lapse rate": (1.0 - _LAPSES) ** 9}
-    chances = np.stack([counted, 1.0 - counted])
-    return differences, PlacementModel(parameters, differences, answers, chances, prior)
+    prior, lapses = np.ones(1), (1.0 - _LAPSES) ** 9
+    for own in (np.ones(thresholds.size), np.ones(criteria.size), lapses):
+        prior = np.multiply.outer(prior, own / own.sum()).ravel()
+    return _TaskModel(differences, thresholds, (answers[0], answers[1]), counted, prior)
 
 
 def hears_choice(series: AdaptiveCondition, task: StudyTask) -> bool:

@@ -34,75 +34,42 @@ if TYPE_CHECKING:
     from squeezefilm.physics.render.motion.finger_path import FingerPath
 
 _KEPT: Kept[Candidates] = Kept("percepts", Candidates)
-_MOST_REMEMBERED = 8192
 _REMEMBERED: dict[str, Candidates] = {}
 """Percepts that this process has met, by request: to be quick, and where no disk keeps them."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Asked:
-    """Request for percepts of surfaces under a finger: `feel` of each, `rest` of its inputs."""
-
-    feel: Callable[..., Candidates]
-    surfaces: tuple[Any, ...]
-    rest: tuple[Any, ...]
-
-    def known(self) -> list[Candidates] | None:
-        """Percepts computed before; None unless all was."""
-        percepts = [_known(_name(self.feel, surface, self.rest)) for surface in self.surfaces]
-        return None if None in percepts else [felt for felt in percepts if felt is not None]
-
-
-def felt_surfaces(asked: list[Asked], tell: SayProgress) -> list[list[Candidates]]:
-    """Percepts of each finger; those that are not known yet are computed."""
-    felt = [request.known() for request in asked]
-    lacking = [at for at, known in enumerate(felt) if known is None]
-    with one_blas_thread():
-        for number, at in enumerate(lacking, 1):
-            tell(f"what fingers feel: {number} of {len(lacking)}")
-            request = asked[at]
-            felt[at] = [request.feel(surface, *request.rest) for surface in request.surfaces]
-    return [known for known in felt if known is not None]
+def _known(
+    feel: Callable[..., Candidates],
+    surface: Stimulus | Grating,
+    rest: tuple[Any, ...],
+    make: Callable[[], Candidates],
+) -> Candidates:
+    """Percept computed before, in this process or by what is on disk, or made now. It is asked for
+    by how it is felt, the surface, and the `rest` of what decides."""
+    asked = f"{feel.__name__} {' '.join(_hash(part) for part in rest)} {_name(surface)}"
+    if asked not in _REMEMBERED:
+        _REMEMBERED[asked] = _KEPT.found(asked, make)
+    return _REMEMBERED[asked]
 
 
-def _name(feel: Callable[..., Candidates], surface: Stimulus | Grating, rest: Any) -> str:
-    """Text of a request: how, the surface, and all else that decides what is felt of it."""
-    parts = " ".join(_hash(part) for part in rest)
+def _name(surface: Stimulus | Grating) -> str:
     if isinstance(surface, Grating):
-        return f"{feel.__name__} {parts} {config_hash(surface)}"
+        return config_hash(surface)
     # Two kinds of texture may have the same numbers, and the text of an image leaves out pixels.
     texture = surface.surface()
-    return f"{feel.__name__} {parts} {texture!r} {config_hash(texture)} {surface.period!r}"
-
-
-def _known(asked: str) -> Candidates | None:
-    """Percept computed before: in this process, or by what is on disk."""
-    if asked not in _REMEMBERED and (kept := _KEPT.get(asked)) is not None:
-        _remember(asked, kept)
-    return _REMEMBERED.get(asked)
-
-
-def _remember(asked: str, found: Candidates) -> None:
-    while len(_REMEMBERED) >= _MOST_REMEMBERED:
-        del _REMEMBERED[next(iter(_REMEMBERED))]
-    _REMEMBERED[asked] = found
-
-
-def _keep(asked: str, found: Candidates) -> Candidates:
-    _KEPT.put(asked, found)
-    _remember(asked, found)
-    return found
+    return f"{texture!r} {config_hash(texture)} {surface.period!r}"
 
 
 def felt_by_strokes(
     stimulus: Stimulus, display: Display, observer: Observer, finger: FingerClass, run: Apparatus
 ) -> Candidates:
     """A virtual surface under strokes along x, shape (1, candidates)."""
-    asked = _name(felt_by_strokes, stimulus, (display, observer, finger, run))
-    if (known := _known(asked)) is not None:
-        return known
-    found, _ = percept(display, stimulus, observer, finger, run)
-    return _keep(asked, _by_direction(found.candidates))
+
+    def make() -> Candidates:
+        found, _ = percept(display, stimulus, observer, finger, run)
+        return _by_direction(found.candidates)
+
+    return _known(felt_by_strokes, stimulus, (display, observer, finger, run), make)
 
 
 def felt_freely(
@@ -110,20 +77,20 @@ def felt_freely(
 ) -> Candidates:
     """A virtual surface under a plain hand that explores the face freely: along x and along y,
     shape (2, candidates)."""
-    asked = _name(felt_freely, stimulus, (display, observer, finger, run))
-    if (known := _known(asked)) is not None:
-        return known
-    from squeezefilm.physics.perception.path_percepts import path_percept
-    from squeezefilm.physics.texture_files.texture_file import TextureFile
 
-    path = free_path(display, observer, finger)
-    surface = TextureFile(stimulus.surface(), stimulus.name)
-    found = path_percept(display, surface, observer, finger, [path], run)
-    # The hand sweeps both ways, on lines far longer than the shortest run.
-    assert found.along is not None
-    assert found.across is not None
-    both = found.along.percept.candidates, found.across.percept.candidates
-    return _keep(asked, _by_direction(*both))
+    def make() -> Candidates:
+        from squeezefilm.physics.perception.path_percepts import path_percept
+        from squeezefilm.physics.texture_files.texture_file import TextureFile
+
+        path = free_path(display, observer, finger)
+        surface = TextureFile(stimulus.surface(), stimulus.name)
+        found = path_percept(display, surface, observer, finger, [path], run)
+        # The hand sweeps both ways, on lines far longer than the shortest run.
+        assert found.along is not None
+        assert found.across is not None
+        return _by_direction(found.along.percept.candidates, found.across.percept.candidates)
+
+    return _known(felt_freely, stimulus, (display, observer, finger, run), make)
 
 
 def _by_direction(*directions: Candidates) -> Candidates:
@@ -135,10 +102,12 @@ def _by_direction(*directions: Candidates) -> Candidates:
 
 def felt_really(grating: Grating, observer: Observer, finger: FingerClass) -> Candidates:
     """A real grating, shape (candidates,)."""
-    asked = _name(felt_really, grating, (observer, finger))
-    if (known := _known(asked)) is not None:
-        return known
-    return _keep(asked, grating_percept(grating, observer, finger).candidates)
+    return _known(
+        felt_really,
+        grating,
+        (observer, finger),
+        lambda: grating_percept(grating, observer, finger).candidates,
+    )
 
 
 def free_path(display: Display, observer: Observer, finger: FingerClass) -> FingerPath:
@@ -255,17 +224,16 @@ def chain_tables(
         )
     fingers = observer.fingers()
     feel = felt_freely if design.exploring == "free" else felt_by_strokes
-    pieces: list[Asked] = [
-        *(
-            Asked(feel, design.stimuli, (plate, observer, one, run))
-            for plate, run in zip(plates, runs, strict=True)
-            for one in fingers
-        ),
-        *(Asked(felt_really, design.alternatives, (observer, one)) for one in fingers),
-    ]
-    found = felt_surfaces(pieces, tell)
-    real, virtual = found[-len(fingers) :], found[: -len(fingers)]
-    by_display = [virtual[k : k + len(fingers)] for k in range(0, len(virtual), len(fingers))]
+    virtual, real = [], []
+    with one_blas_thread():
+        for plate, run in zip(plates, runs, strict=True):
+            under = []
+            for number, one in enumerate(fingers, 1):
+                tell(f"what fingers feel on {plate.name}: {number} of {len(fingers)}")
+                under.append([feel(each, plate, observer, one, run) for each in design.stimuli])
+            virtual.append(under)
+        for one in fingers:
+            real.append([felt_really(grating, observer, one) for grating in design.alternatives])
     return ChainTables(
         design=design,
         observer=observer,
@@ -273,8 +241,8 @@ def chain_tables(
         apparatus=tuple(runs),
         plates=plates,
         virtual=Candidates(
-            np.array([[[felt.period for felt in row] for row in rows] for rows in by_display]),
-            np.array([[[felt.d_prime for felt in row] for row in rows] for rows in by_display]),
+            np.array([[[felt.period for felt in row] for row in rows] for rows in virtual]),
+            np.array([[[felt.d_prime for felt in row] for row in rows] for rows in virtual]),
         ),
         real=Candidates(
             np.array([[felt.period for felt in row] for row in real]),

@@ -89,7 +89,7 @@ def test_a_same_different_series_finds_the_weber_fraction() -> None:
         different = random.random() < 0.5 if random.random() < 0.02 else different
         method.update(asked, bool(different == (asked > 0)))
     assert isinstance(method, ModelSeries)
-    found, error = method.placement.estimate("threshold")
+    found, error = method.estimate()
     assert error < 0.06
     assert abs(found - weber) < 3 * error
 
@@ -127,7 +127,7 @@ def test_a_series_by_the_tasks_model_finds_its_threshold(task: Task) -> None:
         method.update(intensity, answer)  # type: ignore[arg-type] # as the task has it
     assert isinstance(method, ModelSeries)
     assert method.finished
-    found, error = method.placement.estimate("threshold")
+    found, error = method.estimate()
     assert error < 0.06
     assert abs(found - threshold) < 3 * error
     below = sum(one < 0 for one in asked)

@@ -65,13 +65,6 @@ def test_computed_and_read_from_disk_are_the_same(
         np.testing.assert_array_equal(a, b)
 
 
-def test_what_is_remembered_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(felt, "_MOST_REMEMBERED", 3)
-    for name in "abcde":
-        felt._remember(name, None)  # type: ignore[arg-type]
-    assert list(felt._REMEMBERED) == ["c", "d", "e"]
-
-
 @pytest.mark.slow
 def test_what_was_felt_before_needs_no_plate_no_loop_and_no_statistics(
     small: tuple[StudyDesign, Observer],
@@ -98,11 +91,11 @@ def test_what_was_felt_before_needs_no_plate_no_loop_and_no_statistics(
 def test_the_displays_are_under_the_finger_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     fingers: list[str] = []
 
-    def asked(pieces: list[Any], _tell: Any) -> Any:
-        fingers.extend(piece.rest[0].whose_finger for piece in pieces if len(piece.rest) == 4)
+    def asked(_stimulus: Any, display: Any, *_: Any) -> Any:
+        fingers.append(display.whose_finger)
         raise InputError("nothing more is asked")
 
-    monkeypatch.setattr("squeezefilm.study.simulated.chain_tables.felt_surfaces", asked)
+    monkeypatch.setattr(felt, "felt_by_strokes", asked)
     with pytest.raises(InputError, match="nothing more"):
         chain_tables(load_design("biet2008-gratings"), load_observer(), finger="mean")
     assert fingers

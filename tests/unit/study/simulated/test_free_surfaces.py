@@ -57,17 +57,6 @@ def test_a_free_hand_feels_both_ways_once(monkeypatch: pytest.MonkeyPatch) -> No
     assert np.ptp(path.y) <= plate.extent[1]
 
 
-def test_no_more_percepts_are_remembered_than_there_is_room_for(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(module, "_REMEMBERED", {})
-    monkeypatch.setattr(module, "_MOST_REMEMBERED", 2)
-    for name in "abc":
-        percept: Any = name
-        module._remember(name, percept)
-    assert list(module._REMEMBERED) == ["b", "c"]
-
-
 def test_a_ring_is_not_explored_freely() -> None:
     with pytest.raises(InputError, match=r"'biet2008-stator' is a ring, .* take a plate, or"):
         free_path(load_display("biet2008-stator"), PEOPLE, FINGER)
