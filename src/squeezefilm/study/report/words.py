@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from squeezefilm.study.identification.condition_means import Course
     from squeezefilm.study.identification.confusion import ConfusionMatrix
     from squeezefilm.study.identification.screening import Screening
+    from squeezefilm.study.identification.sensitivity import OrderedSensitivity
     from squeezefilm.study.psychometric.estimate import Estimate
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 Rows = list[tuple[str, str, str]]
@@ -291,7 +292,7 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
         ),
     ]
     if fit is not None:
-        rows.append(("Total sensitivity Δ′", f"{fit.total:.3g}", "equal-variance Thurstone model"))
+        rows.append(("Total sensitivity Δ′", f"{fit.total:.3g}", _model_fit(fit)))
         rows += [
             (
                 f"d′ {stimulus} – {other}",
@@ -308,6 +309,16 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
             )
         ]
     return rows
+
+
+def _model_fit(fit: OrderedSensitivity) -> str:
+    """How well the model of d′ along the stimuli describes the answers."""
+    model = "equal-variance Thurstone model"
+    if fit.corrected:
+        return f"{model}, one trial per stimulus added (some never confused): d′ too low"
+    p = "< 0.001" if fit.p_value < 0.001 else f"= {fit.p_value:.2g}"
+    freedom = f"{fit.degrees_of_freedom} degrees of freedom"
+    return f"{model}, G² = {fit.deviance:.1f} with {freedom} (p {p})"
 
 
 def confusion_rows(matrix: ConfusionMatrix) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:

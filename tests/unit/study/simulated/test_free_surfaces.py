@@ -35,7 +35,11 @@ def test_a_free_hand_feels_both_ways_once(monkeypatch: pytest.MonkeyPatch) -> No
         return SimpleNamespace(along=run(4e-3, 2e-3), across=run(5e-3, 1e-3))
 
     monkeypatch.setattr(path_percepts, "path_percept", felt)
-    monkeypatch.setattr(module, "_KEPT", SimpleNamespace(get=kept.get, put=kept.__setitem__))
+
+    def found_or_made(asked: str, make: Any) -> Any:
+        return kept[asked] if asked in kept else kept.setdefault(asked, make())
+
+    monkeypatch.setattr(module, "_KEPT", SimpleNamespace(found=found_or_made))
     monkeypatch.setattr(module, "_REMEMBERED", {})
     fine, apparatus = Stimulus("fine", 4e-3, "period"), module.Apparatus()
     found: Any = felt_freely(fine, PLATE, PEOPLE, FINGER, apparatus)
