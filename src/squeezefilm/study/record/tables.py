@@ -20,7 +20,7 @@ from typing import Any, Literal
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.record.exploration import NO_MEASURES, ExploredTrials
+from squeezefilm.study.record.exploration import NO_MEASURES, measures
 from squeezefilm.study.record.store import StudyStore
 
 
@@ -81,8 +81,6 @@ COLUMNS = (
     Column("peak_speed_m_per_s", "Greatest speed between two samples of its path", "m/s", "number"),
     Column("time_in_touch_s", "How long the finger touched", "s", "number"),
     Column("passes", "Straight stretches one way, of 4 mm or more", "", "number"),
-    Column("along_x_share", "Share of their way along x more than along y", "", "number"),
-    Column("coverage", "Share of the face's cells of 5 mm that it came over", "", "number"),
     Column("set_aside", "Why the answer does not count and the trial was asked again; else empty"),
     Column("presentations", "How often the trial was presented until answered", kind="whole"),
     Column("started_utc", "Wall clock when it began (UTC)"),
@@ -134,12 +132,12 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
     gratings = {alternative.name: alternative for alternative in design.alternatives}
     rows: list[dict[str, Cell]] = []
     columns = trial_columns(design)
-    explored, surfaces = ExploredTrials(store), _Surfaces()
+    surfaces = _Surfaces()
     for row in store.rows(_QUERY):
         names = json.loads(row.pop("stimuli"))
         row["task"] = design.task
         traces = json.loads(row["traces"])
-        row |= explored.measures(row["display"], traces) if traces else NO_MEASURES
+        row |= measures(store, traces) if traces else NO_MEASURES
         row["traces"] = " ".join(traces)
         row["correct"] = None if row["correct"] is None else bool(row["correct"])
         for prefix, name in itertools.zip_longest(SURFACES, names):
