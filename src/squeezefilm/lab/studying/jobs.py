@@ -46,24 +46,13 @@ def analysis_of(path: Path) -> dict[str, Any]:
 
 def _tables(display: str, analysis: StudyAnalysis) -> dict[str, Any]:
     """Answers by stimulus and by person, or confusions."""
-    from squeezefilm.study.report.words import (
-        PERSON_HEAD,
-        condition_head,
-        condition_rows,
-        person_rows,
-    )
+    from squeezefilm.study.report.words import answer_parts
 
     if isinstance(analysis, TaskAnalysis):
-        tables = []
-        if analysis.conditions:
-            tables.append(
-                {
-                    "title": "Stimuli",
-                    "head": condition_head(analysis),
-                    "rows": condition_rows(analysis),
-                }
-            )
-        tables.append({"title": "People", "head": PERSON_HEAD, "rows": person_rows(analysis)})
+        tables = [
+            {"title": part.heading, "head": part.head, "rows": part.rows}
+            for part in answer_parts(analysis)
+        ]
         return {"tables": tables, "confusion": None}
     matrix = analysis.matrix
     confusion = {

@@ -26,13 +26,9 @@ from squeezefilm.core.kit.page_style import (
 from squeezefilm.study.report import figures as draw
 from squeezefilm.study.report import task_figures
 from squeezefilm.study.report.words import (
-    PERSON_HEAD,
     SCREENING_HEAD,
-    condition_head,
-    condition_rows,
-    confusion_rows,
+    answer_parts,
     key_rows,
-    person_rows,
     read_first,
     screening_rows,
     whose,
@@ -42,7 +38,6 @@ from squeezefilm.study.tasks.findings import TaskAnalysis
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.study.identification.analysis import IdentificationAnalysis
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 
@@ -149,12 +144,17 @@ def study_page(
     title = escape(printable(analysis.name))
     head = ("Quantity", "Value", "Remark")
     numbers = text_table(whose(analysis.origin), head, key_rows(analysis))
-    details = _task if isinstance(analysis, TaskAnalysis) else _identification
+    details = "".join(
+        section(f"{part.heading} in numbers", text_table(part.caption, part.head, part.rows))
+        for part in answer_parts(analysis)
+    )
+    if isinstance(analysis, TaskAnalysis) and analysis.assumed:
+        details += section("What the simulated answers assume", bullets(analysis.assumed))
     sections = (
         section("Read first", bullets(read_first(analysis)))
         + section("Numbers", numbers)
         + picture_sections(figures)
-        + details(analysis)
+        + details
         + _screening(analysis)
         + _worked(analysis)
         + section("What could not be computed, or needs care", bullets(analysis.notes, "Nothing."))
@@ -169,25 +169,6 @@ def study_page(
         f"seed of the resampling {escape(str(provenance['seed']))}.\n"
         f"All numbers: {links([_numbers_file(analysis)])}.",
     )
-
-
-def _task(analysis: Any) -> str:
-    found = ""
-    if analysis.conditions:
-        caption = "Answers by stimulus; intervals as the numbers say"
-        found += section(
-            "Stimuli in numbers",
-            text_table(caption, condition_head(analysis), condition_rows(analysis)),
-        )
-    caption = f"{analysis.measure[:1].upper()}{analysis.measure[1:]} of each person"
-    found += section("People in numbers", text_table(caption, PERSON_HEAD, person_rows(analysis)))
-    if analysis.assumed:
-        found += section("What the simulated answers assume", bullets(analysis.assumed))
-    return found
-
-
-def _identification(analysis: Any) -> str:
-    return section("Confusions in numbers", _confusion(analysis))
 
 
 def _screening(analysis: StudyAnalysis) -> str:
@@ -247,8 +228,3 @@ def _key_words(key: str) -> str:
         if key.endswith(suffix):
             return f"{key.removesuffix(suffix).replace('_', ' ')} ({unit})"
     return key.replace("_", " ")
-
-
-def _confusion(analysis: IdentificationAnalysis) -> str:
-    head, rows = confusion_rows(analysis.matrix)
-    return text_table("Per cent of each column; in brackets trials", head, rows)

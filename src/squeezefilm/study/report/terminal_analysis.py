@@ -9,18 +9,15 @@ from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.study.report.simulated_page import evidence_rows, evidence_said, remarks
 from squeezefilm.study.report.words import (
-    PERSON_HEAD,
     SCREENING_HEAD,
-    condition_head,
-    condition_rows,
+    answer_parts,
     confusion_rows,
     key_rows,
-    person_rows,
     read_first,
     screening_rows,
     whose,
 )
-from squeezefilm.study.tasks.findings import PARTS, TaskAnalysis
+from squeezefilm.study.tasks.findings import PARTS
 
 if TYPE_CHECKING:
     from squeezefilm.study.identification.power import PowerCurve
@@ -40,13 +37,9 @@ def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
         heading(console, f"{display}: {whose(analysis.origin)}")
         for sentence in read_first(analysis):
             console.print(sentence, highlight=False)
-        if isinstance(analysis, TaskAnalysis):
-            if analysis.conditions:
-                table(console, condition_head(analysis), condition_rows(analysis), fixed=(0,))
-            if len(analysis.persons) <= _SHOWN_PEOPLE:
-                table(console, PERSON_HEAD, person_rows(analysis), fixed=(0,))
-        else:
-            table(console, *confusion_rows(analysis.matrix), fixed=(0,))
+        for part in answer_parts(analysis):
+            if part.heading != "People" or len(part.rows) <= _SHOWN_PEOPLE:
+                table(console, part.head, part.rows, fixed=(0,))
         if analysis.screening is not None and analysis.screening.named:
             rows = screening_rows(analysis.screening, named=True)
             table(console, SCREENING_HEAD, rows, fixed=(0, 1))

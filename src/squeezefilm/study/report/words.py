@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
@@ -334,6 +335,30 @@ def confusion_rows(matrix: ConfusionMatrix) -> tuple[tuple[str, ...], list[tuple
         for name, percent, counts in zip(matrix.answers, matrix.percent, matrix.counts, strict=True)
     ]
     return ("Answered \\ presented", *matrix.stimuli), rows
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A table of an analysed study: of its page, at the terminal, in the lab."""
+
+    heading: str
+    caption: str
+    head: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+
+
+def answer_parts(analysis: StudyAnalysis) -> list[Part]:
+    """Answers by stimulus and by person, or confusions."""
+    if not isinstance(analysis, TaskAnalysis):
+        caption = "Per cent of each column; in brackets trials"
+        return [Part("Confusions", caption, *confusion_rows(analysis.matrix))]
+    of_people = f"{analysis.measure[:1].upper()}{analysis.measure[1:]} of each person"
+    parts = [Part("People", of_people, PERSON_HEAD, person_rows(analysis))]
+    if analysis.conditions:
+        caption = "Answers by stimulus; intervals as the numbers say"
+        head, rows = condition_head(analysis), condition_rows(analysis)
+        parts.insert(0, Part("Stimuli", caption, head, rows))
+    return parts
 
 
 def whose(origin: str) -> str:

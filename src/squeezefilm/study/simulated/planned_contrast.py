@@ -78,12 +78,7 @@ def planned_contrast(asked: ContrastAsked) -> PlannedPower:
         f"{tables.asked} {asked.people} {asked.seed}", simulated
     )
     return PlannedPower(
-        design=design.name,
-        display="",
-        observer=asked.observer.name,
-        seed=asked.seed,
-        finger=tables.whose_finger,
-        origin="simulated",
+        **asked.named(tables, ""),
         first=here,
         second=there,
         curve=asked.power(differences, otherwise_than_0, asked.alpha),

@@ -26,7 +26,7 @@ from squeezefilm.study.identification.power import (
     power_curve,
 )
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.simulated.chain_tables import chain_tables
+from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import match_counts, right_answers, simulate_matches
 
@@ -68,6 +68,17 @@ class PlannedStudies:
         """Tell a step to whoever listens."""
         if self.progress is not None:
             self.progress(step)
+
+    def named(self, tables: ChainTables, display: str) -> dict[str, Any]:
+        """Fields of `Planned` of the studies that were asked for, as computed with tables."""
+        return {
+            "design": self.design.name,
+            "display": display,
+            "observer": self.observer.name,
+            "seed": self.seed,
+            "finger": tables.whose_finger,
+            "origin": "simulated",
+        }
 
     def power(
         self,
@@ -166,12 +177,7 @@ def planned_power(asked: PairAsked) -> PlannedPower:
 
     scores = _SCORES.found(f"{tables.asked} {first!r} {second!r} {asked.seed}", simulated)
     return PlannedPower(
-        design=design.name,
-        display=alone.displays[0],
-        observer=asked.observer.name,
-        seed=asked.seed,
-        finger=tables.whose_finger,
-        origin="simulated",
+        **asked.named(tables, alone.displays[0]),
         first=first,
         second=second,
         curve=asked.power(scores, above_0, asked.alpha),

@@ -122,12 +122,7 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
         counts.append(round(reached * studies))
         held.append(holds)
     return PlannedPrecision(
-        design=asked.design.name,
-        display=alone.displays[0],
-        observer=asked.observer.name,
-        seed=asked.seed,
-        finger=tables.whose_finger,
-        origin="simulated",
+        **asked.named(tables, alone.displays[0]),
         measure=measure,
         precision=precision,
         truth=truth,
