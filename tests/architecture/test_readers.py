@@ -74,7 +74,6 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "study/record/deletion.py": {"json.loads": ROW},
     "study/record/contents.py": {"json.loads": ROW, "sqlite3.connect": "in memory"},
     "study/record/store.py": {"json.loads": ROW},
-    "study/record/sittings.py": {"os.open": "a folder, to lock or sync it"},
     "study/record/database.py": {
         "os.open": "made anew, and refused where something is",
         "sqlite3.connect": "after `require_regular`: another opening would drop SQLite's locks",

@@ -20,9 +20,9 @@ def test_a_task_has_its_stimuli_and_people_and_no_confusions(
     for name in ("condition_head", "condition_rows", "person_rows"):
         monkeypatch.setattr(words, name, lambda _, name=name: name)
     people = {"title": "People", "head": words.PERSON_HEAD, "rows": "person_rows"}
-    alone = _tables("plate", made_result(TaskAnalysis, conditions=()))
+    alone = _tables("plate", made_result(TaskAnalysis, measure="d", conditions=()))
     assert alone == {"tables": [people], "confusion": None}
-    both = _tables("plate", made_result(TaskAnalysis, conditions=("4 mm",)))
+    both = _tables("plate", made_result(TaskAnalysis, measure="d", conditions=("4 mm",)))
     stimuli = {"title": "Stimuli", "head": "condition_head", "rows": "condition_rows"}
     assert both == {"tables": [stimuli, people], "confusion": None}
 
