@@ -34,7 +34,7 @@ def gallery_files() -> dict[str, bytes]:
     for name in presets.texture_names():
         texture = load_texture(name)
         files[f"gallery/{name}.png"] = style.png(picture(texture), dots_per_inch=80)
-        text = presets.resolve_texture(name).read_text(encoding="utf-8").strip()
+        text = presets.resolve(name, "texture").read_text(encoding="utf-8").strip()
         body = re.sub(r'\Atitle = ".*"\n+', "", text)
         parts.append(f"## {texture.title}: `{name}`\n")
         parts.append(f"![{texture.title}, from above and along a line](gallery/{name}.png)\n")

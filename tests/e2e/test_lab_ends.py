@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.core.presets import resolve_requirements
+from squeezefilm.core.presets import resolve
 
 from .conftest import RunningLab
 from .test_lab_lan import experimenters_page
@@ -83,7 +83,7 @@ def test_while_it_computes(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("jobs", [pytest.param(1, marks=pytest.mark.nightly), 2])
 def test_while_it_searches(tmp_path: Path, jobs: int) -> None:
-    text = resolve_requirements("biet2008-plate").read_text(encoding="utf-8")
+    text = resolve("biet2008-plate", "requirements").read_text(encoding="utf-8")
     process = begun(tmp_path)
     lab = RunningLab.of(process, tmp_path)
     with experimenters_page(lab) as page:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 pytestmark = [pytest.mark.chromium, pytest.mark.slow]
 
-PRESET = presets.resolve_requirements("biet2008-plate").read_text(encoding="utf-8")
+PRESET = presets.resolve("biet2008-plate", "requirements").read_text(encoding="utf-8")
 # As hot as they like, so that a few designs have a front.
 SMALL = TEXT.replace('"75 K"', '"200 K"').replace("most_lines = 16", "most_lines = 8")
 STAGE, PLATE = ".search .stage", "circle[data-plate]"

@@ -229,7 +229,7 @@ def test_textures_are_listed() -> None:
 def test_gratings_of_the_paper_say_what_their_period_is() -> None:
     for name in presets.texture_names():
         if name.startswith("biet2008-square"):
-            text = presets.resolve_texture(name).read_text(encoding="utf-8")
+            text = presets.resolve(name, "texture").read_text(encoding="utf-8")
             period = name.removeprefix("biet2008-square-").removesuffix("mm")
             assert f'spatial_period = "{period} mm"' in text
             assert f"{float(period) / 2:g} mm of each" in text
@@ -237,7 +237,7 @@ def test_gratings_of_the_paper_say_what_their_period_is() -> None:
 
 
 def test_a_preset_can_be_copied_and_changed(tmp_path: Path) -> None:
-    source = presets.resolve_texture("island-map")
+    source = presets.resolve("island-map", "texture")
     for path in (source, source.with_suffix(".png")):
         shutil.copy(path, tmp_path)
     result = rendered(str(tmp_path / "island-map.toml"), *STATOR)

@@ -44,7 +44,7 @@ period_means = "period"
 def files(folder: Path) -> tuple[Path, Path]:
     design, observer = folder / "design.toml", folder / "observer.toml"
     design.write_text(DESIGN)
-    text = presets.resolve_observer("fingertip").read_text()
+    text = presets.resolve("fingertip", "observer").read_text()
     assert "finger_classes = { value = 6" in text
     observer.write_text(
         text.replace("finger_classes = { value = 6", "finger_classes = { value = 1")

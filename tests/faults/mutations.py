@@ -38,8 +38,8 @@ def preset_files() -> dict[str, list[Path]]:
     """The preset files by what they describe: displays, textures, studies."""
     return {
         "display": [presets.path(name) for name in presets.display_names()],
-        "texture": [presets.resolve_texture(name) for name in presets.texture_names()],
-        "study": [presets.resolve_study(name) for name in presets.study_names()],
+        "texture": [presets.resolve(name, "texture") for name in presets.texture_names()],
+        "study": [presets.resolve(name, "study") for name in presets.study_names()],
     }
 
 

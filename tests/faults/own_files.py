@@ -207,7 +207,7 @@ OWN_FILES = [
     OwnFile(
         "texture", "a.toml",
         lambda folder: (folder / "a.toml").write_bytes(
-            presets.resolve_texture("sine-3mm").read_bytes()
+            presets.resolve("sine-3mm", "texture").read_bytes()
         ),
         lambda folder: load_texture(folder / "a.toml"),
     ),

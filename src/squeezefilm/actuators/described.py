@@ -34,7 +34,7 @@ def is_actuator(name_or_path: str | Path) -> bool:
     `KINDS`. False for what cannot be read, which whoever reads it next says."""
     text, path = str(name_or_path), Path(name_or_path)
     if path.suffix != ".toml":
-        return text in presets.actuator_names()
+        return text in presets.names("actuator")
     try:
         said = read_toml_text(path)
     except SqueezefilmError:
@@ -48,7 +48,7 @@ def load_actuator(name_or_path: str | Path) -> Described:
     Raises `ConfigError`, with file, line and key, for a file that cannot be read, one that has the
     table of no kind, or of more than one.
     """
-    path = presets.resolve_actuator(name_or_path)
+    path = presets.resolve(name_or_path, "actuator")
     text = read_toml_text(path)
     return load_text(actuator_class(text, path), text, file=path)
 

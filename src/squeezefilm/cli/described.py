@@ -34,7 +34,7 @@ def preset_list() -> list[dict[str, Any]]:
     for name in presets.display_names():
         display = load_display(name)
         listing.append(_preset(display, display.actuator.type, DISPLAY_VERBS))
-    for name in presets.actuator_names():
+    for name in presets.names("actuator"):
         actuator = load_actuator(name)
         kind = next(kind for kind in KINDS if hasattr(actuator, kind))
         listing.append(_preset(actuator, kind, ACTUATOR_VERBS))
@@ -85,7 +85,7 @@ def display_values(target: str) -> list[dict[str, Any]]:
     from squeezefilm.physics.display import Display
 
     other = is_actuator(target)
-    file = presets.resolve_actuator(target) if other else presets.resolve(target)
+    file = presets.resolve(target, "actuator") if other else presets.resolve(target)
     text = read_toml_text(file)
     described = actuator_class(text, file) if other else Display
     return [

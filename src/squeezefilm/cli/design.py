@@ -95,7 +95,7 @@ def design(asked: DesignOptions) -> None:
 
     if asked.requirements is None:
         if asked.as_json:
-            print_json({"requirements": list(presets.requirement_names())})
+            print_json({"requirements": list(presets.names("requirements"))})
         else:
             show_requirements()
         return

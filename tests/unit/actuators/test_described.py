@@ -9,7 +9,7 @@ from squeezefilm.actuators.motor.description import MotorDescription
 from squeezefilm.core import presets
 from squeezefilm.core.errors import ConfigError
 
-TEXT = presets.resolve_actuator("biet2008-motor").read_text(encoding="utf-8")
+TEXT = presets.resolve("biet2008-motor", "actuator").read_text(encoding="utf-8")
 
 
 def test_a_motor_is_read_with_units_and_sources() -> None:
@@ -37,9 +37,9 @@ def test_the_plate_may_name_its_materials(tmp_path: Path) -> None:
     assert found.motor.plate.substrate.density == pytest.approx(2700, rel=0.01)
 
 
-@pytest.mark.parametrize("name", presets.actuator_names())
+@pytest.mark.parametrize("name", presets.names("actuator"))
 def test_every_preset_is_one_of_the_kinds(name: str) -> None:
-    assert actuator_kind(presets.resolve_actuator(name).read_text(encoding="utf-8")) in KINDS
+    assert actuator_kind(presets.resolve(name, "actuator").read_text(encoding="utf-8")) in KINDS
     load_actuator(name)
 
 

@@ -16,7 +16,7 @@ from tests.e2e.program import run
 
 from squeezefilm.cli.app import app
 from squeezefilm.cli.describe import analyze, materials, new, presets, show
-from squeezefilm.core.presets import actuator_names, display_names
+from squeezefilm.core.presets import display_names, names
 from squeezefilm.physics.display import load_display
 
 DISPLAY = "biet2008-plate"
@@ -56,15 +56,18 @@ def test_every_verb_is_described_in_the_docs() -> None:
 def test_the_package_can_be_run_by_its_name() -> None:
     command = [sys.executable, "-m", "squeezefilm", "presets", "--json"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
-    assert [one["name"] for one in json.loads(done.stdout)] == [*display_names(), *actuator_names()]
+    assert [one["name"] for one in json.loads(done.stdout)] == [
+        *display_names(),
+        *names("actuator"),
+    ]
 
 
 def test_presets_are_listed() -> None:
     listing = json.loads(run("presets", "--json").stdout)
-    assert [one["name"] for one in listing] == [*display_names(), *actuator_names()]
+    assert [one["name"] for one in listing] == [*display_names(), *names("actuator")]
     said = run("presets").stdout
     assert not said.startswith("[")
-    assert all(name in said for name in (*display_names(), *actuator_names()))
+    assert all(name in said for name in (*display_names(), *names("actuator")))
     assert "what it is" in said
 
 

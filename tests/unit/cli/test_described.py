@@ -10,7 +10,7 @@ import pytest
 from squeezefilm.cli import described
 from squeezefilm.core import presets
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.core.presets import actuator_names, display_names, materials
+from squeezefilm.core.presets import display_names, materials, names
 from squeezefilm.design.analysis.analysis import Analysis
 from squeezefilm.design.analysis.report.point_rows import display_values
 
@@ -20,7 +20,7 @@ def test_presets_are_listed_with_what_is_assumed(printed: Callable[[], str]) -> 
     by_name = {item["name"]: item for item in listing}
     assert {"biet2008-plate", "biet2008-stator", "touchpad-glass"} <= set(by_name)
     assert by_name["biet2008-plate"]["values_assumed"] == 15
-    assert {one["name"] for one in listing} == {*display_names(), *actuator_names()}
+    assert {one["name"] for one in listing} == {*display_names(), *names("actuator")}
     assert by_name["biet2008-motor"]["taken_by"] != by_name["biet2008-plate"]["taken_by"]
     described.show_presets(listing)
     text = printed()
@@ -37,11 +37,11 @@ def test_an_unknown_name_is_answered_with_all_that_there_is(
         resolve("biet2008-moter")
     said = str(caught.value)
     assert "Did you mean 'biet2008-motor'?" in said
-    for name in (*display_names(), *actuator_names()):
+    for name in (*display_names(), *names("actuator")):
         assert name in said
 
 
-@pytest.mark.parametrize("name", actuator_names())
+@pytest.mark.parametrize("name", names("actuator"))
 def test_the_values_of_an_actuator_are_shown_as_written(name: str) -> None:
     values = described.display_values(name)
     assert values[0] == {"path": "name", "text": name, "source": None, "evidence": None}

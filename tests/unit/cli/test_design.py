@@ -30,7 +30,7 @@ def changed(tmp_path: Path) -> Callable[[str, str], Path]:
     """The preset's file with one text in place of another, and where it stands."""
 
     def write(old: str, new: str) -> Path:
-        text = presets.resolve_requirements(PRESET).read_text(encoding="utf-8")
+        text = presets.resolve(PRESET, "requirements").read_text(encoding="utf-8")
         assert text.count(old) >= 1
         file = tmp_path / "mine.toml"
         file.write_text(text.replace(old, new, 1), encoding="utf-8")
@@ -54,7 +54,7 @@ def test_without_requirements_the_presets_are_listed_with_what_to_do() -> None:
     assert PRESET in shown
     assert "squeezefilm design NAME" in shown
     code, shown = invoked("--json")
-    assert json.loads(shown) == {"requirements": list(presets.requirement_names())}
+    assert json.loads(shown) == {"requirements": list(presets.names("requirements"))}
 
 
 @pytest.mark.usefixtures("nothing_computed")

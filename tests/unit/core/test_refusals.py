@@ -16,7 +16,6 @@ from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.formats.traces import Table, table_from_csv
 from squeezefilm.core.presets import path as preset_path
-from squeezefilm.core.presets import study_path
 from squeezefilm.core.results import write_named
 
 
@@ -52,7 +51,7 @@ def nested(depth: int) -> str:
         (lambda: text_of(Loose(2.5)), "no unit or no place"),
         (lambda: Table({}), "at least one column"),
         (lambda: preset_path("biet2008"), "no preset 'biet2008'"),
-        (lambda: study_path("friction-jn"), "no study 'friction-jn'"),
+        (lambda: preset_path("friction-jn", "study"), "no study 'friction-jn'"),
     ],
 )
 def test_what_cannot_be_read_or_written_says_so(build: Callable[[], object], word: str) -> None:

@@ -96,7 +96,7 @@ def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         )
     monkeypatch.setattr(gallery, "__file__", str(source))
     monkeypatch.setattr(gallery.presets, "texture_names", lambda: NAMES)
-    monkeypatch.setattr(gallery.presets, "resolve_texture", lambda name: textures / f"{name}.toml")
+    monkeypatch.setattr(gallery.presets, "resolve", lambda name, _: textures / f"{name}.toml")
     monkeypatch.setattr(
         gallery, "load_texture", lambda name: SimpleNamespace(title=f"Some {name}", texture=None)
     )

@@ -174,4 +174,4 @@ class MotorDescription(Result):
 
 def preset_motor(name: str) -> MotorDescription:
     """The motor of a preset's name. Raises `ConfigError` for a name that is not known."""
-    return load(MotorDescription, presets.resolve_actuator(name))
+    return load(MotorDescription, presets.resolve(name, "actuator"))

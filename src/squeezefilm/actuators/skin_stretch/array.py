@@ -280,4 +280,4 @@ class SkinStretchDescription(Result):
 def _preset(name: str) -> SkinStretchDescription:
     from squeezefilm.core import config
 
-    return config.load(SkinStretchDescription, presets.resolve_actuator(name))
+    return config.load(SkinStretchDescription, presets.resolve(name, "actuator"))

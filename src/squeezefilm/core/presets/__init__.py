@@ -7,6 +7,7 @@ Files only: rooms above read them.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError
@@ -15,10 +16,44 @@ from squeezefilm.core.presets import materials as materials
 _FOLDER = Path(__file__).parent
 _NOT_DISPLAYS = {"claims", "materials"}
 
+Kind = Literal["display", "actuator", "texture", "requirements", "study", "observer"]
+"""Kinds of preset; an actuator is a motor or a skin-stretch array."""
+_FOLDERS: dict[Kind, Path] = {
+    "display": _FOLDER,
+    "actuator": _FOLDER / "actuators",
+    "texture": _FOLDER / "textures",
+    "requirements": _FOLDER / "requirements",
+    "study": _FOLDER / "studies",
+    "observer": _FOLDER / "observers",
+}
+_WORDS = {"display": "preset", "requirements": "set of requirements"}
+_PLURALS = {"study": "studies", "requirements": "sets of requirements"}
+
+
+def names(kind: Kind) -> tuple[str, ...]:
+    """The names of all presets of a kind, sorted."""
+    return tuple(
+        sorted(
+            path.stem
+            for path in _FOLDERS[kind].glob("*.toml")
+            if kind != "display" or path.stem not in _NOT_DISPLAYS
+        )
+    )
+
 
 def display_names() -> tuple[str, ...]:
     """The names of all preset displays, sorted."""
-    return tuple(name for name in _names(_FOLDER) if name not in _NOT_DISPLAYS)
+    return names("display")
+
+
+def texture_names() -> tuple[str, ...]:
+    """The names of all preset textures, sorted."""
+    return names("texture")
+
+
+def study_names() -> tuple[str, ...]:
+    """The names of all preset studies, sorted."""
+    return names("study")
 
 
 def friction_folder() -> Path:
@@ -26,101 +61,38 @@ def friction_folder() -> Path:
     return _FOLDER / "friction"
 
 
-def actuator_names() -> tuple[str, ...]:
-    """The names of all preset motors and skin-stretch arrays, sorted."""
-    return _names(_FOLDER / "actuators")
-
-
-def texture_names() -> tuple[str, ...]:
-    """The names of all preset textures, sorted."""
-    return _names(_FOLDER / "textures")
-
-
-def requirement_names() -> tuple[str, ...]:
-    """The names of all preset requirements for a design search, sorted."""
-    return _names(_FOLDER / "requirements")
-
-
-def study_names() -> tuple[str, ...]:
-    """The names of all preset studies, sorted."""
-    return _names(_FOLDER / "studies")
-
-
-def _names(folder: Path) -> tuple[str, ...]:
-    return tuple(sorted(path.stem for path in folder.glob("*.toml")))
-
-
-def path(name: str) -> Path:
-    """The TOML file of a preset display. Raises `ConfigError` for a name that is not known."""
-    if name not in display_names():
-        raise _unknown(f"there is no preset '{name}'", name, "preset", display_names())
-    return _FOLDER / f"{name}.toml"
-
-
-def study_path(name: str) -> Path:
-    """The TOML file of a preset study. Raises `ConfigError` for a name that is not known."""
-    if name not in study_names():
-        raise _unknown(f"there is no study '{name}'", name, "study", study_names())
-    return _FOLDER / "studies" / f"{name}.toml"
-
-
 def claims_path() -> Path:
     """The TOML file of the published claims that `squeezefilm reproduce` recomputes."""
     return _FOLDER / "claims.toml"
 
 
-def resolve(name_or_path: str | Path) -> Path:
+def path(name: str, kind: Kind = "display") -> Path:
+    """The TOML file of a preset. Raises `ConfigError` for a name that is not known."""
+    if name not in names(kind):
+        raise _unknown(f"there is no {_WORDS.get(kind, kind)} '{name}'", name, kind)
+    return _FOLDERS[kind] / f"{name}.toml"
+
+
+def resolve(name_or_path: str | Path, kind: Kind = "display") -> Path:
     """The file of a preset's name or of a path to a TOML file.
 
     A text without a separator and without ``.toml`` is a preset's name unless such a file exists.
     """
-    return _resolved(name_or_path, "preset", display_names(), _FOLDER)
-
-
-def resolve_actuator(name_or_path: str | Path) -> Path:
-    """The file of a preset actuator's name or of a path to a TOML file. As `resolve` does."""
-    return _resolved(name_or_path, "actuator", actuator_names(), _FOLDER / "actuators")
-
-
-def resolve_requirements(name_or_path: str | Path) -> Path:
-    """The file of preset requirements' name or of a path to a TOML file. As `resolve` does."""
-    return _resolved(
-        name_or_path, "set of requirements", requirement_names(), _FOLDER / "requirements"
-    )
-
-
-def resolve_texture(name_or_path: str | Path) -> Path:
-    """The file of a preset texture's name or of a path to a TOML file. As `resolve` does."""
-    return _resolved(name_or_path, "texture", texture_names(), _FOLDER / "textures")
-
-
-def resolve_study(name_or_path: str | Path) -> Path:
-    """The file of a preset study's name or of a path to a TOML file. As `resolve` does."""
-    return _resolved(name_or_path, "study", study_names(), _FOLDER / "studies")
-
-
-def resolve_observer(name_or_path: str | Path) -> Path:
-    """The file of a preset observer's name or of a path to a TOML file. As `resolve` does."""
-    folder = _FOLDER / "observers"
-    return _resolved(name_or_path, "observer", _names(folder), folder)
-
-
-def _resolved(name_or_path: str | Path, kind: str, known: tuple[str, ...], folder: Path) -> Path:
     text, candidate = str(name_or_path), Path(name_or_path)
     looks_like_name = candidate.name == text and candidate.suffix != ".toml"
-    if looks_like_name and text in known:
-        return folder / f"{text}.toml"
+    if looks_like_name and text in names(kind):
+        return path(text, kind)
     if looks_like_name and not _exists(candidate):
-        raise _unknown(f"'{text[:100]}' is neither a file nor a {kind}", text, kind, known)
+        says = f"'{text[:100]}' is neither a file nor a {_WORDS.get(kind, kind)}"
+        raise _unknown(says, text, kind)
     return candidate
 
 
-def _unknown(says: str, name: str, kind: str, known: tuple[str, ...]) -> ConfigError:
+def _unknown(says: str, name: str, kind: Kind) -> ConfigError:
     """The error for a name that is not a preset of a kind: `says` what was asked, and then what
     there is. Where a display is wanted, motors and skin-stretch arrays are listed as well."""
-    also = actuator_names() if kind == "preset" else ()
-    plural = {"study": "studies", "set of requirements": "sets of requirements"}
-    listed = f"{plural.get(kind, f'{kind}s').capitalize()}: {', '.join(known)}"
+    known, also = names(kind), names("actuator") if kind == "display" else ()
+    listed = f"{_PLURALS.get(kind, f'{kind}s').capitalize()}: {', '.join(known)}"
     if also:
         if name in also:
             says = f"'{name}' is a motor or a skin-stretch array, and a display is wanted here"
@@ -128,7 +100,7 @@ def _unknown(says: str, name: str, kind: str, known: tuple[str, ...]) -> ConfigE
             f"Displays: {', '.join(known)}. Motors and skin-stretch arrays, for squeezefilm "
             f"analyze and squeezefilm show only: {', '.join(also)}"
         )
-    near = "" if name in actuator_names() else si.did_you_mean(name, (*known, *also))
+    near = "" if name in names("actuator") else si.did_you_mean(name, (*known, *also))
     return ConfigError(f"{says}.{near} {listed}")
 
 

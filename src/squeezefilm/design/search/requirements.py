@@ -333,7 +333,7 @@ def load_requirements(name_or_path: str | Path) -> Requirements:
     """
     from squeezefilm.core import config
 
-    return config.load(Requirements, presets.resolve_requirements(name_or_path))
+    return config.load(Requirements, presets.resolve(name_or_path, "requirements"))
 
 
 NamedRequirements = Annotated[Requirements, ReadBy(load_requirements)]

@@ -145,7 +145,7 @@ async def _texture(lab: Lab, asked: PlayDevice) -> Path:
         raise InputError("say which texture: a preset or a text, one of them")
     if asked.preset is not None:
         if asked.preset in presets.texture_names():
-            return presets.resolve_texture(asked.preset)
+            return presets.resolve(asked.preset, "texture")
         return existing(lab.folder / "textures", asked.preset, ".toml")
     folder = lab.folder / "textures"
     folder.mkdir(exist_ok=True)

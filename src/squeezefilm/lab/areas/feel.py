@@ -106,7 +106,7 @@ class FeelArea:
         if (asked.preset is None) == (asked.file is None):
             raise InputError("say which texture: a preset or a saved file, one of them")
         if asked.preset is not None:
-            file = presets.resolve_texture(asked.preset)
+            file = presets.resolve(asked.preset, "texture")
             if asked.preset not in presets.texture_names():
                 raise InputError(f"'{asked.preset}' is no preset texture")
         else:

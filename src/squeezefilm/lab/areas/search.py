@@ -105,7 +105,7 @@ class SearchArea:
         saved = sorted(path.parent.name for path in files)
         return {
             "type": "requirements",
-            "presets": list(presets.requirement_names()),
+            "presets": list(presets.names("requirements")),
             "saved": saved,
         }
 
@@ -113,9 +113,9 @@ class SearchArea:
         if (asked.preset is None) == (asked.file is None):
             raise InputError("say which requirements: a preset or those of a search, one of them")
         if asked.preset is not None:
-            if asked.preset not in presets.requirement_names():
+            if asked.preset not in presets.names("requirements"):
                 raise InputError(f"'{asked.preset}' is no preset of requirements")
-            file = presets.resolve_requirements(asked.preset)
+            file = presets.resolve(asked.preset, "requirements")
         else:
             place = named(self._folder, str(asked.file), "")
             file = existing(place, _REQUIREMENTS, ".toml")

@@ -212,7 +212,7 @@ def load_observer(name_or_path: str | Path = "fingertip") -> Observer:
     """The observer of a preset's name or of a TOML file. Raises `ConfigError` if it can't be."""
     from squeezefilm.core import config, presets
 
-    return config.load(Observer, presets.resolve_observer(name_or_path))
+    return config.load(Observer, presets.resolve(name_or_path, "observer"))
 
 
 NamedObserver = Annotated[Observer, ReadBy(load_observer)]

@@ -65,7 +65,7 @@ def load_texture(name_or_path: str | Path) -> TextureFile:
     """
     from squeezefilm.core import presets
 
-    path = presets.resolve_texture(name_or_path)
+    path = presets.resolve(name_or_path, "texture")
     return _with_images(load(TextureFile, path), path)
 
 

@@ -196,7 +196,7 @@ def new_study_file(
     """
     from squeezefilm.core import config, presets
 
-    text = read_toml_text(presets.study_path(preset))
+    text = read_toml_text(presets.path(preset, "study"))
     if displays:
         for display in displays:
             presets.resolve(display)

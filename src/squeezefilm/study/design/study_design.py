@@ -385,7 +385,7 @@ def load_design(name_or_path: str | Path) -> StudyDesign:
     """
     from squeezefilm.core import config, presets
 
-    path = presets.resolve_study(name_or_path)
+    path = presets.resolve(name_or_path, "study")
     design = config.load(StudyDesign, path)
     try:
         stimuli = with_images(design.stimuli, path.parent)

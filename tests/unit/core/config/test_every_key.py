@@ -128,10 +128,10 @@ def described() -> dict[type[Any], list[Any]]:
     """The tables of the files that come with the package, by their dataclass."""
     files = (
         *map(load_display, presets.display_names()),
-        *map(load_requirements, presets.requirement_names()),
-        *(load(TextureFile, presets.resolve_texture(name)) for name in presets.texture_names()),
-        *(load(StudyDesign, presets.resolve_study(name)) for name in presets.study_names()),
-        *map(load_actuator, presets.actuator_names()),
+        *map(load_requirements, presets.names("requirements")),
+        *(load(TextureFile, presets.resolve(name, "texture")) for name in presets.texture_names()),
+        *(load(StudyDesign, presets.resolve(name, "study")) for name in presets.study_names()),
+        *map(load_actuator, presets.names("actuator")),
         load_observer("fingertip"),
     )
     tables: dict[type[Any], list[Any]] = {}

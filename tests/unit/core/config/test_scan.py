@@ -58,7 +58,9 @@ def test_what_takes_a_parser_long_is_refused_before_it(kind: str) -> None:
 
 @pytest.mark.parametrize("name", [*presets.display_names(), *presets.texture_names()])
 def test_presets_are_far_below_the_limits(name: str) -> None:
-    file = presets.path(name) if name in presets.display_names() else presets.resolve_texture(name)
+    file = (
+        presets.path(name) if name in presets.display_names() else presets.resolve(name, "texture")
+    )
     text = file.read_text(encoding="utf-8")
     require_quick_toml(text)
     with pytest.MonkeyPatch.context() as patch:

@@ -15,7 +15,7 @@ from squeezefilm.design.search.store import asked_hash
 from squeezefilm.physics.display import DECAY_LENGTH
 
 
-@pytest.mark.parametrize("name", presets.requirement_names())
+@pytest.mark.parametrize("name", presets.names("requirements"))
 def test_the_presets_can_be_read(name: str) -> None:
     wanted = load_requirements(name)
     assert wanted.name == name

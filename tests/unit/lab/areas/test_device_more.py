@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .conftest import Talk
 
 STATOR = preset_text("biet2008-stator")
-SINE = presets.resolve_texture("sine-3mm").read_text(encoding="utf-8")
+SINE = presets.resolve("sine-3mm", "texture").read_text(encoding="utf-8")
 HOW: dict[str, Any] = {"display": STATOR, "drive": "twin", "armed": True, "preset": "bump"}
 
 
@@ -82,7 +82,7 @@ def test_what_a_page_asks_is_what_is_played(lab: Talk, session: Session) -> None
     work = session.work
     assert work == SimpleNamespace(
         display=str(lab.folder / "sessions" / ".display.toml"),
-        texture=str(presets.resolve_texture("bump")),
+        texture=str(presets.resolve("bump", "texture")),
         drive="twin",
         out=str(lab.folder / found["folder"]),
         **{**how, "duration": 2.5, "voltage": 90.0},

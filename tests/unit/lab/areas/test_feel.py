@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from .conftest import Talk
 
 STATOR = preset_text("biet2008-stator")
-SINE = presets.resolve_texture("sine-3mm").read_text(encoding="utf-8")
+SINE = presets.resolve("sine-3mm", "texture").read_text(encoding="utf-8")
 # Black but for the pixel in the middle.
 PICTURE = base64.b64encode(picture_bytes(np.eye(15)[7].reshape(3, 5))).decode()
 
@@ -217,5 +217,5 @@ def test_a_stroke_has_at_most_two_hundred_thousand_rows() -> None:
 def test_every_preset_can_be_asked_for(lab: Talk) -> None:
     for name in presets.texture_names():
         text = lab.say("texture text", preset=name)["text"]
-        file = presets.resolve_texture(name)
+        file = presets.resolve(name, "texture")
         assert texture_from_text(text, file=file).title == load_texture(name).title

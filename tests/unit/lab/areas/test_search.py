@@ -77,12 +77,12 @@ def searched(lab: Talk) -> Any:
 
 
 def test_presets_are_listed_with_what_was_searched_here(lab: Talk) -> None:
-    kept = list(presets.requirement_names())
+    kept = list(presets.names("requirements"))
     assert lab.say("requirements") == {"type": "requirements", "presets": kept, "saved": []}
     lab.say("start search", text=TEXT)
     (saved,) = lab.say("requirements")["saved"]
     assert saved.startswith("biet2008-plate-")
-    preset = presets.resolve_requirements("biet2008-plate").read_text(encoding="utf-8")
+    preset = presets.resolve("biet2008-plate", "requirements").read_text(encoding="utf-8")
     for how, text in (({"preset": "biet2008-plate"}, preset), ({"file": saved}, TEXT)):
         assert lab.say("requirements text", **how) == {"type": "requirements text", "text": text}
     for wrong in ({}, {"preset": "biet2008-plate", "file": saved}):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from tests.e2e.program import run as program
 
-from squeezefilm.core.presets import resolve_observer
+from squeezefilm.core.presets import resolve
 from squeezefilm.physics.perception.observer import load_observer
 
 
@@ -18,7 +18,7 @@ from squeezefilm.physics.perception.observer import load_observer
 def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A rehearsed file of the preset, with an observer of a single finger class."""
     folder = tmp_path_factory.mktemp("shapes")
-    text = Path(resolve_observer("fingertip")).read_text(encoding="utf-8")
+    text = Path(resolve("fingertip", "observer")).read_text(encoding="utf-8")
     lines = [
         "finger_classes = 1" if one.startswith("finger_classes") else one
         for one in text.splitlines()

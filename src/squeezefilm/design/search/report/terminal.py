@@ -106,7 +106,7 @@ def _show_front(console: Console, search: DesignSearch) -> None:
 def show_requirements() -> None:
     """Print the requirements that come with the package, and what to do with them."""
     console = plain_console()
-    rows = [(name, load_requirements(name).title) for name in presets.requirement_names()]
+    rows = [(name, load_requirements(name).title) for name in presets.names("requirements")]
     table(console, ("requirements", "what they are"), rows, fixed=(0,))
     console.print(
         "squeezefilm design NAME searches for plates that meet them. For your own, write a TOML "

@@ -243,7 +243,7 @@ def test_a_session_is_held_analysed_and_exported(name: str, tmp_path: Path) -> N
 def _preset(name: str) -> Path:
     from squeezefilm.core import presets
 
-    return Path(str(presets.resolve_study(name)))
+    return Path(str(presets.resolve(name, "study")))
 
 
 def test_a_flat_surface_is_described_by_its_name_and_has_no_d_prime() -> None:
