@@ -402,3 +402,8 @@ def test_all_modes_up_to_twice_the_working_one_are_superposed() -> None:
     assert response.mode in response.modes
     beyond = pieced_beam_mode(beam_pieces(plate, "plane_strain"), lines[-1] + 1)
     assert frequencies[-1] <= 2 * response.mode.frequency < beyond.frequency
+
+
+def test_a_mode_whose_shape_was_not_guessed_is_found_beside_rigid_motions() -> None:
+    pieces = beam_pieces(random_plate(1), "plane_strain")
+    assert pieced_beam_mode(pieces, 10).nodal_lines == 10

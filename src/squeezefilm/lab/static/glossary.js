@@ -90,7 +90,6 @@ export const DISPLAY = {
   ambient_temperature: { name: "room temperature", text: "Of the room that the plate gives its heat to.", source: "assumed" },
   temperature_coefficient: { name: "drift with temperature", text: "How much the resonance frequency changes per kelvin, relative.", source: "assumed; measure it" },
   coercive_field: { name: "coercive field", text: "Of the ceramic; a third of it is warned of.", source: "assumed: 1 kV/mm" },
-  highest_speed: { name: "highest vibration speed", text: "Of the surface, r.m.s.; beyond it the ceramic heats and softens, which is warned of.", source: "0.3 m/s of hard, 0.1 m/s of soft ceramics (assumed)" },
   name: { name: "name", text: "Of the display, material or surface: a word to refer to it by.", source: "your choice" },
   title: { name: "title", text: "What the display is, in a line, for people.", source: "your choice" },
   insulation: { name: "insulation", text: "Names what insulates the touched side from the voltage. Without it nothing above 42 V is played.", source: "the display's drawing; safety of touched parts" },

@@ -41,6 +41,8 @@ _ORDER, _LONGEST = 4, 0.4
 """The order of elements, and their length at most in half wavelengths: 2e-5 of a frequency."""
 _BAND = 2 * _ORDER + 1
 _TURNS, _SETTLED = 12, 1e-8
+_RIGID = 1e-6
+"""Of the square of a mode's frequency: below, it is a rigid motion's rounding."""
 _NEAR = 1e-5
 """Places that are as good as one, over the length of the plate."""
 _Strip = tuple[Face, si.Metre, si.Metre, si.Metre]
@@ -244,7 +246,8 @@ class _Elements:
         )
         values, vectors = eigsh(stiffness, k=count + 4, M=mass, sigma=guess**2)
         for value, vector in zip(values, vectors.T, strict=True):
-            yield math.sqrt(abs(float(value))), vector
+            if value > _RIGID * guess**2:
+                yield math.sqrt(float(value)), vector
 
     def at(self, x: si.MetreArray, vector: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
         """Deflection and rotation at places."""

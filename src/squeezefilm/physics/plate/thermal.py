@@ -40,8 +40,6 @@ class Thermal:
         ambient_temperature: of the room (K).
         temperature_coefficient: of the resonance frequency, relative (1/K).
         coercive_field: of the ceramic (V/m); a third of it is warned of.
-        highest_speed: of the surface, r.m.s. (m/s), that is warned of; None takes 0.3 m/s of a hard
-            ceramic (Q of 200 and more) and 0.1 m/s of a soft one.
 
     Raises:
         InputError: a value outside its range.
@@ -53,7 +51,6 @@ class Thermal:
     ambient_temperature: Annotated[si.AbsoluteKelvin, si.AtLeast(230.0), si.AtMost(350.0)] = 293.15
     temperature_coefficient: Annotated[si.PerKelvin, si.Above(-1e-2), si.Below(1e-2)] = -1e-4
     coercive_field: Annotated[si.VoltPerMetre, si.Above(0.0), si.AtMost(1e9)] = 1e6
-    highest_speed: Annotated[si.MetrePerSecond, si.Above(0.0), si.AtMost(1e3)] | None = None
 
 
 class Cooling(NamedTuple):

@@ -243,7 +243,7 @@ def _doubts(warm: Warming, source: HeatSource, thermal: Thermal) -> list[str]:
     if (sentence := too_hot(warm)) is not None:
         said.append(sentence)
     hard = source.quality_of_ceramic is None or source.quality_of_ceramic >= HARD_QUALITY
-    most = thermal.highest_speed or (HARD_SPEED if hard else SOFT_SPEED)
+    most = HARD_SPEED if hard else SOFT_SPEED
     if warm.speed > most:
         said.append(
             f"the surface moves at {warm.speed:.2g} m/s (r.m.s.), more than the {most:g} m/s at "

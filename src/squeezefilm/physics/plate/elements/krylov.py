@@ -87,10 +87,7 @@ def modes_near(
         elif values.size < start.shape[1]:
             continue
         else:
-            # A tenth of a second of imports that few solves need.
-            from scipy.optimize import linear_sum_assignment
-
-            index = linear_sum_assignment(-((start.T @ MQ @ coefficients) ** 2))[1]
+            index = _most_alike(start.T @ MQ @ coefficients)
         now, chosen = values[index], coefficients[:, index]
         if (
             before is not None
@@ -107,6 +104,15 @@ def modes_near(
         "modes",
         iterations=_MOST_STEPS,
     )
+
+
+def _most_alike(products: si.FloatArray) -> si.IntArray:
+    """The column for each row, each another one, by the squares of their products."""
+    # A tenth of a second of imports that few solves need.
+    from scipy.optimize import linear_sum_assignment
+
+    chosen: si.IntArray = linear_sum_assignment(-(products**2))[1]
+    return chosen
 
 
 def orthonormal(
