@@ -143,13 +143,13 @@ NOT_CALLED = {
     physics.plate.ring.elements.graded_edges physics.plate.elements.lobatto.lagrange
     physics.plate.ring.elements.nearest_modes physics.plate.ring.elements.entries
     physics.plate.ring.elements.gathered physics.plate.ring.elements.shifted_inverse
-    physics.plate.ring.elements.node_coordinates physics.plate.solid.model.PlateModel
+    physics.plate.ring.elements.node_coordinates physics.plate.solid.symmetry.PlateModel
     physics.plate.solid.resonances.driven_modes physics.plate.solid.resonances.antinode
     physics.plate.solid.symmetry.forbidden_by physics.plate.solid.layers.Resolution
     physics.plate.solid.layers.merged physics.plate.solid.layers.nearest
     physics.plate.solid.layers.snapped physics.plate.solid.mesh.plate_model
-    physics.plate.solid.mesh.wave_number physics.plate.solid.model.PlateModel.evaluation
-    physics.plate.solid.model.PlateModel.field physics.plate.solid.model.PlateModel.force
+    physics.plate.solid.mesh.wave_number physics.plate.solid.symmetry.PlateModel.evaluation
+    physics.plate.solid.symmetry.PlateModel.field physics.plate.solid.symmetry.PlateModel.force
     physics.plate.solid.modes.label_of physics.plate.elements.nodal_lines.profiles
     physics.plate.solid.modes.surface_shapes physics.plate.elements.nodal_lines.zero_crossings
     physics.plate.solid.symmetry.mirror_map physics.plate.solid.reduced.ReducedClass

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.physics.plate.press import (
+from squeezefilm.physics.plate.laminate import (
     bending_stress,
     pressed_deflection,
     pressed_disc_deflection,

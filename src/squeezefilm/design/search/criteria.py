@@ -27,14 +27,16 @@ from squeezefilm.physics.perception.felt import (
 from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.physics.plate.beam_response import patch_capacitance
 from squeezefilm.physics.plate.electronics import load_of_mode
-from squeezefilm.physics.plate.laminate import Laminate, ceramics_of, plate_laminate
-from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
-from squeezefilm.physics.plate.parts import parts_of
-from squeezefilm.physics.plate.press import (
+from squeezefilm.physics.plate.laminate import (
+    Laminate,
     bending_stress,
+    ceramics_of,
+    plate_laminate,
     pressed_deflection,
     pressed_disc_deflection,
 )
+from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
+from squeezefilm.physics.plate.parts import parts_of
 from squeezefilm.physics.plate.thermal import driven_thickness
 from squeezefilm.physics.plate.working_mode import CROWDED
 from squeezefilm.physics.uncertainty.uncertainty import uncertain_friction

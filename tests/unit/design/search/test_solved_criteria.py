@@ -16,7 +16,7 @@ from squeezefilm.design.search import criteria
 from squeezefilm.design.search.criteria import _capacitance, _deflection, _stress
 from squeezefilm.design.search.requirements import Limits
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.press import pressed_deflection, pressed_disc_deflection
+from squeezefilm.physics.plate.laminate import pressed_deflection, pressed_disc_deflection
 
 PLATE: Any = load_display("biet2008-plate")
 DISC: Any = load_display("winfield2007-tpad")

@@ -19,9 +19,8 @@ from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.layers import COARSE
 from squeezefilm.physics.plate.solid.mesh import plate_model
-from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.modes import Label, label_of, surface_shapes
-from squeezefilm.physics.plate.solid.symmetry import Symmetry, drive_signs
+from squeezefilm.physics.plate.solid.symmetry import PlateModel, Symmetry, drive_signs
 
 _HARDLY = 1e-9
 _OPEN_TOLERANCE = 1e-6

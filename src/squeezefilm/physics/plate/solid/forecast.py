@@ -23,10 +23,9 @@ from squeezefilm.physics.plate.layout import RectangularPlate, turned
 from squeezefilm.physics.plate.solid.coarse_modes import class_fits
 from squeezefilm.physics.plate.solid.layers import COARSE, NORMAL, Resolution
 from squeezefilm.physics.plate.solid.mesh import plate_model, require_thin
-from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.modes import Label
 from squeezefilm.physics.plate.solid.reduced import resolved_frequency
-from squeezefilm.physics.plate.solid.symmetry import all_classes, drive_classes
+from squeezefilm.physics.plate.solid.symmetry import PlateModel, all_classes, drive_classes
 
 # Processor time of one thread of the machine that this was written on, fitted to 14 plates of metal
 # and glass (see `benchmarks/size.py`): cubes of elements' slices that are worked off in a second to

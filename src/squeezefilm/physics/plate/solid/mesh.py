@@ -36,9 +36,9 @@ from squeezefilm.physics.plate.solid.layers import (
     snapped,
     through_thickness,
 )
-from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.symmetry import (
     SNAP,
+    PlateModel,
     Symmetry,
     mirror_map,
     symmetric_axes,

@@ -20,8 +20,7 @@ from squeezefilm.physics.plate.elements.nodal_lines import (
 )
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.layers import COARSE, NORMAL, Resolution
-from squeezefilm.physics.plate.solid.model import PlateModel
-from squeezefilm.physics.plate.solid.symmetry import Symmetry
+from squeezefilm.physics.plate.solid.symmetry import PlateModel, Symmetry
 
 _SOLVING = threading.RLock()
 

@@ -19,8 +19,7 @@ from squeezefilm.physics.plate.elements.slabs import Slabs
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.layers import NORMAL, Resolution
 from squeezefilm.physics.plate.solid.mesh import plate_model
-from squeezefilm.physics.plate.solid.model import PlateModel
-from squeezefilm.physics.plate.solid.symmetry import Symmetry, drive_signs
+from squeezefilm.physics.plate.solid.symmetry import PlateModel, Symmetry, drive_signs
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,7 +22,6 @@ from squeezefilm.physics.plate.solid.coarse_modes import (
 from squeezefilm.physics.plate.solid.forecast import expected_seconds
 from squeezefilm.physics.plate.solid.layers import COARSE, FINE, NORMAL, Resolution
 from squeezefilm.physics.plate.solid.mesh import plate_model
-from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.modes import (
     COARSE_ERROR,
     Label,
@@ -30,6 +29,7 @@ from squeezefilm.physics.plate.solid.modes import (
     surface_shapes,
 )
 from squeezefilm.physics.plate.solid.reduced import ReducedClass, resolved_frequency
+from squeezefilm.physics.plate.solid.symmetry import PlateModel
 
 LEVELS = (NORMAL, FINE)
 UNREFINED = -1

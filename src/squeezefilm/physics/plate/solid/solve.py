@@ -31,7 +31,6 @@ from squeezefilm.physics.plate.solid.coarse_modes import (
     coarse_modes,
 )
 from squeezefilm.physics.plate.solid.forecast import estimated_frequency, expected_seconds
-from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.modes import (
     MODEL,
     Label,
@@ -49,6 +48,7 @@ from squeezefilm.physics.plate.solid.refined_modes import (
     with_label,
 )
 from squeezefilm.physics.plate.solid.symmetry import (
+    PlateModel,
     Symmetry,
     all_classes,
     drive_classes,

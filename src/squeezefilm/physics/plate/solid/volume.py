@@ -18,10 +18,10 @@ from squeezefilm.physics.plate.elements.box_model import POTENTIAL_UNIT
 from squeezefilm.physics.plate.elements.cross_section import potential_base
 from squeezefilm.physics.plate.elements.lobatto import LineMesh
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.solid.reduced import class_slices, open_electrodes
 from squeezefilm.physics.plate.solid.response import HarmonicResponse
+from squeezefilm.physics.plate.solid.symmetry import PlateModel
 
 _CORNERS = np.array(
     [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]

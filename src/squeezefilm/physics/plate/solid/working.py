@@ -28,7 +28,6 @@ from squeezefilm.physics.plate.elements.nodal_lines import within_nodes, zero_cr
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.forecast import estimated_frequency, solve_size
 from squeezefilm.physics.plate.solid.layers import Resolution
-from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.modes import COARSE_AMPLITUDE_ERROR, MODEL, Label, PlateModes
 from squeezefilm.physics.plate.solid.reduced import class_drive
 from squeezefilm.physics.plate.solid.refined_modes import RefinedModes
@@ -40,6 +39,7 @@ from squeezefilm.physics.plate.solid.resonances import (
 )
 from squeezefilm.physics.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.physics.plate.solid.solve import solve_for_response
+from squeezefilm.physics.plate.solid.symmetry import PlateModel
 
 RESPONSE_POINTS = 200
 _LINE_POINTS = 401

@@ -16,12 +16,11 @@ from squeezefilm.physics.plate.elements.lobatto import line_matrices
 from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.physics.plate.solid.layers import COARSE
 from squeezefilm.physics.plate.solid.mesh import plate_model
-from squeezefilm.physics.plate.solid.model import PlateModel
 from squeezefilm.physics.plate.solid.refined_modes import with_coarse_modes
 from squeezefilm.physics.plate.solid.resonances import screened_modes
 from squeezefilm.physics.plate.solid.response import harmonic_response
 from squeezefilm.physics.plate.solid.solve import solve_for_response, solve_modes
-from squeezefilm.physics.plate.solid.symmetry import Parity
+from squeezefilm.physics.plate.solid.symmetry import Parity, PlateModel
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480)
 CERAMIC = Piezoceramic("P1-91", 67.9e9, 0.2897, 23e9, 7700, -247e-12, 1900, 60)
