@@ -9,7 +9,6 @@ import pytest
 from tests.verification.random_plates import random_plate
 
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.elements.slabs import slab_count
 from squeezefilm.physics.plate.layout import RectangularPlate, turned
 from squeezefilm.physics.plate.solid.forecast import estimated_frequency, solve_size
 from squeezefilm.physics.plate.solid.layers import COARSE, NORMAL
@@ -23,8 +22,8 @@ def require_same_work(plate: RectangularPlate) -> None:
     other = turned(plate)
     for resolution in (COARSE, NORMAL):
         for parity in all_classes(plate):
-            here = slab_count(plate_model(plate, 30e3, resolution, parity).model)
-            there = slab_count(plate_model(other, 30e3, resolution, parity[::-1]).model)
+            here = plate_model(plate, 30e3, resolution, parity).slabs
+            there = plate_model(other, 30e3, resolution, parity[::-1]).slabs
             assert here.unknowns == there.unknowns
             assert here.memory == there.memory
             assert here.products == there.products

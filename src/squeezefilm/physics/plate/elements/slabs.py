@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from scipy import sparse
@@ -30,14 +30,66 @@ from squeezefilm.physics.plate.elements.lobatto import LineMesh, line_matrices
 
 # Vectors that operators are applied to at once: of more, what lies between outgrows the caches.
 _TOGETHER = 32
+_FLOAT = 8.0
+# Matrices of a slice's size that an element of its own kind takes (a number, and one for each
+# order), and vectors over all unknowns that the modes' search keeps. Fitted to peaks of resident
+# memory on four plates of metal and glass, 0.07 to 1.7 GB: within 10 % of all.
+_OF_A_KIND, _OF_AN_ORDER, _VECTORS = 3.0, 2.0, 120.0
+# A slice has this share at least of the squares of a full box's: the rest is air beside ceramics.
+# Meshes of gigahertz are refused by it; to count their unknowns would take hours.
+_FEWEST = 0.05
 
 
 class Slabs:
-    """The discretised model: `codes` of the unknowns of each slice and the slice matrices."""
+    """The discretised model: `codes` of the unknowns of each slice (x node), of `element_codes` of
+    the slices that each x element is made of, and the slice matrices."""
 
     def __init__(self, model: BoxModel) -> None:
         self.model = model
         self._number()
+
+    @functools.cached_property
+    def element_codes(self) -> list[si.IntArray]:
+        """The codes of the unknowns of every element's slices."""
+        model = self.model
+        known: dict[bytes, si.IntArray] = {}
+        codes: list[si.IntArray] = []
+        for e in range(model.x.elements):
+            pattern = model.medium[e].tobytes() + model.ceramic[e].tobytes()
+            if pattern not in known:
+                known[pattern] = slice_codes(model, e)
+            codes.append(known[pattern])
+        return codes
+
+    @property
+    def products(self) -> float:
+        """The cubes of the elements' slices, to which the time of a factorisation goes."""
+        return float(sum(codes.size**3 for codes in self.element_codes))
+
+    @property
+    def squares(self) -> float:
+        """The squares of the elements' slices: entries of the factors."""
+        return float(sum(codes.size**2 for codes in self.element_codes))
+
+    @property
+    def memory(self) -> float:
+        """The bytes that the factors, what is made on the way to them and the modes take: within a
+        tenth of the resident memory measured on four plates."""
+        x = self.model.x
+        kinds: dict[tuple[bytes, int, int], float] = {}
+        for e, order in enumerate(x.orders):
+            length = round((x.edges[e + 1] - x.edges[e]) * 1e12)
+            matrices = _OF_A_KIND + _OF_AN_ORDER * order
+            square = matrices * self.element_codes[e].size ** 2
+            kinds.setdefault((self.model.medium[e].tobytes(), length, order), square)
+        return _FLOAT * (2 * self.squares + sum(kinds.values()) + _VECTORS * self.unknowns)
+
+    def require_memory(self) -> None:
+        """Refuse a model whose factors would not fit into memory, before any matrix is made.
+
+        Raises `InputError`.
+        """
+        _require_memory(len(self.sizes), max(self.sizes), self.memory)
 
     @functools.cached_property
     def sections(self) -> list[CrossSection]:
@@ -61,9 +113,9 @@ class Slabs:
         x = self.model.x
         count = x.nodes.size
         parts: list[list[si.IntArray]] = [[] for _ in range(count)]
-        for e, section in enumerate(self.sections):
+        for e, codes in enumerate(self.element_codes):
             for a in range(x.orders[e] + 1):
-                parts[x.first_node[e] + a].append(section.codes)
+                parts[x.first_node[e] + a].append(codes)
         self.codes: list[si.IntArray] = []
         for some in parts:
             self.codes.append(functools.reduce(np.union1d, some) if len(some) > 1 else some[0])
@@ -81,7 +133,7 @@ class Slabs:
     def places(self, element: int, local: int) -> si.IntArray:
         """Indices of the unknowns of an element's section in the slice of its node `local`."""
         codes = self.codes[self.model.x.first_node[element] + local]
-        mine = self.sections[element].codes
+        mine = self.element_codes[element]
         return np.arange(mine.size) if codes.size == mine.size else np.searchsorted(codes, mine)
 
     @functools.cached_property
@@ -241,69 +293,6 @@ def _renumbered(model: BoxModel, section: CrossSection, element: int) -> CrossSe
     return dataclasses.replace(section, codes=codes, electrodes=tuple(numbers.tolist()))
 
 
-_FLOAT = 8.0
-# Matrices of a slice's size that an element of its own kind takes (a number, and one for each
-# order), and vectors over all unknowns that the modes' search keeps. Fitted to peaks of resident
-# memory on four plates of metal and glass, 0.07 to 1.7 GB: within 10 % of all.
-_OF_A_KIND, _OF_AN_ORDER, _VECTORS = 3.0, 2.0, 120.0
-# A slice has this share at least of the squares of a full box's: the rest is air beside ceramics.
-# Meshes of gigahertz are refused by it; to count their unknowns would take hours.
-_FEWEST = 0.05
-
-
-class SlabCount(NamedTuple):
-    """The size of a box model: the unknowns of each slice (x node), and those of the slices that
-    each x element is made of, with its order; `kinds` are the elements unlike all before them."""
-
-    slices: si.IntArray
-    elements: si.IntArray
-    orders: si.IntArray
-    kinds: si.IntArray
-
-    @property
-    def unknowns(self) -> int:
-        """Number of unknowns of the whole model, with those held at its ends along x."""
-        return int(np.sum(self.slices))
-
-    @property
-    def products(self) -> float:
-        """The cubes of the elements' slices, to which the time of a factorisation goes."""
-        return float(np.sum(self.elements.astype(float) ** 3))
-
-    @property
-    def squares(self) -> float:
-        """The squares of the elements' slices: entries of the factors."""
-        return float(np.sum(self.elements.astype(float) ** 2))
-
-    @property
-    def memory(self) -> float:
-        """The bytes that the factors, what is made on the way to them and the modes take: within a
-        tenth of the resident memory measured on four plates."""
-        squares = self.elements[self.kinds].astype(float) ** 2
-        alone = float(np.sum((_OF_A_KIND + _OF_AN_ORDER * self.orders[self.kinds]) * squares))
-        return _FLOAT * (2 * self.squares + alone + _VECTORS * self.unknowns)
-
-
-def slab_count(model: BoxModel) -> SlabCount:
-    """Count a model's unknowns slice by slice, in milliseconds."""
-    x = model.x
-    known: dict[bytes, si.IntArray] = {}
-    kinds: dict[tuple[object, ...], int] = {}
-    parts: list[list[si.IntArray]] = [[] for _ in range(x.nodes.size)]
-    for e in range(x.elements):
-        pattern = model.medium[e].tobytes() + model.ceramic[e].tobytes()
-        if pattern not in known:
-            known[pattern] = slice_codes(model, e)
-        length = round((x.edges[e + 1] - x.edges[e]) * 1e12)
-        kinds.setdefault((model.medium[e].tobytes(), length, x.orders[e]), e)
-        for node in range(x.first_node[e], x.first_node[e + 1] + 1):
-            parts[node].append(known[pattern])
-    slices = [functools.reduce(np.union1d, some).size for some in parts]
-    elements = [parts[x.first_node[e] + 1][0].size for e in range(x.elements)]
-    alone = np.array(sorted(kinds.values()))
-    return SlabCount(np.array(slices), np.array(elements), np.array(x.orders), alone)
-
-
 def require_countable(x: LineMesh, y: LineMesh, z: LineMesh, trunk: float) -> None:
     """Refuse meshes that are far too fine for memory, before a model is made of them.
 
@@ -311,15 +300,6 @@ def require_countable(x: LineMesh, y: LineMesh, z: LineMesh, trunk: float) -> No
     """
     full = int(np.count_nonzero(kept_products(y, z, trunk)))
     _require_memory(x.nodes.size, full, _FEWEST * _FLOAT * x.elements * full**2)
-
-
-def require_memory(model: BoxModel) -> None:
-    """Refuse a model whose factors would not fit into memory, before anything is made of it.
-
-    Raises `InputError`.
-    """
-    count = slab_count(model)
-    _require_memory(count.slices.size, int(np.max(count.slices)), count.memory)
 
 
 def _require_memory(slices: int, most: int, memory: float) -> None:

@@ -17,7 +17,6 @@ from squeezefilm.core.errors import InputError, OutOfTimeError, SqueezefilmError
 from squeezefilm.core.progress import Deadline
 from squeezefilm.physics.plate.beam_modes import free_beam_mode, timoshenko_frequency
 from squeezefilm.physics.plate.beam_pieces import beam_pieces, pieced_beam_mode
-from squeezefilm.physics.plate.elements.slabs import SlabCount, slab_count
 from squeezefilm.physics.plate.laminate import plate_laminate, section_with
 from squeezefilm.physics.plate.layout import RectangularPlate, turned
 from squeezefilm.physics.plate.solid.coarse_modes import class_fits
@@ -68,11 +67,7 @@ class SolveSize(NamedTuple):
 def expected_seconds(solved: PlateModel) -> si.Second:
     """Time that a mesh takes to be factorised and searched (s): elements times the cube of their
     slices' unknowns, as `SolveSize.seconds` is right."""
-    return _seconds(slab_count(solved.model))
-
-
-def _seconds(count: SlabCount) -> si.Second:
-    return _BESIDES + count.products / _RATE
+    return _BESIDES + solved.slabs.products / _RATE
 
 
 @si.checked_numbers
@@ -97,10 +92,9 @@ def solve_size(plate: RectangularPlate, label: Label, frequency: si.Hertz) -> So
         seconds, most = 0.0, 0
         for parity in driven:
             mesh = plate_model(plate, band, resolution, parity)
-            count = slab_count(mesh.model)
-            seconds += _BESIDES + count.squares / _RESPONSE_RATE
-            seconds += 0.0 if parity in fitting else _seconds(count)
-            most = max(most, count.unknowns)
+            seconds += _BESIDES + mesh.slabs.squares / _RESPONSE_RATE
+            seconds += 0.0 if parity in fitting else expected_seconds(mesh)
+            most = max(most, mesh.slabs.unknowns)
         return seconds, most
 
     response, unknowns = answered(NORMAL)

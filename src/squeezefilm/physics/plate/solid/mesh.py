@@ -26,7 +26,7 @@ from squeezefilm.physics.plate.elements.box_model import (
     require_half_wave,
 )
 from squeezefilm.physics.plate.elements.lobatto import MAX_ORDER, LineMesh
-from squeezefilm.physics.plate.elements.slabs import require_countable, require_memory
+from squeezefilm.physics.plate.elements.slabs import require_countable
 from squeezefilm.physics.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
 from squeezefilm.physics.plate.solid.layers import (
     NORMAL,
@@ -173,8 +173,7 @@ def plate_model(
         cells.foundations(),
         resolution.trunk,
     )
-    require_memory(model)
-    return PlateModel(
+    solved = PlateModel(
         plate,
         model,
         parity,
@@ -184,6 +183,8 @@ def plate_model(
         sign_of,
         tuple(_share(plate, patch, parity) for patch in plate.patches),
     )
+    solved.slabs.require_memory()
+    return solved
 
 
 def _in_plane(

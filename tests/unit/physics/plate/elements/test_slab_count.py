@@ -14,12 +14,10 @@ from squeezefilm.core.hard_limits import SOLID_MEMORY
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.elements import slabs
-from squeezefilm.physics.plate.elements import slabs as counting
 from squeezefilm.physics.plate.elements.box_model import BoxModel
 from squeezefilm.physics.plate.elements.cross_section import CrossSection
 from squeezefilm.physics.plate.elements.krylov import modes_near
 from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
-from squeezefilm.physics.plate.elements.slabs import slab_count
 from squeezefilm.physics.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
 from squeezefilm.physics.plate.solid.layers import COARSE, FINE, NORMAL, Resolution
 from squeezefilm.physics.plate.solid.mesh import plate_model
@@ -47,13 +45,12 @@ def test_the_count_of_every_slice_is_that_of_the_assembled_model(seed: int) -> N
     plate = random_plate(seed)
     for parity in all_classes(plate):
         solved = plate_model(plate, 30e3, COARSE, parity)
-        count = slab_count(solved.model)
-        np.testing.assert_array_equal(count.slices, solved.slabs.sizes)
-        assert count.unknowns == solved.slabs.unknowns
-        inside = [s.codes.size for s in solved.slabs.sections]
-        np.testing.assert_array_equal(count.elements, inside)
-        assert count.squares == sum(size**2 for size in inside)
-        assert count.products == sum(size**3 for size in inside)
+        slabs = solved.slabs
+        for codes, section in zip(slabs.element_codes, slabs.sections, strict=True):
+            np.testing.assert_array_equal(codes, section.codes)
+        inside = [section.codes.size for section in slabs.sections]
+        assert slabs.squares == sum(size**2 for size in inside)
+        assert slabs.products == sum(size**3 for size in inside)
 
 
 def test_slices_that_differ_in_the_numbers_of_their_ceramics_are_assembled_once(
@@ -78,14 +75,14 @@ def test_slices_that_differ_in_the_numbers_of_their_ceramics_are_assembled_once(
 
 def test_glass_with_small_ceramics_fits_into_four_gigabytes() -> None:
     for parity in all_classes(SHEET):
-        count = slab_count(plate_model(SHEET, 37.7e3, FINE, parity).model)
+        count = plate_model(SHEET, 37.7e3, FINE, parity).slabs
         assert count.memory < 4e9
         assert 100_000 < count.unknowns < 150_000
 
 
 def test_a_model_that_memory_does_not_hold_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     lower = dataclasses.replace(SOLID_MEMORY, most=1e8)
-    monkeypatch.setattr(counting, "SOLID_MEMORY", lower)
+    monkeypatch.setattr(slabs, "SOLID_MEMORY", lower)
     with pytest.raises(InputError, match=r"slices of up to \d+ unknowns are too many"):
         plate_model(SHEET, 37.7e3, NORMAL, ("S", "S"))
 
@@ -109,7 +106,7 @@ def _peak(plate: RectangularPlate, frequency: float, resolution: Resolution) -> 
     )
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    return slab_count(solved.model).memory / peak
+    return slabs.memory / peak
 
 
 @pytest.mark.slow
