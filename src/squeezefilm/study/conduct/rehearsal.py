@@ -85,14 +85,9 @@ def rehearse(
 
 
 def _simulated(store: StudyStore) -> list[str]:
-    """Participants enrolled by a rehearsal, in the order of their numbers; of the files of older
-    versions those who have a session, which is simulated."""
-    sat = {row["participant"] for row in store.rows("SELECT DISTINCT participant FROM session")}
-    return [
-        row["uuid"]
-        for row in store.participants()
-        if row["uuid"] in sat or row["uuid"] == store.simulated_pseudonym(row["number"])
-    ]
+    """Participants enrolled by a rehearsal, in the order of their numbers."""
+    every = ((row["uuid"], row["number"]) for row in store.participants())
+    return [who for who, number in every if who == store.simulated_pseudonym(number)]
 
 
 def _responses(study: SimulatedStudy, person: int) -> dict[int, Response]:

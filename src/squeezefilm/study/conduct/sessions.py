@@ -10,7 +10,6 @@ device that is off.
 from __future__ import annotations
 
 import json
-import math
 import time
 import uuid
 from collections.abc import Callable
@@ -138,7 +137,6 @@ def exposure(
     display: Display,
     duration: si.Second,
     *,
-    distance: si.Metre = EAR_DISTANCE,
     progress: Callable[[str], None] | None = None,
 ) -> Exposure:
     """The exposure of a session of `duration` (s) on a display at its own voltage.
@@ -149,24 +147,17 @@ def exposure(
     from squeezefilm.design.plate.command import solve_plate
 
     field = solve_plate(display, points=41, progress=progress).sound
-    return exposure_of(display.name, field, duration, distance)
+    return exposure_of(display.name, field, duration)
 
 
-def exposure_of(
-    display: str, field: SoundField, duration: si.Second, distance: si.Metre
-) -> Exposure:
-    """The exposure that a computed sound field means at a distance (m).
-
-    Between the field's distances the level falls with 1/distance from the nearest one.
-    """
-    nearest = min(range(len(field.distances)), key=lambda i: abs(field.distances[i] - distance))
-    level = field.sound_pressure_level_dB[nearest]
-    level += 20 * math.log10(field.distances[nearest] / distance)
+def exposure_of(display: str, field: SoundField, duration: si.Second) -> Exposure:
+    """The exposure that a computed sound field means at `EAR_DISTANCE`, which is among its own."""
+    level = field.sound_pressure_level_dB[field.distances.index(EAR_DISTANCE)]
     guidance = field.guidance
     return Exposure(
         display=display,
         frequency=field.frequency,
-        distance=distance,
+        distance=EAR_DISTANCE,
         level_dB=float(level),
         duration=duration,
         guidance_dB=None if guidance is None else guidance.level_dB,

@@ -126,6 +126,3 @@ TABLES = (
     "set_aside",
 )
 """Tables that merge from other stations, each table after those it refers to. Keys come first."""
-
-UPGRADE_1 = next(part for part in SCHEMA.split(";") if "CREATE TABLE set_aside" in part)
-"""Statement that gives a file of version 1 what it lacks."""

@@ -94,17 +94,17 @@ def test_a_device_that_cannot_be_measured_is_neither_in_order_nor_off() -> None:
         DeviceVerification(2e-6, math.nan, 30e3, 30e3)
 
 
-def test_the_level_falls_with_the_distance_and_is_held_against_the_guidance() -> None:
+def test_the_level_at_an_ear_is_held_against_the_guidance() -> None:
     field = SoundField(
         frequency=33e3,
         distances=(0.5, 1.0),
         sound_pressure_level_dB=(124.0, 118.0),
         guidance=exposure_guidance(33e3),
     )
-    near = exposure_of("d", field, 600.0, 0.25)
-    assert near.level_dB == pytest.approx(124.0 + 20 * math.log10(2))
+    near = exposure_of("d", field, 600.0)
+    assert near.level_dB == 124.0
     assert near.above_guidance_dB == pytest.approx(near.level_dB - 100)
-    assert "30 dB above" in near.statement
+    assert "24 dB above" in near.statement
     assert "10 min" in near.statement
     assert "to be checked" in near.statement
 
@@ -127,29 +127,6 @@ def test_conditions_are_read_from_a_file_with_units() -> None:
     ):
         with pytest.raises(ConfigError, match=says):
             config.load_text(SessionConditions, f"consent = true\n{more}")
-
-
-def test_the_nearest_distance_that_was_computed_is_taken() -> None:
-    field = SoundField(
-        frequency=33e3,
-        distances=(0.25, 0.5, 1.0),
-        # Nearer than 1/distance would have it, so that it shows from which the level is taken.
-        sound_pressure_level_dB=(120.0, 110.0, 90.0),
-        guidance=None,
-    )
-    for distance, level, base in ((0.2, 120.0, 0.25), (0.5, 110.0, 0.5), (1.5, 90.0, 1.0)):
-        found = exposure_of("d", field, 600.0, distance)
-        assert found.level_dB == pytest.approx(level - 20 * math.log10(distance / base))
-    assert (found.display, found.frequency, found.duration) == ("d", 33e3, 600.0)
-    assert (found.guidance_dB, found.guidance, found.above_guidance_dB) == (None, "", None)
-    assert found.statement.endswith("There is no published guidance for this frequency.")
-    below = dataclasses.replace(found, guidance_dB=100.0, level_dB=88.0, guidance="somebody 1984")
-    assert below.statement.endswith(
-        "That is 12 dB below the guidance for the public, somebody 1984."
-    )
-    assert below.above_guidance_dB == -12.0
-    even = dataclasses.replace(below, level_dB=100.0)
-    assert "0 dB below" in even.statement
 
 
 def test_a_tolerance_is_a_share_and_expectations_are_above_nothing() -> None:
