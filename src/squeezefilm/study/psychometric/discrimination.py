@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ndtr, ndtri
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.results import Interval
-from squeezefilm.study.psychometric.estimate import holding
+from squeezefilm.study.psychometric.estimate import Estimate, holding
 
 
 def _require_proportion(name: str, value: si.Dimensionless) -> None:
@@ -34,33 +32,23 @@ def corrected_proportion(count: int, trials: int) -> si.Dimensionless:
     return (count + 0.5) / (trials + 1.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Sensitivity:
-    """d′ and the criterion, in standard deviations of a percept; `model` says of which task."""
-
-    d_prime: si.Dimensionless
-    criterion: si.Dimensionless
-    model: str
-
-
-def yes_no_sensitivity(
+def yes_no_d_prime(
     hit_rate: si.Dimensionless, false_alarm_rate: si.Dimensionless
-) -> Sensitivity:
-    """d′ = z(H) − z(F), c = −(z(H) + z(F))/2 of one stimulus a trial.
+) -> si.Dimensionless:
+    """d′ = z(H) − z(F) of one stimulus a trial.
 
     Raises:
         InputError: a rate not between 0 and 1; `corrected_proportion` mends that.
     """
     _require_proportion("hit_rate", hit_rate)
     _require_proportion("false_alarm_rate", false_alarm_rate)
-    h, f = float(ndtri(hit_rate)), float(ndtri(false_alarm_rate))
-    return Sensitivity(h - f, -0.5 * (h + f), "yes/no")
+    return float(ndtri(hit_rate)) - float(ndtri(false_alarm_rate))
 
 
-def two_interval_sensitivity(
+def two_interval_d_prime(
     hit_rate: si.Dimensionless, false_alarm_rate: si.Dimensionless
-) -> Sensitivity:
-    """d′ = (z(H) − z(F))/√2 and the bias of 2IFC: d′ = √2 z(p) where there is no bias.
+) -> si.Dimensionless:
+    """d′ = (z(H) − z(F))/√2 of 2IFC: d′ = √2 z(p) where there is no bias.
 
     Args:
         hit_rate: share of "first" where the first interval is right.
@@ -69,8 +57,7 @@ def two_interval_sensitivity(
     Raises:
         InputError: a rate not between 0 and 1.
     """
-    plain = yes_no_sensitivity(hit_rate, false_alarm_rate)
-    return Sensitivity(plain.d_prime / math.sqrt(2), plain.criterion, "two-interval forced choice")
+    return yes_no_d_prime(hit_rate, false_alarm_rate) / math.sqrt(2)
 
 
 def _hits(d_prime: float, criterion: float) -> float:
@@ -78,9 +65,9 @@ def _hits(d_prime: float, criterion: float) -> float:
     return float(ndtr((d_prime - criterion) / root) + ndtr((-d_prime - criterion) / root))
 
 
-def differencing_sensitivity(
+def differencing_d_prime(
     hit_rate: si.Dimensionless, false_alarm_rate: si.Dimensionless
-) -> Sensitivity:
+) -> si.Dimensionless:
     """d′ of same/different by the differencing model, for a roving standard.
 
     F = 2 Φ(−k/√2) gives the criterion k, and d′ solves H = Φ((d′ − k)/√2) + Φ((−d′ − k)/√2). Hits
@@ -97,25 +84,15 @@ def differencing_sensitivity(
     _require_proportion("false_alarm_rate", false_alarm_rate)
     k = -math.sqrt(2) * float(ndtri(0.5 * false_alarm_rate))
     if hit_rate <= false_alarm_rate:
-        return Sensitivity(0.0, k, "same/different, differencing")
+        return 0.0
     highest = k + math.sqrt(2) * (abs(float(ndtri(hit_rate))) + 10.0)
-    d = brentq(lambda d: _hits(d, k) - hit_rate, 0.0, highest)
-    return Sensitivity(float(d), k, "same/different, differencing")
+    return float(brentq(lambda d: _hits(d, k) - hit_rate, 0.0, highest))
 
 
-@dataclass(frozen=True, slots=True)
-class SensitivityInterval:
-    """A sensitivity from counts, with its interval: `level` of the draws' d′ lie within."""
-
-    sensitivity: Sensitivity
-    interval: Interval
-    level: si.Dimensionless
-
-
-MODELS: dict[str, Callable[[si.Dimensionless, si.Dimensionless], Sensitivity]] = {
-    "yes-no": yes_no_sensitivity,
-    "two-interval": two_interval_sensitivity,
-    "differencing": differencing_sensitivity,
+MODELS: dict[str, Callable[[si.Dimensionless, si.Dimensionless], si.Dimensionless]] = {
+    "yes-no": yes_no_d_prime,
+    "two-interval": two_interval_d_prime,
+    "differencing": differencing_d_prime,
 }
 """d′ of hit and false alarm rate, by model."""
 
@@ -130,7 +107,7 @@ def sensitivity(
     level: si.Dimensionless = 0.95,
     draws: int = 2000,
     seed: int = 0,
-) -> SensitivityInterval:
+) -> Estimate:
     """d′ from counts, by one of the models, with a credible interval.
 
     The point comes of corrected proportions (Hautus 1995); the interval of independent Jeffreys
@@ -153,10 +130,10 @@ def sensitivity(
     random = np.random.default_rng(seed)
     h = _within(random.beta(hits + 0.5, signals - hits + 0.5, draws))
     f = _within(random.beta(false_alarms + 0.5, noises - false_alarms + 0.5, draws))
-    values = np.array([of(float(a), float(b)).d_prime for a, b in zip(h, f, strict=True)])
+    values = np.array([of(float(a), float(b)) for a, b in zip(h, f, strict=True)])
     ends = np.quantile(values, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
-    low, high = holding(point.d_prime, *ends)
-    return SensitivityInterval(point, Interval(float(low), float(high)), level)
+    low, high = holding(point, *ends)
+    return Estimate(point, float(low), float(high), level, "Jeffreys, over trials")
 
 
 def _within(rates: si.FloatArray) -> si.FloatArray:

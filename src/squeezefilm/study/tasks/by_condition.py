@@ -110,7 +110,7 @@ def _d_prime(
         (counts,) = each.values()
         return _over_trials(main, counts, level, seed)
     values = [
-        model(corrected_proportion(hits, signals), corrected_proportion(alarms, noises)).d_prime
+        model(corrected_proportion(hits, signals), corrected_proportion(alarms, noises))
         for hits, signals, alarms, noises in each.values()
     ]
     return t_interval(np.array(values), level) if values else None
@@ -147,10 +147,8 @@ def _counts(main: Answers, rows: NDArray[np.bool_]) -> dict[int, tuple[int, int,
 
 def _over_trials(main: Answers, counts: Sequence[int], level: float, seed: int) -> Estimate:
     hits, signals, alarms, noises = counts
-    told = sensitivity(
-        hits, signals, alarms, noises, main.model.sensitivity, level=level, seed=seed
-    )
-    return Estimate(told.sensitivity.d_prime, *told.interval, level, "Jeffreys, over trials")
+    model = main.model.sensitivity
+    return sensitivity(hits, signals, alarms, noises, model, level=level, seed=seed)
 
 
 def _is_reference(main: Answers, other: si.IntArray) -> NDArray[np.bool_]:
