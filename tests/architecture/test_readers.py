@@ -72,7 +72,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "study/record/tables.py": {"json.loads": ROW},
     "study/record/merge.py": {"json.loads": ROW},
     "study/record/deletion.py": {"json.loads": ROW},
-    "study/record/contents.py": {"json.loads": ROW, "sqlite3.connect": "in memory"},
+    "study/record/schema.py": {"json.loads": ROW, "sqlite3.connect": "in memory"},
     "study/record/store.py": {"json.loads": ROW},
     "study/record/database.py": {
         "os.open": "made anew, and refused where something is",

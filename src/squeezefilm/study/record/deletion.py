@@ -19,9 +19,9 @@ from pathlib import Path
 from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.core.hard_limits import TRACE_BYTES
 from squeezefilm.core.regular_file import read_regular
-from squeezefilm.study.record.contents import require_identifier
 from squeezefilm.study.record.database import is_study, same_folders
 from squeezefilm.study.record.exports import export_again, exported_folders, own_files
+from squeezefilm.study.record.schema import require_identifier
 from squeezefilm.study.record.sittings import FILE, Sittings
 from squeezefilm.study.record.store import UNFINISHED, StudyStore
 

@@ -25,7 +25,6 @@ from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.core.results import sync_folder, write_whole
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
-from squeezefilm.study.record.contents import is_trace, problems
 from squeezefilm.study.record.database import (
     FAILURES,
     Database,
@@ -34,7 +33,7 @@ from squeezefilm.study.record.database import (
     require_study,
     same_folders,
 )
-from squeezefilm.study.record.schema import APPLICATION_ID, SCHEMA, VERSION
+from squeezefilm.study.record.schema import APPLICATION_ID, SCHEMA, VERSION, is_trace, problems
 
 _HIGHEST_SEED = 2**53
 UNFINISHED = ".unfinished"

@@ -11,7 +11,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.study.conduct.sessions import display_wanted
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.terminal_run import conduct
-from squeezefilm.study.record.contents import is_trace, require_identifier
+from squeezefilm.study.record.schema import is_trace, require_identifier
 from squeezefilm.study.record.store import StudyStore
 
 from ..scripted import Script, gratings, session, staircase
