@@ -48,7 +48,7 @@ Maker = Callable[[str, str, Path], LabDevice]
 
 
 @dataclass(frozen=True)
-class MeasuredDevice:
+class MeasuredDevice(NoDevice):
     """A `StudyDevice` that was identified and verified already; it plays nothing."""
 
     who: DeviceIdentity
@@ -61,14 +61,6 @@ class MeasuredDevice:
     def verify_device(self) -> DeviceVerification:
         """Verification that was measured just now."""
         return self.verification
-
-    def present(self, stimulus: Stimulus, seed: int) -> None:
-        """Refused: this is only what was measured."""
-        raise InputError("a measurement presents nothing")
-
-    def stop(self) -> TrialMotion:
-        """Stop nothing, for nothing plays."""
-        return TrialMotion()
 
 
 @dataclass

@@ -134,5 +134,3 @@ def test_a_measurement_says_what_was_found_and_plays_nothing() -> None:
     device = MeasuredDevice(who, found)
     assert (device.identity(), device.verify_device()) == (who, found)
     assert device.stop() == TrialMotion()
-    with pytest.raises(InputError, match="presents nothing"):
-        device.present(FINE, 1)
