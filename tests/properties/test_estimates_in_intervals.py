@@ -21,7 +21,7 @@ from squeezefilm.study.identification.proportions import (
 from squeezefilm.study.identification.sensitivity import ordered_sensitivity
 from squeezefilm.study.psychometric.discrimination import sensitivity
 from squeezefilm.study.psychometric.fit import fit_psychometric
-from squeezefilm.study.tasks.population import PersonLikelihood, Population
+from squeezefilm.study.tasks.population import Population
 
 dear = settings(settings.get_profile("dear"))
 levels = st.sampled_from([0.05, 0.5, 0.95, 0.999])
@@ -121,11 +121,8 @@ def test_a_recentred_interval_holds_its_estimate(estimate, resampled, people, le
 @given(st.lists(st.tuples(st.floats(-3, 3), st.floats(0.01, 3)), min_size=1, max_size=5), levels)
 def test_a_population_lies_in_its_intervals(people, level):
     x = np.linspace(-4, 4, 41)
-    likelihoods = [
-        PersonLikelihood(x, np.full(41, 0.2), np.tile(np.exp(-0.5 * ((x - m) / s) ** 2), (5, 1)))
-        for m, s in people
-    ]
-    found = Population(likelihoods).estimate(level)
+    likelihoods = [np.tile(np.exp(-0.5 * ((x - m) / s) ** 2), (5, 1)) for m, s in people]
+    found = Population(x, np.full(41, 0.2), likelihoods).estimate(level)
     assert found.low <= found.mean <= found.high
     if len(people) > 1:
         assert found.spread_low <= found.spread <= found.spread_high

@@ -58,22 +58,6 @@ def lapse_weights() -> si.DimensionlessArray:
     return np.asarray(weights / weights.sum(axis=1, keepdims=True))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PersonLikelihood:
-    """Likelihood of x by one person's answers; arrays of shape (cells,).
-
-    Attributes:
-        x: the middle of each cell, rising, in the population's unit.
-        width: of each cell, likewise.
-        likelihood: of the answers at x under each of `MEAN_LAPSES`, up to one factor, shape
-            (lapses, cells).
-    """
-
-    x: si.FloatArray
-    width: si.FloatArray
-    likelihood: si.FloatArray
-
-
 @dataclass(frozen=True, slots=True)
 class PopulationEstimate:
     """Mean and spread over people of a quantity, in the unit of x.
@@ -93,38 +77,41 @@ class PopulationEstimate:
 
 
 class Population:
-    """People's likelihoods on one grid of μ and τ, from which any group of them is estimated."""
+    """People's likelihoods on one grid of μ and τ, from which any group of them is estimated.
 
-    def __init__(self, people: Sequence[PersonLikelihood]) -> None:
+    Args:
+        x: the middle of each cell, rising, in the population's unit, shape (cells,).
+        width: of each cell, likewise.
+        people: likelihood of each one's answers at x under each of `MEAN_LAPSES`, up to one factor,
+            shape (lapses, cells).
+
+    Raises `InputError` for nobody.
+    """
+
+    def __init__(
+        self, x: si.FloatArray, width: si.FloatArray, people: Sequence[si.FloatArray]
+    ) -> None:
         if not people:
             raise InputError("a population needs at least one person")
-        low = min(float(person.x[0]) for person in people)
-        high = max(float(person.x[-1]) for person in people)
-        self._means = np.linspace(low, high, _MEANS)
+        self._means = np.linspace(float(x[0]), float(x[-1]), _MEANS)
         # Denser where few people differ little: flat in τ by the cells' widths.
         edges = _NARROWEST + (_WIDEST - _NARROWEST) * np.linspace(0.0, 1.0, _SPREADS + 1) ** 2
         self._spreads = 0.5 * (edges[1:] + edges[:-1])
         self._widths = np.diff(edges) * np.exp(-0.5 * (self._spreads / USUAL_SPREAD) ** 2)
         self._edges = edges
-        self._people = people
-        self._logs = np.empty((len(people), _MEANS, _SPREADS, len(MEAN_LAPSES)))
-        by_grid: dict[bytes, list[int]] = {}
-        for number, person in enumerate(people):
-            by_grid.setdefault(person.x.tobytes() + person.width.tobytes(), []).append(number)
-        for alike in by_grid.values():
-            self._logs[alike] = self._log_likelihoods([people[number] for number in alike])
+        self._x, self._width, self._people = x, width, people
+        self._logs = self._log_likelihoods()
 
-    def _log_likelihoods(self, alike: Sequence[PersonLikelihood]) -> si.FloatArray:
-        """ln of the likelihoods of people on one grid under each μ, τ and h, shape (people, means,
-        spreads, lapses)."""
-        x, width = alike[0].x, alike[0].width
-        weights = np.array([person.likelihood * width for person in alike])
+    def _log_likelihoods(self) -> si.FloatArray:
+        """ln of everybody's likelihood under each μ, τ and h, shape (people, means, spreads,
+        lapses)."""
+        weights = np.array([likelihood * self._width for likelihood in self._people])
         weights /= weights.max(axis=(1, 2), keepdims=True)
-        logs = np.empty((len(alike), self._means.size, self._spreads.size, len(MEAN_LAPSES)))
-        away = (x[None, :] - self._means[:, None]) ** 2
+        logs = np.empty((len(weights), self._means.size, self._spreads.size, len(MEAN_LAPSES)))
+        away = (self._x[None, :] - self._means[:, None]) ** 2
         for at, spread in enumerate(self._spreads):
             # A spread below the cells' width would fall between them: it is their width at least.
-            wide = np.hypot(spread, 0.5 * width)
+            wide = np.hypot(spread, 0.5 * self._width)
             density = np.exp(-0.5 * away / wide**2) / wide
             for one, weight in zip(logs, weights, strict=True):
                 one[:, at] = density @ weight.T
@@ -173,13 +160,20 @@ class Population:
         _, spread, _ = _quantiles(self._edges, weight, (0.0, 0.5, 1.0))
         lapses = np.einsum("msl,s->l", np.exp(total - total.max()), self._widths)
         chosen = range(self.size) if people is None else people
-        moments = np.array([_moments(self._people[person], lapses) for person in chosen])
+        moments = np.array([self._moments(person, lapses) for person in chosen])
         _, least, most = scatter_interval(moments[:, 0], moments[:, 1], level)
         if logs.shape[0] == 1:
             spread = least = most = float("nan")
         # People who are more alike than chance makes them refuse every spread.
         least, most = min(least, spread), max(most, spread)
         return PopulationEstimate(mean, low, high, spread, least, most, level, logs.shape[0])
+
+    def _moments(self, person: int, lapses: si.FloatArray) -> tuple[float, float]:
+        """Mean and variance of x as a likelihood has them, under weights of mean lapse rates."""
+        density = lapses @ self._people[person] * self._width
+        density = density / density.sum()
+        mean = float(density @ self._x)
+        return mean, float(density @ (self._x - mean) ** 2)
 
     def _mean(self, total: si.FloatArray, level: float) -> tuple[float, float, float]:
         """Ends and median of μ from the logarithm of a likelihood of all people."""
@@ -207,14 +201,6 @@ def scatter_interval(
     # Scatter falls with the deviation.
     middle, least, most = np.interp([-float(free), *(-tail for tail in tails)], -scatter, _TRIED)
     return float(middle), float(least), float(most)
-
-
-def _moments(person: PersonLikelihood, lapses: si.FloatArray) -> tuple[float, float]:
-    """Mean and variance of x as a likelihood has them, under weights of the mean lapse rates."""
-    density = lapses @ person.likelihood * person.width
-    density = density / density.sum()
-    mean = float(density @ person.x)
-    return mean, float(density @ (person.x - mean) ** 2)
 
 
 def _quantiles(

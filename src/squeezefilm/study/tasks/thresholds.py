@@ -33,7 +33,7 @@ from squeezefilm.study.tasks.findings import (
     PersonFunction,
     through,
 )
-from squeezefilm.study.tasks.population import LAPSES, PersonLikelihood, Population, lapse_weights
+from squeezefilm.study.tasks.population import LAPSES, Population, lapse_weights
 
 _SPREADS = 101
 
@@ -64,7 +64,7 @@ class PeopleOnGrid:
     def population(self) -> Population:
         """All of them, put together once."""
         middle, width = 0.5 * (self.edges[1:] + self.edges[:-1]), np.diff(self.edges)
-        return Population([PersonLikelihood(middle, width, one) for one in self.likelihood])
+        return Population(middle, width, self.likelihood)
 
     def estimates(self, level: si.Dimensionless) -> list[PersonEstimate]:
         """Each person's threshold: the posterior's median and central interval, with the lapse

@@ -11,7 +11,6 @@ from squeezefilm.study.tasks.population import (
     LAPSES,
     MEAN_LAPSES,
     USUAL_SPREAD,
-    PersonLikelihood,
     Population,
     lapse_weights,
     scatter_interval,
@@ -20,11 +19,16 @@ from squeezefilm.study.tasks.population import (
 X = np.linspace(-3.0, 3.0, 601)
 
 
-def person(value: float, error: float, factors: tuple[float, ...] = ()) -> PersonLikelihood:
+def person(value: float, error: float, factors: tuple[float, ...] = ()) -> np.ndarray:
     """Somebody whose answers say a normal likelihood of x, and each lapse rate by a factor."""
     likelihood = stats.norm.pdf(X, value, error)
     by_lapse = np.array(factors or (1.0,) * len(MEAN_LAPSES))
-    return PersonLikelihood(X, np.full(X.size, 0.01), by_lapse[:, None] * likelihood)
+    return by_lapse[:, None] * likelihood
+
+
+def population(people: list[np.ndarray]) -> Population:
+    """People by their likelihoods, on the grid of all."""
+    return Population(X, np.full(X.size, 0.01), people)
 
 
 def by_hand(values: list[float], errors: list[float]) -> tuple[float, float, float]:
@@ -46,7 +50,7 @@ def test_normal_likelihoods_give_the_random_effects_posterior() -> None:
     for _ in range(5):
         values = random.normal(-1.0, 0.4, 7).tolist()
         errors = random.uniform(0.1, 0.5, 7).tolist()
-        found = Population([person(*one) for one in zip(values, errors, strict=True)]).estimate()
+        found = population([person(*one) for one in zip(values, errors, strict=True)]).estimate()
         low, middle, high = by_hand(values, errors)
         assert found.mean == pytest.approx(middle, abs=0.02)
         assert found.low == pytest.approx(low, abs=0.04)
@@ -56,7 +60,7 @@ def test_normal_likelihoods_give_the_random_effects_posterior() -> None:
 
 @pytest.mark.slow
 def test_people_who_are_alike_have_no_spread_and_a_group_of_them_is_those_people() -> None:
-    alike = Population([person(0.5, 0.1)] * 12)
+    alike = population([person(0.5, 0.1)] * 12)
     found = alike.estimate()
     assert found.spread < 0.1
     assert found.low < 0.5 < found.high
@@ -71,13 +75,13 @@ def test_the_interval_of_the_spread_is_what_the_scatter_does_not_refuse() -> Non
     # Equal errors: the scatter over v + tau^2 is chi-squared, and the ends are closed forms.
     random = np.random.default_rng(4)
     values, error = random.normal(0.0, 0.6, 9), 0.2
-    found = Population([person(one, error) for one in values]).estimate(0.9)
+    found = population([person(one, error) for one in values]).estimate(0.9)
     scatter = float(np.sum((values - values.mean()) ** 2))
     for end, share in ((found.spread_low, 0.95), (found.spread_high, 0.05)):
         variance = scatter / stats.chi2.ppf(share, 8) - error**2
         assert end == pytest.approx(np.sqrt(variance), rel=2e-3)
     assert found.spread_low < found.spread < found.spread_high
-    one = Population([person(0.0, 0.2)]).estimate()
+    one = population([person(0.0, 0.2)]).estimate()
     assert np.isnan([one.spread, one.spread_low, one.spread_high]).all()
 
 
@@ -95,21 +99,21 @@ def test_lapse_rates_are_those_that_all_answers_speak_for() -> None:
     means = lapse_weights() @ LAPSES
     assert means == pytest.approx(MEAN_LAPSES, rel=0.12)
     careful = tuple(1.0 if h < 0.03 else 0.1 for h in MEAN_LAPSES)
-    found = Population([person(0.0, 0.2, careful)] * 6).lapses()
+    found = population([person(0.0, 0.2, careful)] * 6).lapses()
     assert found.sum() == pytest.approx(1.0)
     assert found[:3].sum() > 0.99
 
 
 def test_nobody_is_no_population() -> None:
     with pytest.raises(InputError, match="at least one person"):
-        Population([])
+        population([])
     with pytest.raises(InputError, match="level"):
-        Population([person(0.0, 1.0)]).estimate(1.0)
+        population([person(0.0, 1.0)]).estimate(1.0)
 
 
 def test_more_answers_at_random_than_the_model_knows_are_told() -> None:
-    many = Population([person(0.1, 0.1, (0.1, 0.2, 0.4, 0.7, 1.0))] * 6)
-    few = Population([person(0.1, 0.1, (1.0, 0.7, 0.4, 0.2, 0.1))] * 6)
+    many = population([person(0.1, 0.1, (0.1, 0.2, 0.4, 0.7, 1.0))] * 6)
+    few = population([person(0.1, 0.1, (1.0, 0.7, 0.4, 0.2, 0.1))] * 6)
     assert many.lapses()[-1] > 0.5
     assert "more than the 8 %" in many.lapse_note
     assert few.lapse_note == ""
