@@ -13,6 +13,7 @@ import ssl
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 from squeezefilm.lab.connections import SLOWEST_REQUEST
@@ -32,13 +33,14 @@ class Served:
         folder: Path,
         port: int | None = None,
         lan: str = "",
+        prepare: Callable[[], None] | None = None,
     ) -> None:
         self.folder, self.complaints = folder, folder.with_suffix(".said")
         with self.complaints.open("w") as said:
             self.process = subprocess.Popen(
                 [sys.executable, "-c", PROGRAM, str(folder),
                  str(port or 8700 + random.randrange(800)), lan],
-                stdout=subprocess.PIPE, stderr=said, text=True,
+                stdout=subprocess.PIPE, stderr=said, text=True, preexec_fn=prepare,
             )  # fmt: skip
         assert self.process.stdout is not None
         line = ""
@@ -66,6 +68,17 @@ class Served:
     def files(self) -> int:
         """Open descriptors of the server."""
         return len(os.listdir(f"/proc/{self.process.pid}/fd"))  # noqa: PTH208
+
+    @property
+    def connections(self) -> int:
+        """Its open sockets, but for those it listens at."""
+        folder = Path(f"/proc/{self.process.pid}/fd")
+        links = []
+        for one in folder.iterdir():
+            # One may be closed while they are counted.
+            with contextlib.suppress(OSError):
+                links.append(os.readlink(one))  # noqa: PTH115
+        return sum(one.startswith("socket:") for one in links)
 
     async def talk(self, data: bytes, close: bool = True, tablets: bool = False) -> bytes:
         """The first of what the lab, or its place for tablets by TLS, answers to bytes."""

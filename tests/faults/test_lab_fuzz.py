@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import random
+import resource
+import socket
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -73,3 +75,37 @@ def test_five_thousand_fuzzed_connections(serve: Callable[..., Served], tablets:
     seed = random.randrange(10**9)
     print(f"seed {seed}")
     _stormed(serve(lan=ADDRESS if tablets else ""), 5_000, seed, tablets)
+
+
+def _few_descriptors() -> None:
+    resource.setrlimit(resource.RLIMIT_NOFILE, (256, 256))
+
+
+@pytest.mark.slow
+def test_silent_connections_from_the_network_keep_nobody_out(
+    serve: Callable[..., Served],
+) -> None:
+    served = serve(lan=ADDRESS, prepare=_few_descriptors)
+    _, port = served.lan
+    # More than its limit of descriptors, from ten addresses, each of which says nothing.
+    silent = [socket.socket() for _ in range(320)]
+    try:
+        for number, one in enumerate(silent):
+            one.settimeout(20)
+            one.bind((f"127.0.1.{1 + number % 10}", 0))
+            one.connect(served.lan)
+        assert b" 303 " in served.comes_in()
+        # A tablet that comes as one of many strangers is answered too.
+        request = f"GET /pair HTTP/1.1\r\nHost: {ADDRESS}:{port}\r\nConnection: close\r\n\r\n"
+        answer = asyncio.run(served.talk(request.encode(), close=False, tablets=True))
+        assert b" 200 OK" in answer
+        # Each is let go once its time is over, which may be a while after the last came.
+        for _ in range(100):
+            if served.connections < 60:
+                break
+            time.sleep(0.1)
+        assert served.connections < 60
+        assert served.complaints.stat().st_size < 1000
+    finally:
+        for one in silent:
+            one.close()

@@ -57,6 +57,9 @@ _WITHOUT_LINK = (
     "the lab was ended, start it again."
 )
 
+CONNECTION = "connection"
+"""The name in a scope's state of the `door.Connection` by which a request came."""
+
 
 @dataclass(frozen=True, slots=True)
 class Places:
@@ -124,6 +127,9 @@ class Guard:
             text = "This station is paired for participants; that page is the experimenter's."
             return await refuse("role", 403, text)
         scope["lab_session"] = session
+        connection = scope.get("state", {}).get(CONNECTION)
+        if connection is not None and session is not None:
+            connection.is_stranger = False
         try:
             await self.app(scope, _bounded(receive), self._with_headers(send))
         except _TooLargeError:

@@ -12,6 +12,7 @@ import datetime
 import hashlib
 import ipaddress
 import ssl
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,7 @@ from starlette.routing import Route
 from squeezefilm.core.errors import InputError, optional
 from squeezefilm.core.hard_limits import OWN_BYTES
 from squeezefilm.core.regular_file import read_regular
+from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN, Door
 from squeezefilm.lab.files import write_secret
 from squeezefilm.lab.guard import Guard, Places
 from squeezefilm.lab.server import (
@@ -158,8 +160,10 @@ def lan_application(lab: Lab, places: Places) -> Guard:
     return guard
 
 
-def lan_server(lab: Lab, listener: socket.socket, file: Path) -> UnheardServer:
-    """The server for tablets; it says in `lab.lan` where it is.
+def lan_server(
+    lab: Lab, listener: socket.socket, file: Path, most: int = MOST_OPEN
+) -> UnheardServer:
+    """The server for tablets, `most` connections at once; it says in `lab.lan` where it is.
 
     Raises as `certificate`.
     """
@@ -173,6 +177,7 @@ def lan_server(lab: Lab, listener: socket.socket, file: Path) -> UnheardServer:
     return server_of(
         lab,
         lan_application(lab, places),
+        door=partial(Door, most=most, most_of_address=MOST_OF_ADDRESS),
         ssl_certfile=str(file),
         ssl_keyfile=str(file),
         lifespan="off",

@@ -7,6 +7,7 @@ import contextlib
 import signal
 import webbrowser
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +17,7 @@ from squeezefilm.lab.areas.device import DeviceArea
 from squeezefilm.lab.areas.feel import FeelArea
 from squeezefilm.lab.areas.search import SearchArea
 from squeezefilm.lab.areas.study import StudyArea
+from squeezefilm.lab.door import Door, room_for
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.server import PORT, Lab, listening_socket, server_of
@@ -24,8 +26,6 @@ if TYPE_CHECKING:
     import socket
 
     from squeezefilm.lab.server import UnheardServer
-
-_DESCRIPTORS = 4096
 
 
 def serve(
@@ -78,14 +78,14 @@ def _serve(
     DeviceArea(lab)
     link = f"http://127.0.0.1:{bound}/?token={keys.new_link()}"
     secret = folder / f".lab-{bound}.pem"
-    _make_room()
-    servers = [(server_of(lab), listener)]
+    most = room_for(1 if lan is None else 2)
+    servers = [(server_of(lab, door=partial(Door, most=most)), listener)]
     if lan is not None:
         from squeezefilm.lab.lan import lan_listener, lan_server
 
         # A mistake here leaves the keys of a lab that was killed as they are.
         beside = opened.enter_context(lan_listener(lan))
-        servers.append((lan_server(lab, beside, secret), beside))
+        servers.append((lan_server(lab, beside, secret, most), beside))
     # From here on an end, however early, leaves no key behind.
     try:
         with _ended_by_signals(servers[0][0]):
@@ -104,20 +104,6 @@ def _serve(
         lab.close()
         keys.forget()
         secret.unlink(missing_ok=True)
-
-
-def _make_room() -> None:
-    """Let this process have as many connections and files as the system allows, within reason."""
-    try:
-        import resource
-    except ImportError:
-        # Windows has no such limit.
-        return
-    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    wanted = _DESCRIPTORS if hard == resource.RLIM_INFINITY else min(_DESCRIPTORS, hard)
-    if soft != resource.RLIM_INFINITY and soft < wanted:
-        with contextlib.suppress(OSError, ValueError):
-            resource.setrlimit(resource.RLIMIT_NOFILE, (wanted, hard))
 
 
 @contextlib.contextmanager

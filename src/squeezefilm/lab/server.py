@@ -19,10 +19,10 @@ from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.websockets import WebSocket
 
-from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.lab.connections import NowPlaying, OpenPage, PageProtocol, TimedProtocol
-from squeezefilm.lab.guard import Guard, Places
+from squeezefilm.lab.door import Connection, Door
+from squeezefilm.lab.guard import CONNECTION, Guard, Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.wire import LARGEST_FROM_PARTICIPANT, LARGEST_MESSAGE, Dispatcher, as_text
 from squeezefilm.lab.worker import PAGE, LabWorkers, SupersededError
@@ -43,8 +43,6 @@ _KINDS = {
     ".json": "application/json",
     ".txt": "text/plain; charset=utf-8",
 }
-SLOWEST_HANDSHAKE: si.Second = 5.0
-"""Longest time of a whole TLS handshake."""
 MOST_WAITING = 64
 """Messages of one page being answered at once; more is no page of ours."""
 
@@ -220,8 +218,7 @@ def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:
         OSError: `host` is no address of this computer.
     """
     for candidate in range(port, port + 20):
-        # asyncio sends small messages at once only where it is told that this is TCP.
-        listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
+        listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         if os.name == "posix":
             # Elsewhere this would let two labs have one port.
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
@@ -242,7 +239,15 @@ def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:
 
 
 class UnheardServer(uvicorn.Server):
-    """A server that leaves signals to who runs it: several run side by side in one process."""
+    """A server that leaves signals to who runs it: several run side by side in one process.
+
+    At each of its listeners a `door` lets in.
+    """
+
+    def __init__(self, config: uvicorn.Config, door: Callable[..., Door]) -> None:
+        super().__init__(config)
+        self.doors: list[Door] = []
+        self._door = door
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
@@ -250,27 +255,28 @@ class UnheardServer(uvicorn.Server):
         yield
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Begin; whoever does not finish its TLS handshake in time is let go (a minute in
-        uvicorn's own)."""
+        """Begin, and let in at doors of our own what comes to the listeners."""
         await super().startup([])
-        loop, tls = asyncio.get_running_loop(), self.config.ssl
-        in_time = None if tls is None else SLOWEST_HANDSHAKE
         for listener in sockets or []:
-            server = await loop.create_server(
-                self._serving, sock=listener, ssl=tls, ssl_handshake_timeout=in_time
-            )
-            self.servers.append(server)
+            self.doors.append(self._door(listener, self._serving, tls=self.config.ssl))
 
-    def _serving(self) -> asyncio.Protocol:
-        return TimedProtocol(
-            config=self.config, server_state=self.server_state, app_state=self.lifespan.state
-        )
+    async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
+        """Let nobody in any more, and end."""
+        for door in self.doors:
+            door.close()
+        await super().shutdown(sockets)
+
+    def _serving(self, connection: Connection) -> asyncio.Protocol:
+        state = {**self.lifespan.state, CONNECTION: connection}
+        return TimedProtocol(config=self.config, server_state=self.server_state, app_state=state)
 
 
-def server_of(lab: Lab, app: ASGIApp | None = None, **extra: Any) -> UnheardServer:
+def server_of(
+    lab: Lab, app: ASGIApp | None = None, *, door: Callable[..., Door] = Door, **extra: Any
+) -> UnheardServer:
     """A uvicorn server for a lab, with its limits; `extra` goes to uvicorn's configuration.
 
-    `app` is served instead of the lab's own application.
+    `app` is served instead of the lab's own application, `door` is made for each listener.
     """
     config = uvicorn.Config(
         app or application(lab),
@@ -289,4 +295,4 @@ def server_of(lab: Lab, app: ASGIApp | None = None, **extra: Any) -> UnheardServ
         server_header=False,
         **extra,
     )
-    return UnheardServer(config)
+    return UnheardServer(config, door)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 
 from squeezefilm.lab import guard as guard_module
-from squeezefilm.lab.guard import HEADERS, LARGEST_BODY, Guard, Places
+from squeezefilm.lab.guard import CONNECTION, HEADERS, LARGEST_BODY, Guard, Places
 from squeezefilm.lab.keys import Keys, Session
 
 HOST = "127.0.0.1:8631"
@@ -132,6 +133,25 @@ def test_a_body_that_stalls_is_given_up(app: Application, monkeypatch: pytest.Mo
     assert "not whole within 0.01 s" in sent[1]["body"].decode()
     assert guard.refusals == {"slow": 1}
     assert app.bodies == []
+
+
+def test_a_connection_is_no_stranger_once_its_session_is_known(app: Application) -> None:
+    guard = guarded(app)
+    connection = SimpleNamespace(is_stranger=True)
+    state = {CONNECTION: connection}
+    asked(guard, scope_of(state=state), b"")
+    assert connection.is_stranger
+    asked(guard, scope_of(state=state, session=entered(guard.keys)), b"")
+    assert not connection.is_stranger
+
+
+def test_a_tablet_that_pairs_stays_a_stranger(app: Application) -> None:
+    guard = guarded(app, participants_only=True)
+    connection = SimpleNamespace(is_stranger=True)
+    scope = scope_of("/pair", "GET", state={CONNECTION: connection})
+    assert asked(guard, scope, b"")[0]["status"] == 200
+    assert connection.is_stranger
+    assert app.scopes[0]["lab_session"] is None
 
 
 def test_what_is_neither_request_nor_websocket_is_the_applications(app: Application) -> None:

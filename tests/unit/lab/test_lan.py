@@ -17,6 +17,7 @@ from starlette.testclient import TestClient
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.lab import lan
+from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN
 from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.lan import certificate, lan_application, lan_listener, lan_server
@@ -119,7 +120,8 @@ def test_the_server_says_where_it_is_and_by_what_it_is_known(
     served: list[tuple[Any, dict[str, Any]]] = []
     monkeypatch.setattr(lan, "server_of", lambda *given, **how: served.append((given, how)))
     lan_server(lab, Listener(), file)  # type: ignore[arg-type]
-    assert made == [("192.168.1.20", file)]
+    lan_server(lab, Listener(), file, most=3)  # type: ignore[arg-type]
+    assert made == [("192.168.1.20", file)] * 2
     assert lab.lan is not None
     assert (lab.lan.link, lab.lan.fingerprint) == (f"{ORIGIN}/pair", "AB:CD")
     (of_lab, guard), how = served[0]
@@ -127,7 +129,9 @@ def test_the_server_says_where_it_is_and_by_what_it_is_known(
     assert guard.places == Places(
         frozenset({HOST}), secure=True, participants_only=True, cookie=COOKIE
     )
+    assert how.pop("door").keywords == {"most": MOST_OPEN, "most_of_address": MOST_OF_ADDRESS}
     assert how == {"ssl_certfile": str(file), "ssl_keyfile": str(file), "lifespan": "off"}
+    assert served[1][1]["door"].keywords["most"] == 3
 
 
 def test_a_certificate_names_its_address_and_is_good_for_a_month(tmp_path: Path) -> None:

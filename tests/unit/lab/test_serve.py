@@ -18,6 +18,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.lab import serve as serving
+from squeezefilm.lab.door import room_for
 from squeezefilm.lab.serve import serve
 from squeezefilm.lab.server import Lab, UnheardServer, listening_socket, server_of
 
@@ -33,6 +34,7 @@ class Host:
             self.port = int(free.getsockname()[1])
         self.lines: list[str] = []
         self.labs: list[Lab] = []
+        self.most: list[int] = []
         self.closed = 0
         self.ending = signal.SIGINT
         self.handlers = [signal.getsignal(one) for one in HANDLED]
@@ -40,6 +42,7 @@ class Host:
 
     def _server(self, lab: Lab, **limits: Any) -> UnheardServer:
         self.labs.append(lab)
+        self.most.append(limits["door"].keywords["most"])
         lab.closing.append(self._close)
         return server_of(lab, **limits)
 
@@ -78,6 +81,7 @@ def test_a_lab_says_its_link_and_where_files_go_and_ends_clean(
     assert lab.places.hosts == {f"127.0.0.1:{host.port}", f"localhost:{host.port}"}
     assert lab.places.cookie == f"squeezefilm-{host.port}"
     assert lab.lan is None
+    assert host.most == [room_for(1)]
 
 
 def test_every_area_is_answered(host: Host, tmp_path: Path) -> None:
@@ -205,3 +209,4 @@ def test_page_and_tablets_are_served_side_by_side_until_ctrl_c(
         f"its certificate's SHA-256 fingerprint: {lab.lan.fingerprint}",
     ]
     assert lab.lan.link.startswith("https://127.0.0.2:")
+    assert visit.most == [room_for(2)]
