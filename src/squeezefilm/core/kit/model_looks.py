@@ -22,6 +22,7 @@ _LOOKS = {
     "paper2008-printed": Look(*style.LINES[1], "paper's asymptote, as printed"),
     "levitation-2016": Look(*style.LINES[2], "levitation, as published in 2016"),
     "levitation-ridges": Look(style.GREEN, (0, (4, 1.2)), "levitation, films over single ridges"),
+    "solved film": Look(*style.LINES[3], "the same film, solved"),
 }
 
 

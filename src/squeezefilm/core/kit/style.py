@@ -281,6 +281,26 @@ def micrometres_beside(axes: Axes, voltage: float, label: str) -> None:
     right.set_ylabel(label)
 
 
+def pairs_of_axes(figure: Figure) -> tuple[Any, Axes]:
+    """Two rows of axes, a wide and a narrow one in each, and an empty strip for their legend.
+
+    The strip is an axes of its own, since the layout gives a figure's legend the same place as
+    the small print.
+    """
+    grid = figure.add_gridspec(3, 2, width_ratios=[2.2, 1], height_ratios=[1, 1, 0.09])
+    left = figure.add_subplot(grid[0, 0])
+    right = figure.add_subplot(grid[0, 1], sharey=left)
+    below = figure.add_subplot(grid[1, 0], sharex=left)
+    last = figure.add_subplot(grid[1, 1], sharex=right, sharey=below)
+    for axes in (left, right):
+        axes.tick_params(labelbottom=False)
+    for axes in (right, last):
+        axes.tick_params(labelleft=False)
+    strip = figure.add_subplot(grid[2, :])
+    strip.set_axis_off()
+    return ((left, right), (below, last)), strip
+
+
 @functools.cache
 def _known_characters() -> frozenset[int]:
     from matplotlib.font_manager import findfont, get_font

@@ -1,4 +1,5 @@
-"""The curves of an analysis: response, friction by surface and model."""
+"""The curves of an analysis: response, pressure under the finger, friction by surface,
+model and wavelength."""
 
 from __future__ import annotations
 
@@ -13,18 +14,25 @@ import numpy as np
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError, UnreachableError
+from squeezefilm.core.materials import Gas
+from squeezefilm.design.analysis.paper_procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
 from squeezefilm.measure.recordings import kinds as recordings
 from squeezefilm.measure.recordings.read import check_folder
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.friction_models import FrictionModel
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Surface, load_display
+from squeezefilm.physics.film.closed import mean_pressure_profile
+from squeezefilm.physics.film.gap import PaperGap
 from squeezefilm.physics.plate.solid.working import response_frequencies
 
 if TYPE_CHECKING:
-    pass
+    from squeezefilm.physics.film.periodic.solution import FilmSolution
 
 PAPER_CRITERION: si.Dimensionless = 0.7
+# Of the roughness: below it the over-pressure is at most 1e-8 of ambient, a millionth of a finger's
+# pressure, and a solver would work on rounding.
+_STILL: si.Dimensionless = 1e-4
 _NEAR_FREQUENCY, _NEAR_FORCE = 1.5, 4.0
 LIKE = (
     f"Dots: fingers measured on plates near in frequency (within a factor of {_NEAR_FREQUENCY:g}) "
@@ -47,6 +55,19 @@ class FrequencyResponse:
 
 
 @dataclass(frozen=True, eq=False)
+class PressureProfile:
+    """The film under the finger at rest over an antinode: the paper's Fig 4.
+
+    `thickness` is the mean gap along the contact, `mean_pressure` the period mean over ambient.
+    """
+
+    position: si.MetreArray
+    thickness: si.MetreArray
+    mean_pressure: si.DimensionlessArray
+    model: str
+
+
+@dataclass(frozen=True, eq=False)
 class FrictionCurve:
     """Relative friction against vibration amplitude on one surface: one curve of Fig 5.
 
@@ -63,6 +84,17 @@ class FrictionCurve:
     model: str
 
 
+@dataclass(frozen=True, eq=False)
+class WavelengthCurve:
+    """Relative friction against amplitude at one half wavelength: one curve of Fig 11."""
+
+    half_wavelength: si.Metre
+    amplitude: si.MetreArray
+    relative_friction: si.DimensionlessArray
+    amplitude_for_criterion: si.Metre
+    model: str
+
+
 def frequency_response(prediction: Prediction) -> FrequencyResponse:
     """The amplitude per volt around the working resonance, at the largest interior lobe."""
     mode = prediction.mode
@@ -72,6 +104,39 @@ def frequency_response(prediction: Prediction) -> FrequencyResponse:
         return FrequencyResponse(response.frequencies, line, mode.model)
     frequency = response_frequencies(mode.resonance_frequency, mode.quality_factor, 601)
     return FrequencyResponse(frequency, mode.response(frequency), mode.model)
+
+
+def pressure_profiles(prediction: Prediction) -> tuple[PressureProfile, ...]:
+    """The mean pressure along the contact: the paper's asymptote, then the solved film."""
+    law, p = prediction.law, prediction
+    gap = law.gap(p.vibration_amplitude)
+    X = np.linspace(-0.5, 0.5, 4001)
+    ridges = gap.ridge_amplitude * np.cos(gap.ridge_number * X)
+    thickness = np.asarray(gap.reference_thickness + ridges)
+    position = X * gap.contact_length
+    profiles = [PressureProfile(position, thickness, mean_pressure_profile(X, gap), "paper2008")]
+    if p.vibration_amplitude > _STILL * gap.roughness:
+        film = _solved_film(gap, p.squeeze_number, law.gas)
+        solved = np.interp(X, film.position, film.mean_pressure)
+        profiles.append(PressureProfile(position, thickness, solved, "solved film"))
+    return tuple(profiles)
+
+
+def _solved_film(gap: PaperGap, squeeze_number: si.Dimensionless, gas: Gas) -> FilmSolution:
+    """The film along the contact: the paper's own equation at its squeeze number, grooves sealed at
+    their ends; X = x/l0."""
+    from squeezefilm.physics.film.periodic.film import solve_profile
+    from squeezefilm.physics.film.periodic.profile import flexural_profile
+
+    reference = float(gap.reference_thickness)
+    profile = flexural_profile(
+        float(gap.vibration_amplitude) / reference,
+        wavenumber=gap.wave_number,
+        ridge_depth=gap.ridge_amplitude / reference,
+        ridge_wavenumber=gap.ridge_number,
+    )
+    slip = gas.mean_free_path / reference
+    return solve_profile(squeeze_number, profile, knudsen_number=slip, tolerance=1e-3, field=True)
 
 
 def friction_curve(prediction: Prediction, surface: Surface, model: FrictionModel) -> FrictionCurve:
@@ -129,6 +194,24 @@ def _reached(law: FrictionLaw, relative_friction: si.Dimensionless) -> si.Metre 
         return law.amplitude_for(relative_friction)
     except UnreachableError:
         return None
+
+
+def wavelength_curves(prediction: Prediction) -> tuple[WavelengthCurve, ...]:
+    """Relative friction against amplitude at the paper's four half wavelengths, by its model."""
+    p = prediction
+    ambient = p.law.gas.ambient_pressure
+    needed = friction_criterion(
+        p.law.gap(0.0), PAPER_HALF_WAVELENGTHS, PAPER_CRITERION, p.law.normal_force, ambient
+    )
+    amplitude = np.linspace(0.0, 4e-6, 121)
+    asymptote = p.law.by("paper2008")
+    curves = []
+    for half, at in zip(PAPER_HALF_WAVELENGTHS, needed, strict=True):
+        law = dataclasses.replace(asymptote, half_wavelength=half)
+        curves.append(
+            WavelengthCurve(half, amplitude, law.curve(amplitude), float(at), "paper2008")
+        )
+    return tuple(curves)
 
 
 # The cheap ones finely.

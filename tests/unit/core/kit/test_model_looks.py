@@ -7,7 +7,7 @@ from squeezefilm.physics.chain.friction_models import MODEL_KINDS
 
 def test_no_two_models_look_alike() -> None:
     # As printed the paper's asymptote is the same line; it stands beside no other.
-    models = {*MODEL_KINDS} - {"paper2008-printed"}
+    models = {*MODEL_KINDS, "solved film"} - {"paper2008-printed"}
     looks = [look_of(model) for model in models]
     assert len({(look.color, look.dashes) for look in looks}) == len(looks)
     assert len({look.name for look in looks}) == len(looks)

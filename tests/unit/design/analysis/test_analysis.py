@@ -12,6 +12,7 @@ from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.core.results import to_json
 from squeezefilm.design.analysis.analysis import KEPT, Analysis
 from squeezefilm.design.analysis.analyze import analyze
+from squeezefilm.design.analysis.curves import pressure_profiles
 from squeezefilm.design.analysis.paper_procedure import design_plate, friction_criterion
 from squeezefilm.physics.chain.friction import friction_law
 from squeezefilm.physics.display import load_display
@@ -37,6 +38,8 @@ def test_the_result_is_strict_json_with_units_in_its_keys(plate: Analysis) -> No
     assert result["envelope_time_constant_s"] == pytest.approx(tau)
     finest = 4 * 0.1 * tau * np.arctanh(0.9)
     assert result["finest_period_m"]["100 mm/s"] == pytest.approx(finest, rel=1e-3)
+    full = to_json(pressure_profiles(plate.prediction)[0])
+    assert set(full) == {"position_m", "thickness_m", "mean_pressure", "model"}
 
 
 def test_response_peaks_at_the_resonance_with_the_stated_amplitude(plate: Analysis) -> None:
