@@ -1,7 +1,7 @@
 """The worked case: the two numbers that the paper measured of its plate, and what they say.
 
 The paper computed 35.6 kHz and 3.2 µm at 15 V, and its vibrometer showed 30.5 kHz and 1.15 µm.
-Here all that could explain it is free at once.
+Several single explanations are compared in `explanations` beside this; here all are free at once.
 """
 
 from __future__ import annotations
@@ -16,9 +16,12 @@ from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.priors import calibration_parameters
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.validation.values import paper_plate
-
-MEASURED_FREQUENCY, MEASURED_AMPLITUDE, DRIVE_VOLTAGE = 30.5e3, 1.15e-6, 15.0
+from squeezefilm.validation.explanations import (
+    DRIVE_VOLTAGE,
+    MEASURED_AMPLITUDE,
+    MEASURED_FREQUENCY,
+    paper_plate,
+)
 
 # The paper states no errors: half of the last digit of the frequency, 5 % for a vibrometer.
 _FREQUENCY_ERROR, _AMPLITUDE_SHARE = 50.0, 0.05

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 from tests.validation.paper_bench import (
     GLUE_PRIORS,
-    MEASURED_FREQUENCY,
     glued_paper_display,
     paper_calibration,
     paper_observations,
@@ -13,6 +12,7 @@ from tests.validation.paper_bench import (
 
 from squeezefilm.measure.calibration.priors import calibration_parameters
 from squeezefilm.measure.calibration.solved_answers import Asked
+from squeezefilm.validation.explanations import MEASURED_FREQUENCY
 
 
 def test_what_the_paper_measured() -> None:

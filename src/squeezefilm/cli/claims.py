@@ -7,13 +7,13 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, answer, app, working, written_to
+from squeezefilm.cli.app import AsJson, answer, app, print_json, working, written_to
 from squeezefilm.core.errors import InputError
 
 
 @app.command()
 def reproduce(
-    out: Annotated[Path | None, written_to("Folder for numbers and a page.")] = None,
+    out: Annotated[Path | None, written_to("Write figures 4, 5, 10, 11 and a page.")] = None,
     data: Annotated[
         Path | None,
         typer.Option(
@@ -40,18 +40,19 @@ def reproduce(
         return
     from squeezefilm.core.kit.folder import checkout
     from squeezefilm.validation.command import reproduce as run
-    from squeezefilm.validation.report.page import (
-        show_claims,
-        write_reproduction,
-        write_validation_docs,
-    )
+    from squeezefilm.validation.explanations import prototype_study
+    from squeezefilm.validation.report.page import write_reproduction, write_validation_docs
+    from squeezefilm.validation.report.terminal import show_claims
 
     if write_docs:
         # Minutes of work lie before the writing.
         checkout()
     with working(as_json) as step:
-        result = run(progress=step)
-        written = None if out is None else write_reproduction(result, out)
+        study = prototype_study if out is not None or write_docs else None
+        result = run(prototype=study, progress=step)
+        written = None
+        if out is not None:
+            written = write_reproduction(result, out, progress=step)
     if write_docs:
         typer.echo(f"wrote {write_validation_docs(result)}", err=True)
     answer(as_json, result, show_claims, report=written)
@@ -73,11 +74,7 @@ def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bo
     from squeezefilm.core import presets
     from squeezefilm.core.kit.folder import checkout
     from squeezefilm.validation.published_friction import compare_folder
-    from squeezefilm.validation.report.published import (
-        show_comparisons,
-        write_comparisons,
-        write_friction_docs,
-    )
+    from squeezefilm.validation.report.published import show_comparisons, write_comparisons
 
     if write_docs:
         # Minutes of work lie before the writing.
@@ -86,5 +83,12 @@ def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bo
         compared = compare_folder(presets.friction_folder() if published else data, step)
         written = None if out is None else write_comparisons(compared, out)
     if write_docs:
+        from squeezefilm.validation.report.published import write_friction_docs
+
         typer.echo(f"wrote {write_friction_docs(compared)}", err=True)
-    answer(as_json, compared, show_comparisons, page=written)
+    if as_json:
+        print_json(compared.summary())
+        return
+    show_comparisons(compared)
+    if written is not None:
+        typer.echo(f"page: {written}")

@@ -134,11 +134,13 @@ class ClaimResult:
 
 @dataclass(frozen=True)
 class Reproduction:
-    """All claims recomputed, the errata, and where the paper's design procedure leads."""
+    """All claims recomputed, the errata, where the paper's design procedure leads, and the study of
+    its prototype (`validation.explanations.PrototypeStudy`; None where none was made)."""
 
     results: tuple[ClaimResult, ...]
     errata: tuple[Erratum, ...]
     design: PaperDesign
+    prototype: Any = None
 
     @property
     def changed(self) -> tuple[ClaimResult, ...]:
@@ -171,16 +173,21 @@ class Reproduction:
             ],
             "errata": to_json(self.errata),
             "design_procedure": to_json(self.design),
+            "prototype": to_json(self.prototype),
             "changed": [item.claim.id for item in self.changed],
             "provenance": stamp([item.claim for item in self.results]),
         }
 
 
 def reproduce(
-    claims: tuple[Claim, ...] | None = None, *, progress: SayProgress | None = None
+    claims: tuple[Claim, ...] | None = None,
+    *,
+    prototype: Callable[[SayProgress | None], Any] | None = None,
+    progress: SayProgress | None = None,
 ) -> Reproduction:
-    """Recompute every claim (those on record, or those given). What was found until it was
-    stopped is kept on disk.
+    """Recompute every claim (those on record, or those given); with `prototype`, what studies the
+    paper's prototype (`validation.explanations.prototype_study`), also that. What was
+    found until it was stopped is kept on disk.
 
     Raises `ConfigError` for a claim that nothing computes.
     """
@@ -191,7 +198,8 @@ def reproduce(
         tell(f"claim {claim.name}")
         results.append(judge(claim, _found(claim)))
     tell("the paper's design procedure")
-    return Reproduction(tuple(results), file.errata, paper_design())
+    study = None if prototype is None else prototype(progress)
+    return Reproduction(tuple(results), file.errata, paper_design(), study)
 
 
 def _found(claim: Claim) -> ClaimValue:

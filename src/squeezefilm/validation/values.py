@@ -22,7 +22,6 @@ from squeezefilm.design.plate.changed_plates import (
     PlatePoint,
     with_glue,
     with_loss_in_ceramic_alone,
-    with_other_data_set,
     working_point,
 )
 from squeezefilm.physics.chain.friction import friction_law
@@ -42,9 +41,9 @@ from squeezefilm.physics.plate.beam_modes import (
 )
 from squeezefilm.physics.plate.beam_response import beam_response
 from squeezefilm.physics.plate.laminate import Laminate, LaminateLayer, laminate, plate_laminate
-from squeezefilm.physics.plate.layout import AnnularStator, RectangularPlate
+from squeezefilm.physics.plate.layout import AnnularStator
+from squeezefilm.validation.explanations import MODAL_FREQUENCY, paper_plate, paper_points
 
-MODAL_FREQUENCY: si.Hertz = 35.6e3  # section 3.1.3, Fig 13
 PRINTED_HALF_WAVELENGTH: si.Metre = 10.37e-3
 PRINTED_WIDTH: si.Metre = 50e-3  # section 3.1.1 chooses b = 50 mm, section 3.1.2 ends at 49 mm
 
@@ -81,21 +80,6 @@ def value_of(claim: str) -> Callable[[Callable[[], ClaimValue]], Callable[[], Cl
 @functools.cache
 def _stator() -> Display:
     return load_display("biet2008-stator")
-
-
-@functools.cache
-def paper_plate() -> RectangularPlate:
-    """The plate of the preset biet2008-plate."""
-    plate = load_display("biet2008-plate").actuator
-    assert isinstance(plate, RectangularPlate)
-    return plate
-
-
-@functools.cache
-def paper_points() -> tuple[PlatePoint, PlatePoint]:
-    """Mode (8,0) of the paper's plate with d31 and with the printed e31."""
-    plate = paper_plate()
-    return working_point(plate), working_point(with_other_data_set(plate))
 
 
 def _gap(

@@ -12,6 +12,7 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.cli.claims import reproduce
+from squeezefilm.validation.explanations import prototype_study
 
 StandsIn = Callable[..., Any]
 
@@ -31,7 +32,7 @@ def claims(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
     """What `reproduce` calls."""
     return SimpleNamespace(
         asked=stands_in("validation.command:reproduce", reproduced()),
-        shown=stands_in("validation.report.page:show_claims"),
+        shown=stands_in("validation.report.terminal:show_claims"),
         page=stands_in("validation.report.page:write_reproduction", tmp_path / "index.html"),
         checkout=stands_in("core.kit.folder:checkout"),
         docs=stands_in(
@@ -40,20 +41,23 @@ def claims(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
     )
 
 
-def test_claims_are_shown_without_a_page_unless_asked(claims: SimpleNamespace) -> None:
+def test_claims_are_shown_without_figures_unless_asked(claims: SimpleNamespace) -> None:
     done = run(reproduce.__name__)
     assert done.returncode == 0, done.stderr
+    assert claims.asked.named == {"prototype": None}
     assert claims.shown.given == (claims.asked.answer,)
     assert (done.stdout, done.stderr) == ("", "  a step …\n")
     assert claims.page.calls == claims.checkout.calls == claims.docs.calls == []
 
 
-def test_page_and_docs_are_written_where_asked(claims: SimpleNamespace, tmp_path: Path) -> None:
+def test_a_page_and_the_docs_need_the_prototype(claims: SimpleNamespace, tmp_path: Path) -> None:
     done = run("reproduce", "--out", tmp_path)
+    assert claims.asked.calls[-1][1] == {"prototype": prototype_study}
     assert claims.page.given == (claims.asked.answer, tmp_path)
     assert done.stdout == f"report: {tmp_path / 'index.html'}\n"
     assert claims.checkout.calls == []
     done = run("reproduce", "--write-docs")
+    assert claims.asked.calls[-1][1] == {"prototype": prototype_study}
     assert len(claims.checkout.calls) == 1
     assert claims.docs.given == (claims.asked.answer,)
     assert "wrote docs/reference/validation.md\n" in done.stderr

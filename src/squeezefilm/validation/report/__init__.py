@@ -1,1 +1,1 @@
-"""Output of `reproduce`: the claims, and published friction beside every model."""
+"""Output of `reproduce`: the page of claims, the prototype, the paper's figures redrawn."""

@@ -1,5 +1,5 @@
 """Published friction beside every model over all fingers, and measured thresholds beside the rival
-senses: rows of tables, words, a figure."""
+senses: rows of tables, words and figures."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import printable, shown
 from squeezefilm.measure.fits.friction.friction_curve import LEVELS
 from squeezefilm.measure.report.page import model_words, number_words
+from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL
 from squeezefilm.physics.perception.felt import MEAN_FRICTION
 from squeezefilm.physics.perception.observer import TUNED_AT, load_observer
 from squeezefilm.validation.populations import (
@@ -142,6 +143,36 @@ def detection_words(compared: DetectionComparison) -> list[str]:
 
 
 _TICKS = (0.003, 0.01, 0.03, 0.1)
+
+# Micrometres and milligrams, on the axis of a figure.
+_SHOWN = {"m": ("µm", 1e6), "kg": ("mg", 1e6)}
+
+
+@style.drawn
+def people_figure(compared: PopulationComparison) -> Figure:
+    """Share of people below each value, and the values of the models."""
+    unit, scale = _SHOWN.get(compared.unit, (compared.unit, 1.0))
+    figure = style.new_figure(
+        f"{compared.quantity}: {compared.measured.size} measured",
+        f"nothing fitted; {compared.display}, {compared.conditions}",
+        4,
+    )
+    axes = figure.subplots()
+    ordered = scale * np.sort(compared.measured)
+    axes.step(
+        ordered,
+        np.arange(1, ordered.size + 1) / ordered.size,
+        color=style.INK,
+        where="post",
+        label="measured",
+    )
+    for model, value in compared.models:
+        if value is not None:
+            look = style.RENDERED if model == DEFAULT_MODEL else style.GUIDE
+            axes.axvline(scale * value, **look, label=model if model == DEFAULT_MODEL else None)
+    axes.set(xlabel=f"{compared.quantity} ({unit})", ylabel="share of measured", ylim=(0, 1))
+    style.legend_beside(axes)
+    return figure
 
 
 @style.drawn

@@ -6,13 +6,24 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
-from squeezefilm.core.kit.folder import checkout, json_text, write_folder
-from squeezefilm.core.kit.page_style import page, picture_files, picture_sections, stamped
+from squeezefilm.core.kit.folder import checkout, json_text, markdown_table, write_folder
+from squeezefilm.core.kit.numbers import printable
+from squeezefilm.core.kit.page_style import (
+    bullets,
+    page,
+    picture_sections,
+    section,
+    stamped,
+    text_table,
+)
+from squeezefilm.core.kit.terminal import bullets as printed_bullets
+from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.core.results import stamp, write_whole
 from squeezefilm.design.analysis.published_claims import MEANINGS, missed_by
 from squeezefilm.design.analysis.report.model_rows import cited, missed_directions
@@ -23,13 +34,7 @@ from squeezefilm.validation.command import ClaimResult
 from squeezefilm.validation.frozen import MODELS, WORDS
 from squeezefilm.validation.published_friction import FolderComparison
 from squeezefilm.validation.report import pooled
-from squeezefilm.validation.report.parts import (
-    Part,
-    Table,
-    markdown_lines,
-    page_section,
-    show_parts,
-)
+from squeezefilm.validation.report.prototype import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -49,49 +54,70 @@ error of about 1 % of an axis.
 
 
 class _Compared(NamedTuple):
-    """A recording beside the models: who measured it, what is said of it (first on what and how it
-    was measured), and what draws its figure, where it has one."""
+    """A recording beside the models: who measured it, its name, what is said (first on what and how
+    it was measured), its table, and what draws its figure."""
 
     told: Told
-    part: Part
-    figure: Callable[[], Figure] | None = None
+    name: str
+    words: Sequence[str]
+    caption: str
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    figure: Callable[[], Figure]
+
+
+_Table = tuple[str, Sequence[str], Sequence[Sequence[str]]]
 
 
 def _recordings(compared: FolderComparison) -> Iterator[_Compared]:
     """Curves first, then numbers of many people, then thresholds."""
+    shown: _Table
     for curve in compared.curves:
         told = curve.curve.told
         words = [conditions(curve), inside_words(curve), curve.adequacy.sentence]
-        part = Part(told.name, words, [(MODELS_HEAD, model_rows(curve))])
-        yield _Compared(told, part, partial(comparison_figure, curve))
+        shown = ("How far each model is off", MODELS_HEAD, model_rows(curve))
+        yield _Compared(told, told.name, words, *shown, partial(comparison_figure, curve))
     for people in compared.populations:
-        name, rows = f"{people.told.name}: {people.quantity}", pooled.people_rows(people)
-        part = Part(name, [pooled.people_words(people)], [(pooled.PEOPLE_HEAD, rows)])
-        yield _Compared(people.told, part)
+        name = f"{people.told.name}: {people.quantity}"
+        shown = ("What each model gives", pooled.PEOPLE_HEAD, pooled.people_rows(people))
+        yield _Compared(
+            people.told,
+            name,
+            [pooled.people_words(people)],
+            *shown,
+            partial(pooled.people_figure, people),
+        )
     for detected in compared.detections:
-        told, rows = detected.told, pooled.detection_rows(detected)
-        part = Part(told.name, pooled.detection_words(detected), [(pooled.DETECTION_HEAD, rows)])
-        yield _Compared(told, part, partial(pooled.detection_figure, detected))
+        told = detected.told
+        shown = ("What each rival gives", pooled.DETECTION_HEAD, pooled.detection_rows(detected))
+        figure = partial(pooled.detection_figure, detected)
+        yield _Compared(told, told.name, pooled.detection_words(detected), *shown, figure)
 
 
-def _all_curves(compared: FolderComparison) -> Part:
-    """The models over all curves, and the points in the default's intervals."""
-    return Part(
-        "All curves",
-        [pooled.covered_words(compared), pooled.SCORES],
-        [
-            (pooled.TOTALS_HEAD, pooled.total_rows(compared)),
-            (pooled.COVERAGE_HEAD, pooled.coverage_rows(compared)),
-        ],
+def _totals(compared: FolderComparison) -> tuple[_Table, _Table]:
+    """Caption, head and rows of the models over all curves, and of the points in intervals."""
+    held = "Points in the default's intervals"
+    return (
+        ("All curves", pooled.TOTALS_HEAD, pooled.total_rows(compared)),
+        (held, pooled.COVERAGE_HEAD, pooled.coverage_rows(compared)),
     )
 
 
 def show_comparisons(compared: FolderComparison) -> None:
     """Print each curve, the numbers of many people and the totals beside the models."""
-    parts = [recording.part for recording in _recordings(compared)]
+    console = plain_console()
+    for recording in _recordings(compared):
+        heading(console, recording.name)
+        table(console, recording.head, recording.rows, fixed=(0,))
+        printed_bullets(console, [("", words, "") for words in recording.words])
     if len(compared.curves) > 1:
-        parts.append(_all_curves(compared))
-    show_parts([*parts, Part("What is compared", [pooled.FITTED])])
+        heading(console, "All curves")
+        for _, head, rows in _totals(compared):
+            table(console, head, rows, fixed=(0,))
+        printed_bullets(
+            console, [("", pooled.covered_words(compared), ""), ("", pooled.SCORES, "")]
+        )
+    console.print(f"\n{pooled.FITTED}")
 
 
 def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
@@ -102,16 +128,19 @@ def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
     summary = compared.summary()
     summary_stamp = stamp(summary)
     files: dict[str, str | bytes] = {"curves.json": json_text(summary | {"stamp": summary_stamp})}
-    body = page_section(Part("What is compared", [pooled.FITTED]))
+    body = section("What is compared", f"<p>{pooled.FITTED}</p>")
     if len(compared.curves) > 1:
-        body += page_section(_all_curves(compared))
-    for number, (told, part, draw) in enumerate(_recordings(compared), 1):
-        facts = [f"{what}: {how}" for what, how in told.facts]
-        body += page_section(part._replace(sentences=[*part.sentences, *facts]))
-        if draw is not None:
-            pictures = {f"curve-{number}": (part.heading, draw())}
-            files |= picture_files(pictures)
-            body += picture_sections(pictures)
+        rows, held = (text_table(*shown) for shown in _totals(compared))
+        body += section(
+            "All curves", rows + bullets([pooled.covered_words(compared), pooled.SCORES]) + held
+        )
+    for number, recording in enumerate(_recordings(compared), 1):
+        figure = recording.figure()
+        files[f"curve-{number}.png"] = style.png(figure)
+        said = [*recording.words, *(f"{what}: {how}" for what, how in recording.told.facts)]
+        rows = text_table(recording.caption, recording.head, recording.rows)
+        body += section(escape(printable(recording.name)), bullets(said) + rows)
+        body += picture_sections({f"curve-{number}": (recording.name, figure)})
     files["measured-curves.html"] = page(
         "Measured friction",
         "Measured friction",
@@ -142,10 +171,14 @@ def write_friction_docs(compared: FolderComparison, root: Path | None = None) ->
 
 def friction_markdown(compared: FolderComparison) -> str:
     """The text of the page: all curves, each curve, the numbers of many people, and thresholds."""
-    parts = [_all_curves(compared)]
-    for told, part, _ in _recordings(compared):
-        parts.append(part._replace(sentences=[told.source, *part.sentences]))
-    lines = [_HEAD, *markdown_lines(parts)]
+    lines = [_HEAD, "## All curves", ""]
+    totals, held = (markdown_table(shown[1:]) for shown in _totals(compared))
+    lines += [*totals, "", f"{pooled.covered_words(compared)}. {pooled.SCORES}", "", *held, ""]
+    for recording in _recordings(compared):
+        how, *rest = recording.words
+        lines += [f"## {recording.name.capitalize()}", "", f"{recording.told.source}. {how}.", ""]
+        lines += markdown_table((recording.head, recording.rows))
+        lines += ["", f"{'; '.join(rest)}.", ""] if rest else [""]
     if compared.detections:
         lines += ["![Measured and computed thresholds](../pictures/published-thresholds.png)", ""]
     return "\n".join(lines)
@@ -207,14 +240,9 @@ def model_sentences() -> list[str]:
     return [f"{name}: {WORDS[kind]}." for name, kind in MODELS.items()]
 
 
-def missed_sentences() -> list[str]:
-    """The measured directions that each model misses, by the verdicts on record."""
-    return [
-        f"{name}: {sentence}"
-        for name in MODELS
-        if missed_by(name)
-        for sentence in missed_directions(name, why=True)
-    ]
+def missed_lists() -> list[tuple[str, list[str]]]:
+    """Each model with the measured directions that it misses, by the verdicts on record."""
+    return [(name, missed_directions(name, why=True)) for name in MODELS if missed_by(name)]
 
 
 def verdict_table(results: Iterable[ClaimResult]) -> Table:

@@ -267,7 +267,7 @@ def test_curves_are_shown_beside_all_models(tmp_path: Path) -> None:
     assert "The default is off." in text
     assert "licence: none needed" in text
     names = {one.name for one in tmp_path.iterdir()}
-    pictures = {f"curve-{number}.png" for number in (1, 2)}
+    pictures = {f"curve-{number}.png" for number in (1, 2, 3)}
     assert names == {"curves.json", "measured-curves.html"} | pictures
     summary = json.loads((tmp_path / "curves.json").read_text(encoding="utf-8"))
     assert summary["curves"][0]["interval"]["points_inside"] == 2

@@ -14,7 +14,7 @@ def test_curves_come_first_then_people_then_thresholds(monkeypatch: pytest.Monke
     pooled = published.pooled
     for room, names in (
         (published, "conditions inside_words model_rows comparison_figure"),
-        (pooled, "people_rows people_words detection_rows detection_figure"),
+        (pooled, "people_rows people_words people_figure detection_rows detection_figure"),
     ):
         for name in names.split():
             monkeypatch.setattr(room, name, lambda of, name=name: f"{name} of {of.told.name}")
@@ -28,14 +28,18 @@ def test_curves_come_first_then_people_then_thresholds(monkeypatch: pytest.Monke
     compared: Any = SimpleNamespace(curves=[one], populations=[people], detections=[seen])
     curve, many, threshold = published._recordings(compared)
     assert [found.told for found in (curve, many, threshold)] == [one.told, people.told, seen.told]
-    assert [found.part.heading for found in (curve, many, threshold)] == ["a", "b: damping", "c"]
-    assert curve.part.sentences == ["conditions of a", "inside_words of a", "it fits"]
-    assert many.part.sentences == ["people_words of b"]
-    assert threshold.part.sentences == ["words of c", "more"]
-    tables: list[Any] = [found.part.tables for found in (curve, many, threshold)]
-    assert tables == [
-        [(published.MODELS_HEAD, "model_rows of a")], [(pooled.PEOPLE_HEAD, "people_rows of b")],
-        [(pooled.DETECTION_HEAD, "detection_rows of c")],
+    assert [found.name for found in (curve, many, threshold)] == ["a", "b: damping", "c"]
+    assert curve.words == ["conditions of a", "inside_words of a", "it fits"]
+    assert many.words == ["people_words of b"]
+    assert threshold.words == ["words of c", "more"]
+    captions = [found.caption for found in (curve, many, threshold)]
+    assert captions == [
+        "How far each model is off", "What each model gives", "What each rival gives",
     ]  # fmt: skip
-    drawn: list[Any] = [found.figure and found.figure() for found in (curve, many, threshold)]
-    assert drawn == ["comparison_figure of a", None, "detection_figure of c"]
+    assert [found.head for found in (curve, many, threshold)] == [
+        published.MODELS_HEAD, pooled.PEOPLE_HEAD, pooled.DETECTION_HEAD,
+    ]  # fmt: skip
+    rows: list[Any] = [found.rows for found in (curve, many, threshold)]
+    assert rows == ["model_rows of a", "people_rows of b", "detection_rows of c"]
+    figures: list[Any] = [found.figure() for found in (curve, many, threshold)]
+    assert figures == ["comparison_figure of a", "people_figure of b", "detection_figure of c"]
