@@ -11,9 +11,9 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.instruments.bench.check_result import CheckResult
+from squeezefilm.instruments.session.loop.lateness import Lateness, lateness_of
 from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.process import LoopProcess
-from squeezefilm.instruments.session.loop.rows import Lateness, lateness_of
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.physics.render.program.lowering import lower

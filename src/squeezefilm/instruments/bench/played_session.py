@@ -21,7 +21,7 @@ from squeezefilm.core.formats.traces import table_from_csv
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.instruments.bench.setup import PlaySetup
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.rows import Lateness, lateness_of
+from squeezefilm.instruments.session.loop.lateness import Lateness, lateness_of
 from squeezefilm.instruments.session.play.plan import PlayPlan
 from squeezefilm.instruments.session.record.trace import Trace
 from squeezefilm.physics.chain.played_texture import single_period

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from squeezefilm.instruments.bench.check_result import DeviceCheck
     from squeezefilm.instruments.bench.play import PlayResult
     from squeezefilm.instruments.bench.played_session import Judged, PlayedSession
-    from squeezefilm.instruments.session.loop.rows import Lateness
+    from squeezefilm.instruments.session.loop.lateness import Lateness
     from squeezefilm.instruments.session.play.plan import PlayView
     from squeezefilm.instruments.session.record.trace import TraceExport
 

@@ -10,8 +10,8 @@ import pytest
 
 from squeezefilm.instruments.bench import loop_check
 from squeezefilm.instruments.bench.loop_check import check_loop, loop_lateness, loop_result
+from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.loop.rows import Lateness
 
 
 def lateness(made: int, lost: int, late: float = 12e-6) -> Lateness:

@@ -17,10 +17,10 @@ import time
 from dataclasses import dataclass
 
 from squeezefilm.instruments.device.priority import collect_garbage_first, real_time_granted
-from squeezefilm.instruments.session.loop import shared
-from squeezefilm.instruments.session.loop.pacing import compiled_loop, margin_ns, new_timespec
+from squeezefilm.instruments.session.loop import clock, shared
+from squeezefilm.instruments.session.loop.atomics import load_acquire, store_release
+from squeezefilm.instruments.session.loop.pacing import compiled_loop, margin_ns
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.instruments.session.loop.shared import load_acquire, store_release
 
 # Linux: <sys/prctl.h> and <sys/mman.h>.
 _PR_SET_TIMERSLACK = 29
@@ -53,7 +53,7 @@ def run_loop(orders: Orders, memory: shared.Shared) -> None:
     Returns when the host said stop, or when the parent is gone.
     """
     plan, control = orders.plan, memory.control
-    timespec = new_timespec()
+    timespec = clock.new_timespec()
     timeout = round(plan.host_timeout * 1e9)
     # Compile, or load what was compiled, on memory and states of its own.
     rehearsal = shared.private_views()

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.rows import Lateness, lateness_of
+from squeezefilm.instruments.session.loop.lateness import Lateness, lateness_of
 
 PERIOD = 1e-3
 

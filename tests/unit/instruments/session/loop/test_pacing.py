@@ -20,7 +20,7 @@ from squeezefilm.instruments.session.loop.pacing import (
     silence,
 )
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.instruments.session.loop.shared import ring_take
+from squeezefilm.instruments.session.loop.ring import ring_take
 from squeezefilm.physics.render.resonator import kernel as compensation_kernel
 
 PlanOf = Callable[..., LoopPlan]
@@ -153,10 +153,10 @@ def looped(
 ) -> None:  # fmt: skip
     """The loop, interpreted, on that clock; it takes a host silent for 3 ms for gone."""
     arrays, timeout = tick_arrays(plan), 3_000_000
-    monkeypatch.setattr(pacing, "monotonic_ns", clock.monotonic_ns)
-    monkeypatch.setattr(pacing, "thread_cpu_ns", clock.thread_time_ns)
-    monkeypatch.setattr(pacing, "sleep_until_ns", clock.sleep_until_ns)
-    monkeypatch.setattr(pacing, "parent_id", clock.getppid)
+    monkeypatch.setattr(pacing.clock, "monotonic_ns", clock.monotonic_ns)
+    monkeypatch.setattr(pacing.clock, "thread_cpu_ns", clock.thread_time_ns)
+    monkeypatch.setattr(pacing.clock, "sleep_until_ns", clock.sleep_until_ns)
+    monkeypatch.setattr(pacing.clock, "parent_id", clock.getppid)
     compiled_loop.py_func(arrays, memory, None, margin, timeout, parent)  # type: ignore[attr-defined]
 
 

@@ -13,8 +13,8 @@ from tests.simulated_loop import SimulatedLoop
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.loop.lateness import lateness_of
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.loop.rows import lateness_of
 from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_stream
 
 PlanOf = Callable[..., LoopPlan]

@@ -17,17 +17,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop import pacing, shared, worker
+from squeezefilm.instruments.session.loop import clock, shared, worker
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.loop.shared import ring_take
+from squeezefilm.instruments.session.loop.ring import ring_take
 from squeezefilm.instruments.session.loop.worker import Orders, main, memory_locked, run_loop
 
 PlanOf = Callable[..., LoopPlan]
 # Of no process: whoever has this parent is an orphan.
 NOBODY = 2**22 + 1
 
-pytestmark = pytest.mark.skipif(not pacing.COMPILED_CLOCK, reason="no compiled clock")
+pytestmark = pytest.mark.skipif(not clock.COMPILED_CLOCK, reason="no compiled clock")
 
 
 @pytest.fixture(autouse=True)
