@@ -84,6 +84,15 @@ def test_a_loop_runs_in_its_own_process_and_reports() -> None:
 
 
 @pytest.mark.slow
+def test_paced_by_python_it_is_the_same_loop_and_says_so() -> None:
+    with LoopProcess(PLAN, priority=None, compiled_clock=False) as loop:
+        rows = _ticked(loop, 100)
+        report = loop.stop()
+    assert not report.compiled_clock
+    assert np.all(np.diff(rows[:, column.TICK]) >= 1)
+
+
+@pytest.mark.slow
 def test_muted_and_unheard_it_plays_nothing() -> None:
     with LoopProcess(PLAN, priority=None) as loop:
         _ticked(loop, 50)

@@ -2,8 +2,9 @@
 
 On 64-bit Linux a compiled loop calls `clock_gettime` and `clock_nanosleep` (to a point in time,
 TIMER_ABSTIME) of the C library themselves, by name, so that numba can cache it. Elsewhere, and
-where numba's compiler is off, `COMPILED_CLOCK` is False, and no loop runs in real time: paced by
-Python's `time.sleep` it could not keep 1 kHz. The clock is what `time.monotonic_ns` reads on Linux.
+where numba's compiler is off, `COMPILED_CLOCK` is False: the loop is then paced by Python
+(`pacing.portable_loop`), whose lateness is that of `time.sleep`, which under load of the same
+process means that it cannot keep 1 kHz. Both clocks are what `time.monotonic_ns` reads on Linux.
 """
 
 from __future__ import annotations

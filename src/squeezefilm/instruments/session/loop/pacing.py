@@ -13,6 +13,8 @@ counted as lost. So no burst follows a stop, however long it was.
 
 from __future__ import annotations
 
+import os
+import time
 from typing import Any
 
 from squeezefilm.core import quantities as si
@@ -104,6 +106,31 @@ def compiled_loop(
             if parent != 0 and clock.parent_id() != parent:
                 break
     control[shared.CPU] = clock.thread_cpu_ns(timespec) - begun
+
+
+def portable_loop(arrays: Any, memory: Any, timeout: int, parent: int) -> None:
+    """The same loop paced by Python's clock and sleep, for where the compiled clock is missing.
+
+    It does not spin. Its lateness is that of `time.sleep`, and of whatever else Python does in
+    this process; the ticks themselves are the same.
+    """
+    control, period = memory.control, arrays.settings[at.DT]
+    epoch = int(control[shared.EPOCH])
+    begun, looked = time.thread_time_ns(), 0
+    while load_acquire(control, shared.STOP) == 0:
+        now = time.monotonic_ns() - epoch
+        early = due_ns(int(control[shared.NEXT]), period) - now
+        if early > 0:
+            time.sleep(early / _SECOND_NS)
+            now = time.monotonic_ns() - epoch
+        silence(arrays, control, now, timeout)
+        make_due_tick(arrays, memory, now)
+        if now - looked > _PARENT_LOOKED_AT_NS:
+            looked = now
+            control[shared.CPU] = time.thread_time_ns() - begun
+            if parent != 0 and os.getppid() != parent:
+                break
+    control[shared.CPU] = time.thread_time_ns() - begun
 
 
 def margin_ns(period: si.Second, real_time: bool) -> int:

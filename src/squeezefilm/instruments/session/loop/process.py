@@ -26,7 +26,6 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, LoopError, SqueezefilmWarning
 from squeezefilm.instruments.session.loop import shared
 from squeezefilm.instruments.session.loop.atomics import load_acquire, store_release
-from squeezefilm.instruments.session.loop.clock import COMPILED_CLOCK
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.ring import DROPPED, ring_put_all, taken
 from squeezefilm.instruments.session.loop.rows import COMMAND_TIME, SAMPLE_COLUMNS
@@ -47,6 +46,7 @@ class LoopReport:
     Attributes:
         real_time_priority: whether it ran under SCHED_FIFO.
         memory_locked: whether its memory was kept from being paged out.
+        compiled_clock: whether it was paced by the compiled clock, not by Python.
         processor_share: processor time over time run (1), as the kernel counts it.
         dropped_samples, dropped_commands, dropped_rows: lost because a ring was full.
         stale_commands: taken too late to be of use and not handed out.
@@ -54,6 +54,7 @@ class LoopReport:
 
     real_time_priority: bool
     memory_locked: bool
+    compiled_clock: bool
     processor_share: si.Dimensionless
     dropped_samples: int
     dropped_commands: int
@@ -62,7 +63,7 @@ class LoopReport:
 
 
 class LoopProcess:
-    """A plan running in a process of its own, on 64-bit Linux.
+    """A plan running in a process of its own, on Linux and other systems with POSIX processes.
 
     Use it as a context manager, or call `start` and `stop`. One thread may feed, one take commands,
     one take rows and any mute; each of the three must stay with one thread at a time.
@@ -71,6 +72,7 @@ class LoopProcess:
         plan: what to do.
         priority: of SCHED_FIFO to ask for, 1 to 99; None to ask for none. Where it is refused the
             loop runs without, and `start` warns.
+        compiled_clock: False paces the loop by Python even where it could be compiled.
 
     Raises:
         InputError: a priority outside 1 to 99.
@@ -81,6 +83,7 @@ class LoopProcess:
         plan: LoopPlan,
         *,
         priority: int | None = PRIORITY,
+        compiled_clock: bool = True,
     ) -> None:
         if priority is not None and not 1 <= priority <= 99:
             raise InputError(
@@ -88,7 +91,7 @@ class LoopProcess:
                 quantity="priority",
             )
         self.plan = plan
-        self._orders = Orders(plan, priority, os.getpid())
+        self._orders = Orders(plan, priority, os.getpid(), compiled_clock)
         self._begun: tuple[subprocess.Popen[bytes], shared.Shared] | None = None
         self._said: IO[bytes] | None = None
         self._last_words = ""
@@ -101,22 +104,21 @@ class LoopProcess:
     def start(self) -> None:
         """Start the process, wait until it is compiled and ready, and let tick 0 come.
 
-        Warns (`SqueezefilmWarning`) where real-time priority was refused.
+        Warns (`SqueezefilmWarning`) where real-time priority was refused or the clock is Python's.
 
         Raises:
-            LoopError: a system other than 64-bit Linux, a loop started before, or a process that
+            LoopError: a system without POSIX processes, a loop started before, or a process that
                 died or did not get ready within three minutes.
         """
-        if not COMPILED_CLOCK:
+        if os.name != "posix":
             raise LoopError(
-                "a loop in real time needs a compiled clock, which is there on 64-bit Linux alone; "
-                "play there"
+                "the loop needs a process that shares memory by file descriptor, which this "
+                "system has not; use Linux (or macOS, with poorer timing)"
             )
         if self._begun is not None:
             raise LoopError("this loop was started before; make a new LoopProcess")
-        descriptor = os.memfd_create("squeezefilm-loop")
+        descriptor = _anonymous_file(shared.shared_size())
         try:
-            os.ftruncate(descriptor, shared.shared_size())
             memory = shared.shared_views(mmap.mmap(descriptor, shared.shared_size()))
             self._said = tempfile.TemporaryFile()  # noqa: SIM115 - `stop` closes it
             process = subprocess.Popen(
@@ -277,6 +279,7 @@ class LoopProcess:
         return LoopReport(
             real_time_priority=bool(control[shared.REALTIME]),
             memory_locked=bool(control[shared.LOCKED]),
+            compiled_clock=int(control[shared.PACING]) == shared.PACING_COMPILED,
             processor_share=int(control[shared.CPU]) / run,
             dropped_samples=int(memory.sample_counters[DROPPED]),
             dropped_commands=int(memory.command_counters[DROPPED]),
@@ -330,6 +333,13 @@ class LoopProcess:
                 SqueezefilmWarning,
                 stacklevel=3,
             )
+        if self._orders.compiled_clock and control[shared.PACING] == shared.PACING_PORTABLE:
+            warnings.warn(
+                "the loop is paced by Python, since its compiled clock needs 64-bit Linux: expect "
+                "milliseconds of lateness and lost ticks above some hundred hertz",
+                SqueezefilmWarning,
+                stacklevel=3,
+            )
 
 
 def sample_block(samples: si.FloatArray) -> si.FloatArray:
@@ -341,3 +351,14 @@ def sample_block(samples: si.FloatArray) -> si.FloatArray:
             f"{', '.join(SAMPLE_COLUMNS)}"
         )
     return block
+
+
+def _anonymous_file(size: int) -> int:
+    """A descriptor of a file without a name, which goes when its last user does."""
+    if sys.platform == "linux":
+        descriptor = os.memfd_create("squeezefilm-loop")
+    else:
+        with tempfile.TemporaryFile() as file:
+            descriptor = os.dup(file.fileno())
+    os.ftruncate(descriptor, size)
+    return descriptor

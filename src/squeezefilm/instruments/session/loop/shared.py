@@ -19,10 +19,11 @@ _LINE = 8
 # Written by the host.
 STOP, MUTE, HOST_BEAT, EPOCH = (place * _LINE for place in range(4))
 # Written by the loop: how far it is, what it did, and what it was given.
-PHASE, BEAT, NEXT, CPU, REALTIME, LOCKED = (place * _LINE for place in range(4, 10))
-CONTROL_SIZE = 10 * _LINE
+PHASE, BEAT, NEXT, CPU, REALTIME, LOCKED, PACING = (place * _LINE for place in range(4, 11))
+CONTROL_SIZE = 11 * _LINE
 
 PHASE_NEW, PHASE_READY, PHASE_GO, PHASE_ENDED = range(4)
+PACING_COMPILED, PACING_PORTABLE = 1, 2
 
 SAMPLES, COMMANDS, ROWS = 8192, 4096, 32768
 """Rows that each ring holds; at 10 kHz 0.8 s of samples, 0.4 s of commands, 3.3 s of rows."""

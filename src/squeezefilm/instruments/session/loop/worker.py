@@ -19,7 +19,13 @@ from dataclasses import dataclass
 from squeezefilm.instruments.device.priority import collect_garbage_first, real_time_granted
 from squeezefilm.instruments.session.loop import clock, shared
 from squeezefilm.instruments.session.loop.atomics import load_acquire, store_release
-from squeezefilm.instruments.session.loop.pacing import compiled_loop, margin_ns
+from squeezefilm.instruments.session.loop.pacing import (
+    compiled_loop,
+    make_due_tick,
+    margin_ns,
+    portable_loop,
+    silence,
+)
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
 
 # Linux: <sys/prctl.h> and <sys/mman.h>.
@@ -29,38 +35,50 @@ _MCL_CURRENT, _MCL_ONFAULT = 1, 4
 
 @dataclass(frozen=True, slots=True)
 class Orders:
-    """Orders to a worker: the plan, the priority of SCHED_FIFO to ask for (1 to 99; None to ask for
-    none), and its parent."""
+    """Orders to a worker: the plan, the priority to ask for, its parent, and the clock to use.
+
+    `priority` is SCHED_FIFO's (1 to 99), or None to ask for none. `compiled_clock` may be False
+    to pace the loop by Python where the compiled clock would do.
+    """
 
     plan: LoopPlan
     priority: int | None
     parent: int
+    compiled_clock: bool
 
 
 def memory_locked() -> bool:
-    """Keep in memory what is used of this process; whether that was allowed.
+    """Keep in memory what is used of this process; whether that was allowed. Linux only.
 
     Also asks the kernel not to lump this thread's wake-ups with others' (timer slack).
     """
+    if sys.platform != "linux":
+        return False
     library = ctypes.CDLL(None, use_errno=True)
     library.prctl(_PR_SET_TIMERSLACK, ctypes.c_ulong(1), 0, 0, 0)
     return bool(library.mlockall(_MCL_CURRENT | _MCL_ONFAULT) == 0)
 
 
 def run_loop(orders: Orders, memory: shared.Shared) -> None:
-    """Run the loop in this thread, releasing Python's lock.
+    """Run the loop in this thread, releasing Python's lock where its clock is compiled.
 
     Returns when the host said stop, or when the parent is gone.
     """
     plan, control = orders.plan, memory.control
     timespec = clock.new_timespec()
     timeout = round(plan.host_timeout * 1e9)
+    compiled = orders.compiled_clock and clock.COMPILED_CLOCK
     # Compile, or load what was compiled, on memory and states of its own.
     rehearsal = shared.private_views()
-    rehearsal.control[shared.STOP] = 1
-    compiled_loop(tick_arrays(plan), rehearsal, timespec, 0, timeout, 0)
+    if compiled:
+        rehearsal.control[shared.STOP] = 1
+        compiled_loop(tick_arrays(plan), rehearsal, timespec, 0, timeout, 0)
+    else:
+        silence(tick_arrays(plan), rehearsal.control, 0, timeout)
+        make_due_tick(tick_arrays(plan), rehearsal, 0)
     arrays = tick_arrays(plan)
     collect_garbage_first()
+    control[shared.PACING] = shared.PACING_COMPILED if compiled else shared.PACING_PORTABLE
     control[shared.LOCKED] = int(memory_locked())
     real_time = orders.priority is not None and real_time_granted(orders.priority)
     control[shared.REALTIME] = int(real_time)
@@ -69,8 +87,11 @@ def run_loop(orders: Orders, memory: shared.Shared) -> None:
         if load_acquire(control, shared.STOP) != 0 or _orphaned(orders):
             return
         time.sleep(0.5e-3)
-    margin = margin_ns(plan.period, real_time)
-    compiled_loop(arrays, memory, timespec, margin, timeout, orders.parent)
+    if compiled:
+        margin = margin_ns(plan.period, real_time)
+        compiled_loop(arrays, memory, timespec, margin, timeout, orders.parent)
+    else:
+        portable_loop(arrays, memory, timeout, orders.parent)
     store_release(control, shared.PHASE, shared.PHASE_ENDED)
 
 

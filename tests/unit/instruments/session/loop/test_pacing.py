@@ -1,4 +1,4 @@
-"""Deadlines, what is late and what is lost, and the loop on a clock that the test moves."""
+"""Deadlines, what is late and what is lost, and both loops on a clock that the test moves."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from squeezefilm.instruments.session.loop.pacing import (
     due_ns,
     make_due_tick,
     margin_ns,
+    portable_loop,
     silence,
 )
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
@@ -121,6 +122,10 @@ class Clock:
             self.end()
         return self.now
 
+    def sleep(self, duration: float) -> None:
+        self.slept.append(round(duration * 1e9))
+        self.now += self.slept[-1] + self.late
+
     def sleep_until_ns(self, _: Any, when: int) -> None:
         self.slept.append(when - self.now)
         self.now = max(self.now, when) + self.late
@@ -148,11 +153,16 @@ def begun(clock: Clock, duration: int) -> Any:
 
 
 def looped(
-    monkeypatch: pytest.MonkeyPatch, clock: Clock, plan: LoopPlan, memory: Any,
+    monkeypatch: pytest.MonkeyPatch, which: str, clock: Clock, plan: LoopPlan, memory: Any,
     margin: int = 0, parent: int = 0,
 ) -> None:  # fmt: skip
-    """The loop, interpreted, on that clock; it takes a host silent for 3 ms for gone."""
+    """One of the loops, interpreted, on that clock; it takes a host silent for 3 ms for gone."""
     arrays, timeout = tick_arrays(plan), 3_000_000
+    if which == "portable":
+        monkeypatch.setattr(pacing, "time", clock)
+        monkeypatch.setattr(pacing, "os", clock)
+        portable_loop(arrays, memory, timeout, parent)
+        return
     monkeypatch.setattr(pacing.clock, "monotonic_ns", clock.monotonic_ns)
     monkeypatch.setattr(pacing.clock, "thread_cpu_ns", clock.thread_time_ns)
     monkeypatch.setattr(pacing.clock, "sleep_until_ns", clock.sleep_until_ns)
@@ -160,13 +170,14 @@ def looped(
     compiled_loop.py_func(arrays, memory, None, margin, timeout, parent)  # type: ignore[attr-defined]
 
 
+@pytest.mark.parametrize("which", ["portable", "compiled"])
 def test_a_loop_sleeps_until_each_tick_is_due(
-    monkeypatch: pytest.MonkeyPatch, plan_of: PlanOf
+    monkeypatch: pytest.MonkeyPatch, plan_of: PlanOf, which: str
 ) -> None:
     clock = Clock(late=20_000)
     began = clock.now
     memory = begun(clock, 20_500_000)
-    looped(monkeypatch, clock, plan_of(rate=1e3), memory)
+    looped(monkeypatch, which, clock, plan_of(rate=1e3), memory)
     control, rows = memory.control, rows_of(memory)
     assert rows[:, column.TICK].tolist() == list(range(22))
     # What the clock takes to be read included; tick 0 was due as it began.
@@ -182,29 +193,31 @@ def test_a_loop_sleeps_until_each_tick_is_due(
     assert clock.asked_parent == 0
 
 
+@pytest.mark.parametrize("which", ["portable", "compiled"])
 def test_a_loop_that_sleeps_too_long_loses_ticks_and_makes_none_up(
-    monkeypatch: pytest.MonkeyPatch, plan_of: PlanOf
+    monkeypatch: pytest.MonkeyPatch, plan_of: PlanOf, which: str
 ) -> None:
     clock = Clock(late=2_400_000)
     memory = begun(clock, 30_000_000)
-    looped(monkeypatch, clock, plan_of(rate=1e3), memory)
+    looped(monkeypatch, which, clock, plan_of(rate=1e3), memory)
     made = rows_of(memory)[:, column.TICK]
     # Woken 2.4 ms late for the tick it waits for, it makes the one after the next.
     assert made[:5].tolist() == [0, 3, 6, 9, 12]
 
 
+@pytest.mark.parametrize("which", ["portable", "compiled"])
 def test_a_loop_ends_with_its_parent_at_whom_it_looks_each_five_milliseconds(
-    monkeypatch: pytest.MonkeyPatch, plan_of: PlanOf
+    monkeypatch: pytest.MonkeyPatch, plan_of: PlanOf, which: str
 ) -> None:
     clock = Clock(late=0)
     memory = begun(clock, 10**9)
-    looped(monkeypatch, clock, plan_of(rate=1e3), memory, parent=78)
+    looped(monkeypatch, which, clock, plan_of(rate=1e3), memory, parent=78)
     # Not before 5 ms, and at the tick after that.
     assert memory.control[shared.NEXT] in (6, 7)
     assert clock.asked_parent == 1
     clock = Clock(late=0)
     memory = begun(clock, 50_500_000)
-    looped(monkeypatch, clock, plan_of(rate=1e3), memory, parent=77)
+    looped(monkeypatch, which, clock, plan_of(rate=1e3), memory, parent=77)
     assert memory.control[shared.NEXT] == 52
     assert 8 <= clock.asked_parent <= 10
 
@@ -214,7 +227,7 @@ def test_the_compiled_loop_spins_through_its_margin_only(
 ) -> None:
     clock = Clock(late=20_000)
     memory = begun(clock, 10_500_000)
-    looped(monkeypatch, clock, plan_of(rate=1e3), memory, margin=50_000)
+    looped(monkeypatch, "compiled", clock, plan_of(rate=1e3), memory, margin=50_000)
     rows = rows_of(memory)
     assert rows[:, column.TICK].tolist() == list(range(12))
     # A sleep that ends late by less than the margin costs nothing.
@@ -232,6 +245,6 @@ def test_a_sleep_that_a_signal_ends_is_not_made_up_by_spinning(
         clock.now += max(1, (when - clock.now) // 2)
 
     monkeypatch.setattr(clock, "sleep_until_ns", short)
-    looped(monkeypatch, clock, plan_of(rate=1e3), memory, margin=50_000)
+    looped(monkeypatch, "compiled", clock, plan_of(rate=1e3), memory, margin=50_000)
     assert rows_of(memory)[:, column.TICK].tolist() == list(range(6))
     assert len(clock.slept) > 5 * 4

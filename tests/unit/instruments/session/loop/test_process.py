@@ -9,6 +9,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,7 +22,6 @@ from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.instruments.session.loop.ring import ring_put_all, ring_take
 
 Plans = Callable[..., LoopPlan]
-pytestmark = pytest.mark.skipif(not process.COMPILED_CLOCK, reason="no loop in real time")
 # Called as the worker is: -m MODULE DESCRIPTOR, with the orders on standard input.
 WORKER = f"""#!{sys.executable} -SE
 import mmap, sys, time
@@ -58,12 +58,12 @@ def told(*expected: str) -> Iterator[None]:
         assert str(warning.message).startswith(begins)
 
 
-def test_a_system_without_a_compiled_clock_is_told_so(
+def test_a_system_without_posix_processes_is_told_so(
     plan_of: Plans, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     loop = LoopProcess(plan_of(), priority=None)
-    monkeypatch.setattr(process, "COMPILED_CLOCK", False)
-    with pytest.raises(LoopError, match="64-bit Linux alone"):
+    monkeypatch.setattr(process, "os", SimpleNamespace(name="nt"))
+    with pytest.raises(LoopError, match="shares memory by file descriptor"):
         loop.start()
 
 
@@ -84,7 +84,7 @@ def test_before_it_is_started_it_has_no_process(plan_of: Plans, priority: int | 
 
 def test_host_and_loop_meet_in_their_memory(plan_of: Plans, played: Callable[[str], None]) -> None:
     played(READY + "until_stopped()")
-    with LoopProcess(plan_of(host_timeout=1.0), priority=None) as loop:
+    with LoopProcess(plan_of(host_timeout=1.0), priority=None, compiled_clock=False) as loop:
         with pytest.raises(LoopError, match="was started before"):
             loop.start()
         _, memory = loop._running()
@@ -131,6 +131,7 @@ def test_host_and_loop_meet_in_their_memory(plan_of: Plans, played: Callable[[st
 def test_its_report_says_what_the_loop_wrote(plan_of: Plans, played: Callable[[str], None]) -> None:
     control = {
         shared.REALTIME: 1,
+        shared.PACING: shared.PACING_COMPILED,
         shared.BEAT: 4_000,
         shared.CPU: 1_000,
     }
@@ -145,6 +146,7 @@ def test_its_report_says_what_the_loop_wrote(plan_of: Plans, played: Callable[[s
     ring_put_all(memory.row_counters, memory.rows, np.zeros((shared.ROWS + 4, 14)))
     report = loop.stop()
     assert report.real_time_priority
+    assert report.compiled_clock
     assert not report.memory_locked
     assert report.processor_share == 0.25
     assert (report.dropped_samples, report.dropped_commands, report.dropped_rows) == (2, 3, 4)
@@ -152,14 +154,27 @@ def test_its_report_says_what_the_loop_wrote(plan_of: Plans, played: Callable[[s
 
 
 @pytest.mark.parametrize(
-    ("priority", "expected"), [(7, ["the loop runs without real-time priority"]), (None, [])]
+    ("priority", "compiled_clock", "expected"),
+    [
+        (7, True, ["the loop runs without real-time priority", "the loop is paced by Python"]),
+        (None, True, ["the loop is paced by Python"]),
+        (None, False, []),
+    ],
 )
 def test_what_was_asked_and_not_granted_is_said(
-    plan_of: Plans, played: Callable[[str], None], priority: int | None, expected: list[str]
+    plan_of: Plans,
+    played: Callable[[str], None],
+    priority: int | None,
+    compiled_clock: bool,
+    expected: list[str],
 ) -> None:
-    played(f"{READY}until_stopped()")
-    with told(*expected), LoopProcess(plan_of(), priority=priority) as loop:
+    played(f"words[{shared.PACING}] = {shared.PACING_PORTABLE}\n{READY}until_stopped()")
+    with (
+        told(*expected),
+        LoopProcess(plan_of(), priority=priority, compiled_clock=compiled_clock) as loop,
+    ):
         report = loop.report()
+    assert not report.compiled_clock
     assert report.processor_share == 0.0
 
 
@@ -190,7 +205,7 @@ def test_one_that_dies_in_the_midst_is_noticed_at_the_next_call(
     plan_of: Plans, played: Callable[[str], None]
 ) -> None:
     played(READY + "until_stopped()")
-    loop = LoopProcess(plan_of(), priority=None)
+    loop = LoopProcess(plan_of(), priority=None, compiled_clock=False)
     loop.start()
     loop._running()[0].kill()
     loop._running()[0].wait()

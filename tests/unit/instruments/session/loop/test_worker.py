@@ -27,7 +27,8 @@ PlanOf = Callable[..., LoopPlan]
 # Of no process: whoever has this parent is an orphan.
 NOBODY = 2**22 + 1
 
-pytestmark = pytest.mark.skipif(not clock.COMPILED_CLOCK, reason="no compiled clock")
+needs_compiled_clock = pytest.mark.skipif(not clock.COMPILED_CLOCK, reason="no compiled clock")
+BOTH_CLOCKS = [pytest.param(True, marks=needs_compiled_clock), False]
 
 
 @pytest.fixture(autouse=True)
@@ -54,12 +55,17 @@ def taken(memory: shared.Shared) -> Any:
     return rows[: ring_take(memory.row_counters, memory.rows, rows)]
 
 
-def test_it_ticks_from_the_first_on_until_its_parent_is_gone(plan_of: PlanOf) -> None:
+@pytest.mark.parametrize("compiled", BOTH_CLOCKS)
+def test_it_ticks_from_the_first_on_until_its_parent_is_gone(
+    plan_of: PlanOf, compiled: bool
+) -> None:
     memory = shared.private_views()
     memory.control[shared.EPOCH] = time.monotonic_ns()
-    run_loop(Orders(plan_of(host_timeout=60.0), None, NOBODY), memory)
+    run_loop(Orders(plan_of(host_timeout=60.0), None, NOBODY, compiled), memory)
     control = memory.control
     assert control[shared.PHASE] == shared.PHASE_ENDED
+    pacing = shared.PACING_COMPILED if compiled else shared.PACING_PORTABLE
+    assert control[shared.PACING] == pacing
     rows = taken(memory)
     # Nothing of what was rehearsed is counted.
     assert len(rows) > 0
@@ -68,11 +74,12 @@ def test_it_ticks_from_the_first_on_until_its_parent_is_gone(plan_of: PlanOf) ->
     assert not np.any(rows[:, column.FLAGS].astype(int) & column.HOST_SILENT)
 
 
-def test_a_host_that_says_nothing_is_noticed(plan_of: PlanOf) -> None:
+@pytest.mark.parametrize("compiled", BOTH_CLOCKS)
+def test_a_host_that_says_nothing_is_noticed(plan_of: PlanOf, compiled: bool) -> None:
     memory = shared.private_views()
     memory.control[shared.EPOCH] = time.monotonic_ns()
     # It looks for its parent after 5 ms.
-    run_loop(Orders(plan_of(host_timeout=2e-3), None, NOBODY), memory)
+    run_loop(Orders(plan_of(host_timeout=2e-3), None, NOBODY, compiled), memory)
     assert int(taken(memory)[-1, column.FLAGS]) & column.HOST_SILENT
 
 
@@ -82,7 +89,7 @@ def test_it_goes_no_further_than_ready_without_a_host(
 ) -> None:
     memory = shared.private_views()
     memory.control[shared.STOP] = stop
-    run_loop(Orders(plan_of(), None, parent), memory)
+    run_loop(Orders(plan_of(), None, parent, compiled_clock=False), memory)
     assert memory.control[shared.PHASE] == shared.PHASE_READY
     assert memory.control[shared.NEXT] == 0
 
@@ -100,7 +107,7 @@ def test_it_waits_for_the_host_to_say_when_it_begins(
             memory.control[shared.STOP] = memory.control[shared.EPOCH] = 1
 
     monkeypatch.setattr(time, "sleep", slept)
-    run_loop(Orders(plan_of(), None, parent), memory)
+    run_loop(Orders(plan_of(), None, parent, compiled_clock=False), memory)
     assert waits == [shared.PHASE_READY] * 3
     assert memory.control[shared.PHASE] == shared.PHASE_ENDED
 
@@ -108,7 +115,7 @@ def test_it_waits_for_the_host_to_say_when_it_begins(
 def test_a_stopped_loop_ticks_no_more_and_its_own_parent_is_no_reason(plan_of: PlanOf) -> None:
     memory = shared.private_views()
     memory.control[shared.EPOCH], memory.control[shared.STOP] = time.monotonic_ns(), 1
-    run_loop(Orders(plan_of(), None, os.getppid()), memory)
+    run_loop(Orders(plan_of(), None, os.getppid(), compiled_clock=False), memory)
     assert memory.control[shared.PHASE] == shared.PHASE_ENDED
     assert memory.control[shared.NEXT] == 0
 
@@ -119,7 +126,7 @@ def test_it_says_what_it_was_given(
 ) -> None:
     memory = shared.private_views()
     memory.control[shared.STOP] = 1
-    run_loop(Orders(plan_of(), priority, 0), memory)
+    run_loop(Orders(plan_of(), priority, 0, compiled_clock=False), memory)
     assert memory.control[shared.REALTIME] == given
     assert memory.control[shared.LOCKED] == 1
     # The priority comes last: nothing that takes long is done with it.
@@ -140,8 +147,9 @@ def test_the_clock_gets_times_in_nanoseconds_after_a_rehearsal_elsewhere(
         calls.append((views, *rest))
         phases.append(int(memory.control[shared.PHASE]))
 
+    monkeypatch.setattr(clock, "COMPILED_CLOCK", True)
     monkeypatch.setattr(worker, "compiled_loop", looped)
-    run_loop(Orders(plan_of(host_timeout=30e-3), priority, 7), memory)
+    run_loop(Orders(plan_of(host_timeout=30e-3), priority, 7, compiled_clock=True), memory)
     rehearsal, real = calls
     assert rehearsal[0] is not memory
     assert rehearsal[0].control[shared.STOP] == 1
@@ -149,6 +157,17 @@ def test_the_clock_gets_times_in_nanoseconds_after_a_rehearsal_elsewhere(
     assert real[0] is memory
     assert real[1:] == (margin, 30_000_000, 7)
     assert phases == [shared.PHASE_NEW, shared.PHASE_READY]
+    assert memory.control[shared.PACING] == shared.PACING_COMPILED
+
+
+def test_where_the_clock_cannot_be_compiled_python_paces(
+    plan_of: PlanOf, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(clock, "COMPILED_CLOCK", False)
+    memory = shared.private_views()
+    memory.control[shared.STOP] = 1
+    run_loop(Orders(plan_of(), None, 0, compiled_clock=True), memory)
+    assert memory.control[shared.PACING] == shared.PACING_PORTABLE
 
 
 def test_orders_come_by_standard_input_and_memory_by_its_descriptor(
@@ -158,7 +177,7 @@ def test_orders_come_by_standard_input_and_memory_by_its_descriptor(
     words[shared.STOP] = 1
     file = tmp_path / "memory"
     file.write_bytes(words.tobytes())
-    orders = pickle.dumps(Orders(plan_of(), None, 0))
+    orders = pickle.dumps(Orders(plan_of(), None, 0, compiled_clock=False))
     monkeypatch.setattr(sys, "stdin", SimpleNamespace(buffer=io.BytesIO(orders)))
     before = signal.getsignal(signal.SIGINT)
     try:
@@ -198,3 +217,9 @@ def test_linux_is_asked_to_keep_memory_and_to_wake_on_time(
     assert memory_locked() is not refuses
     # PR_SET_TIMERSLACK of 1 ns; MCL_CURRENT | MCL_ONFAULT.
     assert library.asked == [(29, 1, 0, 0, 0), (5,)]
+
+
+def test_no_other_system_is_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "platform", "darwin")
+    monkeypatch.setattr(ctypes, "CDLL", None)
+    assert memory_locked() is False
