@@ -16,11 +16,13 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.protocol.arm import symbols
 from tests.protocol.builds import SOURCES, STRICT, build, tool
 from tests.protocol.test_firmware_arm import FLOATING
 
+from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.instruments.bench.check import check_device
 from squeezefilm.instruments.bench.conversation import Conversation
@@ -98,6 +100,12 @@ def test_the_board_is_a_program_without_floating_point(image: Path) -> None:
     assert [name for name in names if FLOATING.match(name)] == []
 
 
+def stroke(when: si.SecondArray) -> si.MetreArray:
+    """Where the board's finger is (m) at times of its clock (s): 40 mm to and fro each second."""
+    part = when % 1.0
+    return 0.08 * np.minimum(part, 1.0 - part)
+
+
 @pytest.mark.parametrize(
     "times",
     [pytest.param(1, marks=pytest.mark.slow), pytest.param(3, marks=pytest.mark.nightly)],
@@ -106,7 +114,7 @@ def test_the_device_check_passes_whole_however_often(image: Path, times: int) ->
     """On an idle computer nothing is in doubt; on a busy one what QEMU was held up in may be."""
     for _ in range(times):
         with powered(image, WALL) as talk:
-            check = check_device(talk, 30e3, drive="an emulated board", sensor=FINGER)
+            check = check_device(talk, 30e3, drive="an emulated board", sensor=FINGER, truth=stroke)
         for result in check.results:
             print(f"{result.verdict} {result.name:30} {result.measured} | {result.doubt}")
         assert check.passed

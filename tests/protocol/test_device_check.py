@@ -12,13 +12,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import DeviceError
 from squeezefilm.instruments.bench import loop_check
 from squeezefilm.instruments.bench.check import check_device
 from squeezefilm.instruments.bench.check_result import DeviceCheck
 from squeezefilm.instruments.bench.conversation import Conversation
 from squeezefilm.instruments.bench.loop_check import loop_result
-from squeezefilm.instruments.bench.reading_check import reading_checks
+from squeezefilm.instruments.bench.reading_check import DELAY_WITHIN, reading_checks
 from squeezefilm.instruments.device.machine import device
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.playing import Finger
@@ -97,6 +98,10 @@ class Sensor:
 BELIEVED = SensorModel("the test's", 500.0, 1e-3, quantisation=1e-6)
 
 
+def truth(when: si.SecondArray) -> si.MetreArray:
+    return np.array([finger(now)[0] for now in when])
+
+
 def with_sensor(kind: type[Machine] = Machine, **sensor: float) -> Machine:
     shows = Sensor(**sensor)  # type: ignore[arg-type]
     machine = kind(sensor=shows, pickup=lambda: 5)
@@ -109,7 +114,7 @@ def checked(
 ) -> DeviceCheck:
     wire = Bench(machine or with_sensor(), **bench)  # type: ignore[arg-type]
     talk = Conversation(wire, wire.clock, wire.wait, waited and (lambda: waited(wire)))
-    return check_device(talk, FREQUENCY, drive="test", sensor=BELIEVED)
+    return check_device(talk, FREQUENCY, drive="test", sensor=BELIEVED, truth=truth)
 
 
 def failed(check: DeviceCheck) -> set[str]:
@@ -129,6 +134,8 @@ def test_a_good_device_passes_every_check() -> None:
     said = {result.name: result.measured for result in check.results}
     assert "ms after the last frame" in said["watchdog"]
     assert said["sensor rate"].startswith("500 Hz; ")
+    # A millisecond, and half a sample of 2 ms.
+    assert float(said["sensor delay"].split()[0]) == pytest.approx(2.0, abs=200 * DELAY_WITHIN)
     assert (
         "0.5 V while it is touched; zero 0 ms after it was not, seen 3 times"
         in (said["sensor silence"])
@@ -272,6 +279,7 @@ class PlaysOn(Machine):
     ("machine", "name", "measured"),
     [
         (with_sensor(rate=240.0), "sensor rate", "240"),
+        (with_sensor(late=3e-3), "sensor delay", "4 ms behind"),
         (with_sensor(PlaysOn), "sensor silence", "zero 19"),
         # It hangs while it is touched, 2.3 s after the start: some 0.7 s of what is watched.
         (with_sensor(dead=2.3), "sensor silence", "touched and still for"),

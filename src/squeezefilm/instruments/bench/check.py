@@ -50,6 +50,7 @@ def check_device(
     window: tuple[si.Hertz, si.Hertz] | None = None,
     sensor: SensorModel = LVDT_10_KHZ,
     watch: si.Second = WATCHED,
+    truth: Callable[[si.SecondArray], si.MetreArray] | None = None,
     loop: Callable[[], CheckResult] | None = None,
     progress: Callable[[str], None] | None = None,
 ) -> DeviceCheck:
@@ -60,8 +61,8 @@ def check_device(
         frequency: a carrier that its plate may be driven with (Hz).
         drive: what to call it.
         window: frequencies that the limits allow (Hz); 1 % around the frequency without one.
-        sensor, watch: what a session believes of its position sensor, and for how long that is
-            watched (s).
+        sensor, watch, truth: what a session believes of its position sensor, for how long that is
+            watched (s), and where the finger is (`sensor_checks`).
         loop: checks this computer's loop; left out without it.
         progress: is told each step.
 
@@ -88,7 +89,9 @@ def check_device(
             tell("its sensor: stroke it, and lift the finger, again and again")
             results += _undisturbed(
                 talk,
-                lambda: sensor_checks(talk, frequency, 0.5 * TEST_VOLTAGE, sensor, duration=watch),
+                lambda: sensor_checks(
+                    talk, frequency, 0.5 * TEST_VOLTAGE, sensor, duration=watch, truth=truth
+                ),
             )
     if loop is not None:
         tell("the loop of this computer")

@@ -19,9 +19,11 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.config.write import text_of
-from squeezefilm.core.errors import InputError
+from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.core.formats.traces import table_from_csv
+from squeezefilm.core.hard_limits import TABLE_BYTES
 from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.regular_file import read_regular_text
 from squeezefilm.core.results import Result, stamp
 from squeezefilm.instruments.bench.check import WATCHED, check_device
 from squeezefilm.instruments.bench.check_result import DeviceCheck
@@ -35,6 +37,7 @@ from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.play.plan import PlayView
 from squeezefilm.instruments.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.instruments.session.record.trace import read_trace
+from squeezefilm.instruments.twin.plant_kernel import COLUMNS
 from squeezefilm.instruments.twin.pty_server import running_twin
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.chain.played_texture import FingerMotion, require_on_display
@@ -55,6 +58,7 @@ _REPLAY_PERIOD: si.Second = 1e-3
 _LIFT: si.Second = 0.2
 _STROKED: si.Second = 6.0
 """For which a person strokes a real device's sensor."""
+_TRUTH_LIMIT: si.Second = 5.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -242,7 +246,7 @@ def check_drive(
     """Check a device, or a twin of a display, and this computer's loop at a rate (Hz).
 
     `sensor` is what its own is like (or the twin's is to be), as of `play_texture`. A twin's hand
-    lifts its finger between strokes.
+    lifts its finger between strokes, and its truth says where that is.
 
     Raises:
         InputError: a drive, display or sensor that cannot be used.
@@ -257,7 +261,10 @@ def check_drive(
     eyes, twin = LVDT_10_KHZ if sensor == "device" else sensor_named(sensor), drive == "twin"
     settings = TwinSettings(sensor=eyes)
     with (
-        device_stream(drive, target, settings, STROKE, None, strict=True, lift=_LIFT) as name,
+        tempfile.TemporaryDirectory() as folder,
+        device_stream(
+            drive, target, settings, STROKE, Path(folder) / TRUTH_NAME, strict=True, lift=_LIFT
+        ) as name,
         contextlib.closing(open_stream(name)) as stream,
     ):
         here = twin or Path(drive.removeprefix("serial:")).resolve().is_relative_to("/dev/pts")
@@ -268,9 +275,32 @@ def check_drive(
             window=(limits.lowest_frequency, limits.highest_frequency),
             sensor=eyes,
             watch=WATCHED if twin else _STROKED,
+            truth=_Truth(Path(folder) / TRUTH_NAME).place if twin else None,
             loop=lambda: check_loop(rate),
             progress=tell,
         )
+
+
+@dataclass(frozen=True, slots=True)
+class _Truth:
+    """A running twin's truth, which it writes in blocks of seconds."""
+
+    file: Path
+
+    def place(self, when: si.SecondArray) -> si.MetreArray:
+        """Places of the finger (m) at times of the twin (s); waits for them to be written."""
+        end = time.monotonic() + _TRUTH_LIMIT
+        while True:
+            text = read_regular_text(self.file, TABLE_BYTES, "the twin's truth")
+            lines = text[: text.rfind("\n")].splitlines()[1:]
+            rows = np.array([line.split(",") for line in lines], dtype=float, ndmin=2)
+            late = time.monotonic() > end
+            if late and not lines:
+                raise DeviceError("the twin did not write where its finger was; check it again")
+            if lines and (late or rows[-1, 0] >= when.max()):
+                place: si.MetreArray = np.interp(when, rows[:, 0], rows[:, COLUMNS.index("x_m")])
+                return place
+            time.sleep(0.1)
 
 
 @contextlib.contextmanager

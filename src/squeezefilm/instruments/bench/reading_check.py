@@ -1,9 +1,10 @@
-"""Checks of what a device reads: how often and on which clock, and of its position sensor's rate
-and silence."""
+"""Checks of what a device reads: how often and on which clock, and of its position sensor's rate,
+delay and silence."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,15 +14,19 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import STOP_RAMP
 from squeezefilm.instruments.bench.check_result import CheckResult, in_ms, judged
 from squeezefilm.instruments.bench.conversation import KEEP_ALIVE, Conversation
+from squeezefilm.instruments.bench.resonance_sweep import peak
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.session.play.plan import REPORT_PERIOD
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import SensorModel
 
+DELAY_WITHIN: si.Second = 1e-3
+"""By how much a sensor's delay may differ from what a session believes: 0.08 mm at 80 mm/s."""
 _RATE_WITHIN = 0.05
 _LEAST_WAY: si.Metre = 5e-3
 _SPEED_OVER: si.Second = 50e-3
+_DELAYS: si.FloatArray = np.arange(-20e-3, 150e-3, 0.5e-3)
 
 
 def reading_checks(talk: Conversation, duration: si.Second = 0.5) -> list[CheckResult]:
@@ -108,8 +113,9 @@ def sensor_checks(
     sensor: SensorModel,
     *,
     duration: si.Second,
+    truth: Callable[[si.SecondArray], si.MetreArray] | None = None,
 ) -> list[CheckResult]:
-    """Rate and silence of a device's position sensor that is stroked, and lifted, meanwhile.
+    """Rate, delay and silence of a device's position sensor that is stroked, and lifted, meanwhile.
 
     Args:
         talk: the conversation, with a device that is OFF.
@@ -117,6 +123,8 @@ def sensor_checks(
         volts: played wherever the sensor is touched (V).
         sensor: what a session believes of it.
         duration: for which it is watched (s).
+        truth: where the finger was (m) at times of the device's clock (s); None where nobody
+            knows, and then neither is the delay.
     """
     seen = _watched(talk, frequency, volts, duration)
     if seen is None or np.ptp(seen.place[seen.touched]) < _LEAST_WAY:
@@ -127,11 +135,12 @@ def sensor_checks(
                 "nothing moved",
                 f"{1e3 * _LEAST_WAY:g} mm of way and more",
                 "stroke the sensor with a finger during the check",
-                doubt="a sensor that is not stroked shows no rate",
+                doubt="a sensor that is not stroked shows neither rate nor delay",
             )
         ]
     here = talk.waited is not None
-    return [_rate(seen, sensor, here=here), _silence(seen, sensor, here=here)]
+    results = [_rate(seen, sensor, here=here), _silence(seen, sensor, here=here)]
+    return results if truth is None else [*results, _delay(seen, sensor, truth)]
 
 
 def _watched(
@@ -210,3 +219,25 @@ def _silence(seen: _Watched, sensor: SensorModel, *, here: bool) -> CheckResult:
         why = "the finger was not lifted meanwhile, so that silence was not seen; lift it"
         return CheckResult(result.name, False, result.measured, result.allowed, why, doubt=why)
     return result
+
+
+def _delay(
+    seen: _Watched, sensor: SensorModel, truth: Callable[[si.SecondArray], si.MetreArray]
+) -> CheckResult:
+    """Delay of the places shown behind the true ones: the shift of least squares."""
+    when, place = seen.time[seen.moved], seen.place[seen.moved]
+    times = np.arange(when[0] - _DELAYS[-1], when[-1] - _DELAYS[0] + 1e-3, 1e-3)
+    true = truth(times)
+    apart = [
+        float(np.mean((place - np.interp(when - delay, times, true)) ** 2)) for delay in _DELAYS
+    ]
+    delay, _ = peak(_DELAYS, -np.array(apart))
+    # What is shown is on average half a sample older than when it came.
+    wanted = sensor.latency + 0.5 / sensor.rate
+    return judged(
+        "sensor delay",
+        abs(delay - wanted) <= DELAY_WITHIN,
+        f"{in_ms(delay)} behind the finger",
+        f"{in_ms(wanted)} within {in_ms(DELAY_WITHIN)}: latency and half a sample of {sensor.name}",
+        "name the sensor that there is (--sensor), or look at what holds its places back",
+    )

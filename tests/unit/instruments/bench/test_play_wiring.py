@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.core.errors import InputError
+from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.bench import play as module
 from squeezefilm.instruments.bench.play import JUDGING, PlayResult, device_stream, play_texture
 from squeezefilm.instruments.session.play.plan import Ending
@@ -253,6 +253,52 @@ def test_a_folder_that_cannot_be_made_is_said(bench: Bench, tmp_path: Path) -> N
     assert bench.runs == []
 
 
+def test_a_twin_that_wrote_no_truth_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "_TRUTH_LIMIT", 0.0)
+    (tmp_path / "truth.csv").write_text("time_s,x_m\n0.0")
+    with pytest.raises(DeviceError, match="did not write where its finger was"):
+        module._Truth(tmp_path / "truth.csv").place(np.array([0.1]))
+
+
+def test_a_twins_truth_is_waited_for_until_it_reaches_the_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "truth.csv"
+    columns = module.COLUMNS
+    head = ",".join(columns) + "\n"
+
+    def row(time: float) -> str:
+        cells = dict.fromkeys(columns, "0") | {columns[0]: f"{time}", "x_m": f"{0.01 * time}"}
+        return ",".join(cells[name] for name in columns) + "\n"
+
+    clock, slept = 0.0, 0
+
+    def sleep(_: float) -> None:
+        nonlocal slept
+        slept += 1
+        # What is written last is half a line.
+        more = "".join(row(time) for time in np.arange(slept + 1.0))
+        file.write_text(head + more + "9,9")
+
+    file.write_text(head)
+    monkeypatch.setattr(module.time, "sleep", sleep)
+    monkeypatch.setattr(module.time, "monotonic", lambda: clock)
+    place = module._Truth(file).place(np.array([0.5, 2.25]))
+    assert place == pytest.approx([5e-3, 22.5e-3])
+    assert slept == 3
+    # One that comes to an end before is told as far as it goes; one that never begins is no truth.
+    monkeypatch.setattr(module.time, "sleep", lambda _: None)
+    times = iter([0.0, module._TRUTH_LIMIT + 1.0])
+    monkeypatch.setattr(module.time, "monotonic", lambda: next(times))
+    assert module._Truth(file).place(np.array([1.0, 77.0])) == pytest.approx([0.01, 0.03])
+    file.write_text(head)
+    times = iter([0.0, module._TRUTH_LIMIT + 1.0])
+    with pytest.raises(DeviceError, match="did not write where its finger was"):
+        module._Truth(file).place(np.array([1.0]))
+
+
 @pytest.mark.parametrize(
     ("drive", "sensor", "excused"),
     [
@@ -294,6 +340,7 @@ def test_a_check_knows_the_drives_limits_eyes_and_whether_it_waits_here(
     assert how["sensor"] == eyes
     limits = load_display(DISPLAY).limits(33e3, twin=twin)
     assert how["window"] == (limits.lowest_frequency, limits.highest_frequency)
+    assert (how["truth"] is not None) is twin
     assert how["watch"] == (module.WATCHED if twin else module._STROKED)
     assert how["loop"]() == ("the loop at", 4e3)
     assert told == ["the display's resonance"]
