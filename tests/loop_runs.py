@@ -12,10 +12,10 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import shared
-from squeezefilm.instruments.session.loop.lateness import Lateness, lateness_of
+from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.pacing import due_ns, make_due_tick
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.instruments.session.loop.process import sample_block
+from squeezefilm.instruments.session.loop.process import lateness_in, sample_block
 from squeezefilm.instruments.session.loop.ring import ring_put, ring_take
 from squeezefilm.instruments.session.loop.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUMNS
 from squeezefilm.instruments.session.loop.shared import private_views
@@ -63,16 +63,13 @@ class SimulatedRun:
         plan: the input.
         rows: one per tick made, shape (made, 14), see `rows.COLUMNS`.
         commands: one per tick made, shape (made, 4), see `rows.COMMAND_COLUMNS`.
+        lateness: of the ticks, by the delays given.
     """
 
     plan: LoopPlan
     rows: si.FloatArray
     commands: si.FloatArray
-
-    @property
-    def lateness(self) -> Lateness:
-        """Lateness of the ticks, by the delays given."""
-        return lateness_of(self.rows, self.plan.period)
+    lateness: Lateness
 
 
 def run_ticks(
@@ -98,7 +95,7 @@ def run_ticks(
     rows = np.empty((ticks, len(COLUMNS)))
     commands = np.empty((ticks, len(COMMAND_COLUMNS)))
     made = _march(arrays, memory, block, times, late, ticks, rows, commands)
-    return SimulatedRun(plan, rows[:made], commands[:made])
+    return SimulatedRun(plan, rows[:made], commands[:made], lateness_in(plan, memory))
 
 
 def stream_samples(stream: SensorStream, y: si.MetreArray | float = 0.0) -> si.FloatArray:

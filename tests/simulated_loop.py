@@ -8,9 +8,10 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import shared
+from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.pacing import due_ns, make_due_tick
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.instruments.session.loop.process import sample_block
+from squeezefilm.instruments.session.loop.process import lateness_in, sample_block
 from squeezefilm.instruments.session.loop.ring import ring_put_all, taken
 from squeezefilm.instruments.session.loop.rows import MUTED
 from squeezefilm.instruments.session.loop.shared import private_views
@@ -81,3 +82,8 @@ class SimulatedLoop:
     def take_rows(self) -> si.FloatArray:
         """The rows made since the last call, shape (n, 14) as in `COLUMNS`."""
         return taken(self._memory.row_counters, self._memory.rows)
+
+    @property
+    def lateness(self) -> Lateness:
+        """Lateness of the ticks so far."""
+        return lateness_in(self.plan, self._memory)

@@ -109,6 +109,7 @@ def virtual_play(
         player = Player(plan, loop, DeviceHost(link), writer, clock)
         ending, message = played(player, clock, lambda: stream.wait(step), duration)
         player.end(ending, stream.wait, message)
+        writer.event("loop", {"lateness": loop.lateness.to_json()})
         writer.event("link", to_json(link.statistics))
         verdict = player.judge()
         return PlayOutcome(ending, message, trace, writer.acknowledged, usability=verdict)

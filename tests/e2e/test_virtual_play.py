@@ -113,7 +113,7 @@ def test_a_grating_is_felt_where_it_is(
     assert session.last("end")["device_at_zero"]
     assert session.last("link")["lost"] == 0
     assert session.last("link")["refused"] == 0
-    assert session.lateness.lost == 0
+    assert session.last("loop")["lateness"]["lost"] == 0
     assert session.by_truth is not None
     for judged in (session.by_record, session.by_truth):
         found = judged.fidelity

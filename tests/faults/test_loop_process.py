@@ -18,7 +18,7 @@ import pytest
 from squeezefilm.core.errors import InputError, LoopError, SqueezefilmWarning
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.lateness import lateness_of
+from squeezefilm.instruments.session.loop.pacing import MARGIN
 from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.instruments.session.loop.ring import ring_waiting
@@ -76,9 +76,14 @@ def test_a_loop_runs_in_its_own_process_and_reports() -> None:
     assert np.all(np.diff(numbers) >= 1)
     np.testing.assert_array_equal(rows[:, column.TIME], numbers * PLAN.period)
     assert np.all(rows[:, column.LATENESS] < 1 / RATE)
+    # Every tick that was due up to the last is accounted for.
+    late = report.lateness
+    assert late.made + late.lost >= numbers[-1] + 1
+    assert late.made >= len(rows)
     assert np.any(rows[:, column.VOLTAGE] > 0)
     assert not report.real_time_priority
-    assert report.dropped_rows == report.dropped_samples == 0
+    assert report.refused_commands == report.dropped_rows == report.dropped_samples == 0
+    assert report.spin_share == 0.0
     assert loop.stop() is report
     loop.check()
 
@@ -90,6 +95,7 @@ def test_paced_by_python_it_is_the_same_loop_and_says_so() -> None:
         report = loop.stop()
     assert not report.compiled_clock
     assert np.all(np.diff(rows[:, column.TICK]) >= 1)
+    assert report.spin_share == 0.0
 
 
 @pytest.mark.slow
@@ -133,7 +139,7 @@ def test_a_stopped_loop_loses_ticks_and_goes_on_without_a_burst() -> None:
         assert loop.silence > 0.9
         os.kill(worker, signal.SIGCONT)
         rows = np.concatenate([before, _ticked(loop, 200)])
-        loop.stop()
+        report = loop.stop()
     numbers = rows[:, column.TICK]
     gaps = np.diff(numbers)
     assert gaps.max() >= 0.9 * RATE
@@ -142,7 +148,8 @@ def test_a_stopped_loop_loses_ticks_and_goes_on_without_a_burst() -> None:
     # No tick is made twice or made up for: each one is the latest due.
     assert np.all(gaps >= 1)
     assert np.all(rows[:, column.LATENESS] < 1 / RATE)
-    assert lateness_of(rows, PLAN.period).longest >= 0.9
+    assert report.lateness.lost >= gaps.max() - 1
+    assert report.lateness.longest >= 0.9
 
 
 def test_a_killed_loop_is_noticed_and_what_it_wrote_is_kept() -> None:
@@ -160,7 +167,7 @@ def test_a_killed_loop_is_noticed_and_what_it_wrote_is_kept() -> None:
     rows = loop.take_rows()
     assert len(rows) >= 10
     assert np.all(np.diff(rows[:, column.TICK]) >= 1)
-    loop.stop()
+    assert loop.stop().lateness.made >= len(rows)
 
 
 HOST = """
@@ -229,6 +236,7 @@ def test_where_priority_is_granted_nothing_is_said_and_elsewhere_it_is() -> None
         warnings.simplefilter("always")
         with LoopProcess(PLAN) as loop:
             report = loop.stop()
+    assert 0 <= report.spin_share <= MARGIN * RATE * 1.01
     kinds = [one.category for one in caught]
     assert kinds == ([] if report.real_time_priority else [SqueezefilmWarning])
 

@@ -17,6 +17,7 @@ from tests.loop_runs import SimulatedRun, run_ticks, stream_samples
 from tests.simulated_loop import SimulatedLoop
 
 from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.loop.lateness import CLASSES, lateness_class
 from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
@@ -187,6 +188,10 @@ def test_delays_are_counted_exactly() -> None:
     lateness = run.lateness
     assert (lateness.made, lateness.lost) == (7, 3)
     assert lateness.longest == pytest.approx(2.5e-3, abs=1e-9)
+    expected = np.zeros(CLASSES, dtype=int)
+    for late in (0.0, 0.3e6, 0.5e6, 0.0, 0.0, 0.0, 0.0):
+        expected[lateness_class(late)] += 1
+    assert lateness.counts.tolist() == expected.tolist()
 
 
 def test_after_a_stop_of_a_second_one_tick_is_made_and_no_burst() -> None:
@@ -208,6 +213,7 @@ def test_random_delays_never_lose_or_double_a_tick() -> None:
         ticks = run.rows[:, column.TICK]
         assert np.all(np.diff(ticks) >= 1)
         assert ticks[-1] == 19_999
+        assert run.lateness.made == ticks.size
         assert run.lateness.made + run.lateness.lost == 20_000
         assert np.all(
             (run.rows[:, column.LATENESS] >= 0) & (run.rows[:, column.LATENESS] < 1 / rate)

@@ -11,7 +11,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.instruments.bench.check_result import CheckResult
-from squeezefilm.instruments.session.loop.lateness import Lateness, lateness_of
+from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
@@ -29,7 +29,7 @@ def check_loop(rate: si.Hertz, duration: si.Second = LOOP_SECONDS) -> CheckResul
     """Run a loop at a rate (Hz) for some seconds, nothing played, and judge it."""
     before = stolen_time()
     lateness = loop_lateness(rate, duration)
-    return loop_result(lateness, rate, stolen_time() - before)
+    return loop_result(lateness, stolen_time() - before)
 
 
 def loop_lateness(rate: si.Hertz, duration: si.Second) -> Lateness:
@@ -43,15 +43,15 @@ def loop_lateness(rate: si.Hertz, duration: si.Second) -> Lateness:
         estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
     )
     with LoopProcess(plan) as loop:
-        end, rows = time.monotonic() + duration, []
+        end = time.monotonic() + duration
         while time.monotonic() < end:
             moment = loop.time
             x = 0.06 * (moment % 1.0)
             loop.feed(np.array([[moment, x, 0.0, 1.0, np.nan, np.nan]]))
             loop.take_commands()
-            rows.append(loop.take_rows())
+            loop.take_rows()
             time.sleep(1e-3)
-    return lateness_of(np.concatenate([*rows, loop.take_rows()]), plan.period)
+    return loop.report().lateness
 
 
 def stolen_time() -> si.Second:
@@ -76,8 +76,8 @@ def waited_time() -> si.Second:
     return stolen_time()
 
 
-def loop_result(lateness: Lateness, rate: si.Hertz, stolen: si.Second) -> CheckResult:
-    """Judge a loop at a rate (Hz) by its ticks; `stolen` (s) is what its host took meanwhile.
+def loop_result(lateness: Lateness, stolen: si.Second) -> CheckResult:
+    """Judge a loop by its ticks; `stolen` (s) is what the computer's host took meanwhile.
 
     Ticks that were lost are lost, whoever was to blame; where it may have been the host, that is
     said, since nothing on this computer would help then.
@@ -85,12 +85,12 @@ def loop_result(lateness: Lateness, rate: si.Hertz, stolen: si.Second) -> CheckR
     passed = lateness.share_made >= LEAST_MADE
     measured = (
         f"{100 * lateness.share_made:.2f} % of {lateness.made + lateness.lost} ticks at "
-        f"{rate:g} Hz; late {1e6 * lateness.p50:.3g} µs median, "
+        f"{lateness.rate:g} Hz; late {1e6 * lateness.p50:.3g} µs median, "
         f"{1e6 * lateness.p99:.3g} µs at 99 %"
     )
     if stolen > 0:
         measured += f"; its host took {1e3 * stolen:.0f} ms from this virtual computer meanwhile"
-    missing = (LEAST_MADE - lateness.share_made) * (lateness.made + lateness.lost) / rate
+    missing = (LEAST_MADE - lateness.share_made) * (lateness.made + lateness.lost) / lateness.rate
     advice = (
         "the host of this virtual computer may have lost them; play on a computer of one's own"
         if stolen >= missing

@@ -21,7 +21,6 @@ from squeezefilm.core.formats.traces import table_from_csv
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.instruments.bench.setup import PlaySetup
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.lateness import Lateness, lateness_of
 from squeezefilm.instruments.session.play.plan import PlayPlan
 from squeezefilm.instruments.session.record.trace import Trace
 from squeezefilm.physics.chain.played_texture import single_period
@@ -102,11 +101,6 @@ class PlayedSession(Result):
         itself) or "link" (what it counted); empty where there was none."""
         return _last(self.trace, kind)
 
-    @property
-    def lateness(self) -> Lateness:
-        """Lateness of the loop's ticks, by the record."""
-        return lateness_of(self.trace.rows, self.setup.plan.loop.period)
-
     def summary(self) -> dict[str, Any]:
         """Mapping of plain JSON values, which summary.json holds; keys carry units."""
         p, plan = self.setup.prediction, self.setup.plan
@@ -129,7 +123,7 @@ class PlayedSession(Result):
             "sensor": to_json(self.setup.sensor),
             "rows": len(self.trace.rows),
             "end": to_json(dict(self.last("end"))),
-            "loop": to_json({**self.last("loop"), "lateness": self.lateness}),
+            "loop": to_json(dict(self.last("loop"))),
             "link": to_json(dict(self.last("link"))),
             "usability": to_json(dict(self.last("usability"))),
             "lag": to_json(self.lag),

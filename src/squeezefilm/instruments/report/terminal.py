@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from squeezefilm.instruments.bench.check_result import DeviceCheck
     from squeezefilm.instruments.bench.play import PlayResult
     from squeezefilm.instruments.bench.played_session import Judged, PlayedSession
-    from squeezefilm.instruments.session.loop.lateness import Lateness
     from squeezefilm.instruments.session.play.plan import PlayView
     from squeezefilm.instruments.session.record.trace import TraceExport
 
@@ -129,7 +128,7 @@ def play_rows(result: PlayResult) -> list[tuple[str, str, str]]:
     if session.lag is not None:
         far = f"from newest sample to its command at the plate; {1e3 * session.lag.p99:.2f} mm"
         rows.append(("Way predicted", f"{1e3 * session.lag.median:.2f} mm", f"{far} at 99 %"))
-    rows += _loop_rows(session.lateness, session.last("loop")) + _link_rows(session)
+    rows += _loop_rows(session.last("loop")) + _link_rows(session)
     return rows
 
 
@@ -159,17 +158,18 @@ def _judged_rows(who: str, judged: Judged) -> list[tuple[str, str, str]]:
     return rows + lag_rows(fidelity, f"{who}: lag")
 
 
-def _loop_rows(late: Lateness, loop: Mapping[str, Any]) -> list[tuple[str, str, str]]:
-    due = late.made + late.lost
-    if not late.made:
+def _loop_rows(loop: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+    late = loop.get("lateness")
+    if not late:
         return [("Loop", "–", "it could not say how late it was")]
+    due = late["made"] + late["lost"]
     rows = [
         (
             "Ticks lost",
-            f"{100 * late.lost / due:.3f} %",
-            f"{late.lost} of {due}; late {shown(late.p50, S, 3)} median, "
-            f"{shown(late.p99, S, 3)} at 99 %, {shown(late.p99_9, S, 3)} at 99.9 %, "
-            f"{shown(late.longest, S, 3)} at most",
+            f"{100 * late['lost'] / max(due, 1):.3f} %",
+            f"{late['lost']} of {due}; late {_micro(late['p50_s'])} median, "
+            f"{_micro(late['p99_s'])} at 99 %, {_micro(late['p99_9_s'])} at 99.9 %, "
+            f"{_micro(late['longest_s'])} at most",
         )
     ]
     if "real_time_priority" in loop:

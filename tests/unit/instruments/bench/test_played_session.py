@@ -384,11 +384,11 @@ def test_a_summary_says_what_was_to_be_played_and_what_became_of_it(
         "voltage_V": 15.0, "frequency_Hz": 40e3, "rate_Hz": 1e3, "compensation": "none",
         "output_delay_s": 0.0, "largest_amplitude_m": pytest.approx(1e-6),
         "envelope_time_constant_s": 0.5e-3, "limits": {"voltage_V": 20.0},
-        "assumed_limits": ["slew"], "sensor": {"name": "LVDT"}, "rows": 20, "link": {},
+        "assumed_limits": ["slew"], "sensor": {"name": "LVDT"}, "rows": 20, "loop": {}, "link": {},
         "lag": None, "position_error_m": None, "flags": {}, "device": [], "by_truth": None,
         "damage": [], "provenance": {"display": "one"}, "warnings": ["careful"],
         "end": {"why": "over", "faded_at_s": None}, "tile": None,
     }  # fmt: skip
     assert {key: found[key] for key in expected} == expected
-    assert set(found) - set(expected) == {"by_record", "usability", "loop"}
+    assert set(found) - set(expected) == {"by_record", "usability"}
     assert found["by_record"]["not_judged_because"]

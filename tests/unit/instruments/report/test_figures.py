@@ -1,4 +1,4 @@
-"""Figures of a session: the pass in the middle, commands at their time."""
+"""Figures of a session: the pass in the middle, commands at their time, lateness as counted."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from tests.unit.drawn import labelled, words
 
 from squeezefilm.core.kit.style import BLUE, GREEN, ORANGE
 from squeezefilm.instruments.bench.played_session import PlayedWay
-from squeezefilm.instruments.report.figures import amplitude, friction
+from squeezefilm.instruments.report.figures import amplitude, friction, lateness
 from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness, lateness_class
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 
@@ -163,3 +164,70 @@ def test_the_amplitude_is_drawn_over_a_quarter_of_a_second_in_the_middle() -> No
     )
     alone = amplitude(session(by_truth=None)).axes[0]
     assert list(labelled(alone)) == ["commanded, at its time", "in the record"]
+
+
+def late(lost: int, classes: dict[float, int], rate: float = 1e3) -> Any:
+    counts = np.zeros(CLASSES, dtype=np.int64)
+    for seconds, count in classes.items():
+        counts[lateness_class(1e9 * seconds)] += count
+    found = Lateness(rate, int(counts.sum()), lost, 1.0, counts)
+    return lambda: {"lateness": found.to_json()}
+
+
+def test_lateness_is_drawn_as_it_was_counted() -> None:
+    figure = lateness(session(loop=late(10, {1.05e-5: 600, 1.05e-4: 390})))
+    left, right = figure.axes
+    (stairs,) = left.patches
+    values, edges, _ = stairs.get_data()
+    for micro, count in ((10.5, 600), (105.0, 390)):
+        (number,) = np.flatnonzero(values == count)
+        assert edges[number] <= micro < edges[number + 1]
+    assert values.sum() == 990
+    # Twenty classes a decade; the first is as wide as the next.
+    assert np.diff(np.log10(edges)) == pytest.approx(0.05)
+    assert edges[1] == pytest.approx(0.1)
+    (period,) = left.get_lines()
+    assert period.get_xdata() == pytest.approx([1000, 1000])
+    low, high = left.get_xlim()
+    # Two classes below the first that was counted, up to two periods.
+    assert low == pytest.approx(10 * 10**-0.1)
+    assert high == pytest.approx(2000)
+    assert left.get_ylim()[0] == 0.7
+    assert (left.get_xscale(), left.get_yscale()) == ("log", "log")
+    assert (left.get_xlabel(), left.get_ylabel()) == ("lateness (µs)", "ticks")
+    assert left.xaxis.get_major_formatter()(10) == "10"
+    assert left.yaxis.get_major_formatter()(100) == "100"
+    assert [one.get_text() for one in left.get_legend().get_texts()] == ["a period"]
+    assert words(figure.get_suptitle()) == (
+        "1 % of 1000 ticks were lost; half are made within 11 µs, 99.9 % within 0.11 ms"
+    )
+    assert words(figure.get_supxlabel()) == (
+        "Model: loop at 1 kHz; a tick is lost when the next is due before it began"
+    )
+    bars = right.containers[0].datavalues
+    # 801 ways from 0 to 0.6 mm; the hundred unknown ones are in no bar.
+    assert (len(bars), bars.sum()) == (60, 801)
+    edges = [one.get_x() for one in right.patches]
+    assert (edges[0], edges[-1]) == pytest.approx((0, 0.59), abs=1e-12)
+    assert (right.get_xlabel(), right.get_ylabel()) == (
+        "way from sample to its command (mm)", "ticks",
+    )  # fmt: skip
+
+
+def test_no_tick_lost_and_no_lag_known() -> None:
+    rows = np.full((9, 14), np.nan)
+    found = session(loop=late(0, {5e-8: 3, 4e-3: 1}), trace=SimpleNamespace(rows=rows))
+    figure = lateness(found)
+    left, right = figure.axes
+    assert words(figure.get_suptitle()).startswith("None of 4 ticks was lost; half are made within")
+    # What is later than two periods stays in sight, with half as much again.
+    end = 10 ** (math.ceil(20 * math.log10(4000)) / 20)
+    assert left.get_xlim() == pytest.approx((0.1 * 10**-0.05, 1.5 * end))
+    assert not right.containers
+
+
+@pytest.mark.parametrize("said", [dict, late(7, {})])
+def test_a_loop_without_a_tick_is_a_message(said: Any) -> None:
+    figure = lateness(session(loop=said))
+    assert figure.get_suptitle() == "The loop could not say how late it was"
+    assert [one.get_text() for one in figure.axes[0].texts] == ["It made no tick."]

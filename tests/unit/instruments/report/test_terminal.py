@@ -22,7 +22,6 @@ from squeezefilm.instruments.report.terminal import (
     show_play,
     view_line,
 )
-from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.play.held import HeldState
 from squeezefilm.instruments.session.play.plan import PlayView
 from squeezefilm.instruments.session.play.usability import Usability
@@ -111,7 +110,9 @@ def test_checks_are_listed_with_what_was_measured_and_allowed() -> None:
     ]  # fmt: skip
 
 
-LATE = Lateness(990, 10, 2e-3, 20e-6, 80e-6, 0.3e-3)
+LATE = {
+    "made": 990, "lost": 10, "p50_s": 20e-6, "p99_s": 80e-6, "p99_9_s": 300e-6, "longest_s": 2e-3,
+}  # fmt: skip
 
 
 def judged(lag: float = 0.25e-3, **changes: Any) -> Any:
@@ -145,7 +146,7 @@ def played(**changes: Any) -> Any:
         ),
         "trace": SimpleNamespace(rows=rows, damage=SimpleNamespace(sentences=())),
         "by_record": judged(), "by_truth": None, "position_error": None, "lag": None,
-        "loop": dict, "lateness": LATE, "link": lambda: {}, "end": lambda: {},
+        "loop": lambda: {"lateness": LATE}, "link": lambda: {}, "end": lambda: {},
         "flags": {}, "device_events": (),
     }  # fmt: skip
     known = {**values, **changes}
@@ -208,9 +209,7 @@ def test_a_session_is_told_line_by_line() -> None:
 def test_what_a_session_does_not_know_is_a_dash() -> None:
     by_record = SimpleNamespace(way=None, fidelity=None, unjudged="it stood still")
     empty = SimpleNamespace(rows=np.zeros((0, 4)))
-    found = play_rows(
-        result(by_record=by_record, trace=empty, lateness=Lateness(0, 0), link=lambda: {"sent": 9})
-    )
+    found = play_rows(result(by_record=by_record, trace=empty, loop=dict, link=lambda: {"sent": 9}))
     assert [row[:2] for row in found] == [
         ("Ended", "completed"), ("Usable", "yes"), ("Played", "0 s"), ("Finger", ""),
         ("Record: contrast, lag", "–"), ("Loop", "–"), ("Link", "0 lost"),
@@ -227,15 +226,19 @@ def test_what_a_session_does_not_know_is_a_dash() -> None:
     assert play_rows(result(by_record=by_record))[4] == ("Record: contrast, lag", "–", "")
 
 
-def test_no_lag_is_behind() -> None:
+def test_no_lag_is_behind_and_nothing_due_is_nothing_lost() -> None:
     found = {name: rest for name, *rest in play_rows(result(by_record=judged(0.0)))}
     assert found["Record: lag"][1].startswith("behind the finger, 0 s at")
+    none = {**LATE, "made": 0, "lost": 0, "p50_s": None}
+    found = {name: rest for name, *rest in play_rows(result(loop=lambda: {"lateness": none}))}
+    assert found["Ticks lost"] == ["0.000 %", "0 of 0; late – median, 80 µs at 99 %, 0.3 ms at "
+                                   "99.9 %, 2 ms at most"]  # fmt: skip
 
 
 @pytest.mark.parametrize(("granted", "word"), [(True, "with"), (False, "WITHOUT")])
 def test_a_loop_in_its_own_process_says_how_it_ran(granted: bool, word: str) -> None:
     loop = {
-        "real_time_priority": granted, "processor_share": 0.43,
+        "lateness": LATE, "real_time_priority": granted, "processor_share": 0.43,
         "dropped_commands": 1, "dropped_rows": 2, "stale_commands": 3,
     }  # fmt: skip
     rows = {name: rest for name, *rest in play_rows(result(loop=lambda: loop))}

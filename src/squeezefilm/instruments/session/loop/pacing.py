@@ -23,6 +23,7 @@ from squeezefilm.instruments.session.loop import clock, shared
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.atomics import load_acquire, store_release
+from squeezefilm.instruments.session.loop.lateness import lateness_class
 from squeezefilm.instruments.session.loop.tick import make_tick
 
 MARGIN: si.Second = 50e-6
@@ -41,7 +42,7 @@ def due_ns(number: int, period: float) -> int:
 
 @compiled()
 def make_due_tick(arrays: Any, memory: Any, now: int) -> int:
-    """Make the latest tick that is due at `now` (ns after tick 0).
+    """Make the latest tick that is due at `now` (ns after tick 0), and account for it.
 
     Nothing is made before the next tick is due. Returns how many ticks were made: 0 or 1.
     """
@@ -50,6 +51,8 @@ def make_due_tick(arrays: Any, memory: Any, now: int) -> int:
     late = now - due_ns(number, period)
     if late < 0:
         return 0
+    if late > control[shared.LONGEST]:
+        control[shared.LONGEST] = late
     lost = 0
     if now >= due_ns(number + 1, period):
         lost = int(late / (period * _SECOND_NS))
@@ -60,7 +63,11 @@ def make_due_tick(arrays: Any, memory: Any, now: int) -> int:
             lost -= 1
         number += lost
         late = now - due_ns(number, period)
-    make_tick(arrays, memory, number, late / _SECOND_NS, lost)
+        control[shared.LOST] += lost
+    memory.histogram[lateness_class(float(late))] += 1
+    flags = make_tick(arrays, memory, number, late / _SECOND_NS, lost)
+    if flags & column.REFUSED_COMMAND:
+        control[shared.REFUSED] += 1
     control[shared.BEAT] = now
     store_release(control, shared.NEXT, number + 1)
     return 1
@@ -96,8 +103,10 @@ def compiled_loop(
             now = clock.monotonic_ns(timespec) - epoch
         # A signal may have ended the sleep early; never spin through more than the margin.
         if due - margin <= now < due:
+            woken = now
             while now < due:
                 now = clock.monotonic_ns(timespec) - epoch
+            control[shared.SPUN] += due - woken
         silence(arrays, control, now, timeout)
         make_due_tick(arrays, memory, now)
         if now - looked > _PARENT_LOOKED_AT_NS:

@@ -26,6 +26,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, LoopError, SqueezefilmWarning
 from squeezefilm.instruments.session.loop import shared
 from squeezefilm.instruments.session.loop.atomics import load_acquire, store_release
+from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.ring import DROPPED, ring_put_all, taken
 from squeezefilm.instruments.session.loop.rows import COMMAND_TIME, SAMPLE_COLUMNS
@@ -44,18 +45,24 @@ class LoopReport:
     """Report of a loop, to be stored with its session.
 
     Attributes:
+        lateness: of its ticks.
         real_time_priority: whether it ran under SCHED_FIFO.
         memory_locked: whether its memory was kept from being paged out.
         compiled_clock: whether it was paced by the compiled clock, not by Python.
         processor_share: processor time over time run (1), as the kernel counts it.
+        spin_share: time spent spinning to a deadline over time run (1).
+        refused_commands: commands that were no numbers within the drive's range.
         dropped_samples, dropped_commands, dropped_rows: lost because a ring was full.
         stale_commands: taken too late to be of use and not handed out.
     """
 
+    lateness: Lateness
     real_time_priority: bool
     memory_locked: bool
     compiled_clock: bool
     processor_share: si.Dimensionless
+    spin_share: si.Dimensionless
+    refused_commands: int
     dropped_samples: int
     dropped_commands: int
     dropped_rows: int
@@ -277,10 +284,13 @@ class LoopProcess:
         control = memory.control
         run = max(int(control[shared.BEAT]), 1)
         return LoopReport(
+            lateness=lateness_in(self.plan, memory),
             real_time_priority=bool(control[shared.REALTIME]),
             memory_locked=bool(control[shared.LOCKED]),
             compiled_clock=int(control[shared.PACING]) == shared.PACING_COMPILED,
             processor_share=int(control[shared.CPU]) / run,
+            spin_share=int(control[shared.SPUN]) / run,
+            refused_commands=int(control[shared.REFUSED]),
             dropped_samples=int(memory.sample_counters[DROPPED]),
             dropped_commands=int(memory.command_counters[DROPPED]),
             dropped_rows=int(memory.row_counters[DROPPED]),
@@ -351,6 +361,18 @@ def sample_block(samples: si.FloatArray) -> si.FloatArray:
             f"{', '.join(SAMPLE_COLUMNS)}"
         )
     return block
+
+
+def lateness_in(plan: LoopPlan, memory: shared.Shared) -> Lateness:
+    """The lateness that stands in a loop's memory; while it runs, as of some recent tick."""
+    counts = memory.histogram.copy()
+    return Lateness(
+        rate=plan.rate,
+        made=int(counts.sum()),
+        lost=int(memory.control[shared.LOST]),
+        longest=int(memory.control[shared.LONGEST]) * 1e-9,
+        counts=counts,
+    )
 
 
 def _anonymous_file(size: int) -> int:

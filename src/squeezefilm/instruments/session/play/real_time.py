@@ -140,7 +140,7 @@ def run_play(
             finally:
                 report = loop.stop()
         player.drain()
-        writer.event("loop", to_json(report))
+        writer.event("loop", {**to_json(report), "lateness": report.lateness.to_json()})
         writer.event("link", to_json(link.statistics))
         verdict = player.judge()
         return PlayOutcome(ending, message, trace, writer.acknowledged, silent, verdict)

@@ -1,36 +1,72 @@
-"""Lateness as it is read off a loop's rows."""
+"""The histogram of lateness and what is read off it."""
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.lateness import Lateness, lateness_of
-
-PERIOD = 1e-3
-
-
-def rows_of(ticks: list[int], late: list[float]) -> np.ndarray:
-    rows = np.zeros((len(ticks), len(column.COLUMNS)))
-    rows[:, column.TICK], rows[:, column.LATENESS] = ticks, late
-    return rows
+from squeezefilm.core.errors import InputError
+from squeezefilm.instruments.session.loop.lateness import (
+    CLASSES,
+    Lateness,
+    class_ends,
+    lateness_class,
+)
 
 
-def test_ticks_that_are_missing_were_lost_and_cost_the_longest_lateness() -> None:
-    found = lateness_of(rows_of([1, 2, 6], [1e-5, 3e-5, 2e-5]), PERIOD)
-    assert (found.made, found.lost) == (3, 4)
-    assert found.share_made == 3 / 7
-    # Three ticks were lost before the last.
-    assert found.longest == pytest.approx(3 * PERIOD + 2e-5)
-    assert found.p50 == 2e-5
-    assert 2e-5 < found.p99 < found.p99_9 <= 3e-5
+def _of(late_ns: np.ndarray, lost: int = 0) -> Lateness:
+    counts = np.zeros(CLASSES, dtype=np.int64)
+    for one in late_ns:
+        counts[lateness_class(float(one))] += 1
+    return Lateness(1e3, late_ns.size, lost, float(np.max(late_ns)) * 1e-9, counts)
+
+
+def test_every_lateness_lies_between_the_ends_of_its_class() -> None:
+    ends = class_ends()
+    assert ends.shape == (CLASSES,)
+    assert ends[-1] == math.inf
+    for late in np.geomspace(1.0, 1e11, 997):
+        place = lateness_class(late)
+        below = ends[place - 1] if place else 0.0
+        assert below * (1 - 1e-12) <= late * 1e-9 < ends[place] * (1 + 1e-12)
+    assert lateness_class(math.nan) == 0
+
+
+@pytest.mark.parametrize("share", [0.01, 0.5, 0.9, 0.99, 0.999, 1.0])
+def test_a_quantile_is_never_too_low_and_at_most_one_class_too_high(share: float) -> None:
+    late = np.random.default_rng(1).lognormal(np.log(2e4), 1.5, 20_000)
+    found = _of(late).quantile(share)
+    true = float(np.sort(late)[math.ceil(share * late.size) - 1]) * 1e-9
+    assert true * (1 - 1e-12) <= found <= true * 10 ** (1 / 20) * (1 + 1e-12)
+
+
+def test_figures_and_their_json_come_back() -> None:
+    lateness = _of(np.array([50.0, 2e3, 3e6]), lost=2)
+    assert lateness.share_made == 3 / 5
+    text = lateness.to_json()
+    assert text["p99_9_s"] == lateness.p99_9 == 3e-3
+    assert text["rate_Hz"] == 1000.0
+    again = Lateness.from_json(json.loads(json.dumps(text)))
+    assert again.to_json() == text
 
 
 def test_before_the_first_tick_nothing_is_a_number() -> None:
-    nothing = lateness_of(rows_of([], []), PERIOD)
-    assert (nothing.made, nothing.lost) == (0, 0)
-    assert all(map(math.isnan, (nothing.share_made, nothing.p50, nothing.longest)))
-    assert Lateness(0, 0).made == 0
+    nothing = Lateness(1e3, 0, 0, 0.0, np.zeros(CLASSES, dtype=np.int64))
+    assert math.isnan(nothing.p50)
+    assert math.isnan(nothing.share_made)
+    assert nothing.to_json()["p50_s"] is None
+
+
+def test_what_does_not_fit_is_refused() -> None:
+    counts = np.zeros(CLASSES, dtype=np.int64)
+    with pytest.raises(InputError, match="do not fit"):
+        Lateness(1e3, 1, 0, 0.0, counts)
+    with pytest.raises(InputError, match="at least 0"):
+        Lateness(1e3, 0, 0, 0.0, counts[:-1])
+    with pytest.raises(InputError, match="no lateness"):
+        Lateness.from_json({"rate_Hz": 1e3})
+    with pytest.raises(InputError, match="share"):
+        Lateness(1e3, 0, 0, 0.0, counts).quantile(0.0)

@@ -12,6 +12,7 @@ import pytest
 from squeezefilm.instruments.session.loop import pacing, shared
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.loop.lateness import lateness_class
 from squeezefilm.instruments.session.loop.pacing import (
     compiled_loop,
     due_ns,
@@ -50,7 +51,8 @@ def test_the_latest_tick_that_is_due_is_made_and_the_others_are_counted(plan_of:
     arrays, memory = tick_arrays(plan_of(rate=RATE)), shared.private_views()
     wakes = [due(0), due(1) + 17, due(2), due(3) - 1, due(3), due(5) - 1, due(5), due(6) + 90_000]
     wakes += [due(8), due(11) + 5, due(12), due(16) - 1, due(500), due(5_000) - 1]
-    following = 0
+    following, lost, longest = 0, 0, 0
+    counts = np.zeros_like(memory.histogram)
     expected = []
     for now in wakes:
         made = make_due_tick(arrays, memory, now)
@@ -59,10 +61,17 @@ def test_the_latest_tick_that_is_due_is_made_and_the_others_are_counted(plan_of:
             continue
         assert made == 1
         number = max(k for k in range(following, 5_001) if due(k) <= now)
+        longest = max(longest, now - due(following))
+        lost += number - following
         expected.append((number, (now - due(number)) * 1e-9, number > following))
+        counts[lateness_class(float(now - due(number)))] += 1
         following = number + 1
-        assert memory.control[shared.NEXT] == following
-        assert memory.control[shared.BEAT] == now
+        control = memory.control
+        assert control[shared.NEXT] == following
+        assert (control[shared.LOST], control[shared.LONGEST]) == (lost, longest)
+        assert control[shared.BEAT] == now
+        assert control[shared.REFUSED] == 0
+    np.testing.assert_array_equal(memory.histogram, counts)
     rows = rows_of(memory)
     assert len(rows) == len(expected)
     for row, (number, late, after_lost) in zip(rows, expected, strict=True):
@@ -73,13 +82,13 @@ def test_the_latest_tick_that_is_due_is_made_and_the_others_are_counted(plan_of:
         assert bool(int(row[column.FLAGS]) & column.AFTER_LOST_TICKS) == after_lost
 
 
-def test_a_command_that_was_refused_is_flagged(plan_of: PlanOf) -> None:
+def test_a_command_that_was_refused_is_counted(plan_of: PlanOf) -> None:
     arrays, memory = tick_arrays(plan_of(rate=RATE, compensation="inverse")), shared.private_views()
     arrays.compensator[compensation_kernel.AMPLITUDE] = math.nan
     make_due_tick(arrays, memory, 0)
+    assert memory.control[shared.REFUSED] == 1
     make_due_tick(arrays, memory, due(1))
-    flags = rows_of(memory)[:, column.FLAGS].astype(int)
-    assert ((flags & column.REFUSED_COMMAND) != 0).tolist() == [True, False]
+    assert memory.control[shared.REFUSED] == 1
 
 
 def test_the_next_tick_hears_of_mute_and_of_a_silent_host(plan_of: PlanOf) -> None:
@@ -180,6 +189,7 @@ def test_a_loop_sleeps_until_each_tick_is_due(
     looped(monkeypatch, which, clock, plan_of(rate=1e3), memory)
     control, rows = memory.control, rows_of(memory)
     assert rows[:, column.TICK].tolist() == list(range(22))
+    assert control[shared.LOST] == control[shared.SPUN] == 0
     # What the clock takes to be read included; tick 0 was due as it began.
     assert np.all(rows[1:, column.LATENESS] >= 20e-6)
     assert np.all(rows[:, column.LATENESS] < 25e-6)
@@ -203,6 +213,8 @@ def test_a_loop_that_sleeps_too_long_loses_ticks_and_makes_none_up(
     made = rows_of(memory)[:, column.TICK]
     # Woken 2.4 ms late for the tick it waits for, it makes the one after the next.
     assert made[:5].tolist() == [0, 3, 6, 9, 12]
+    assert memory.control[shared.LOST] == made[-1] + 1 - made.size
+    assert 2_400_000 <= memory.control[shared.LONGEST] < 2_410_000
 
 
 @pytest.mark.parametrize("which", ["portable", "compiled"])
@@ -228,10 +240,12 @@ def test_the_compiled_loop_spins_through_its_margin_only(
     clock = Clock(late=20_000)
     memory = begun(clock, 10_500_000)
     looped(monkeypatch, "compiled", clock, plan_of(rate=1e3), memory, margin=50_000)
-    rows = rows_of(memory)
+    control, rows = memory.control, rows_of(memory)
     assert rows[:, column.TICK].tolist() == list(range(12))
     # A sleep that ends late by less than the margin costs nothing.
     assert np.all(rows[:, column.LATENESS] < 3e-6)
+    # It woke 20 us into a margin of 50 us, before each of eleven ticks.
+    assert control[shared.SPUN] == pytest.approx(11 * 29_000, abs=11 * 1_000)
 
 
 def test_a_sleep_that_a_signal_ends_is_not_made_up_by_spinning(
@@ -248,3 +262,4 @@ def test_a_sleep_that_a_signal_ends_is_not_made_up_by_spinning(
     looped(monkeypatch, "compiled", clock, plan_of(rate=1e3), memory, margin=50_000)
     assert rows_of(memory)[:, column.TICK].tolist() == list(range(6))
     assert len(clock.slept) > 5 * 4
+    assert memory.control[shared.SPUN] <= 5 * 50_000

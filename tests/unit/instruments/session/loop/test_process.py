@@ -134,6 +134,8 @@ def test_its_report_says_what_the_loop_wrote(plan_of: Plans, played: Callable[[s
         shared.PACING: shared.PACING_COMPILED,
         shared.BEAT: 4_000,
         shared.CPU: 1_000,
+        shared.SPUN: 3_000,
+        shared.REFUSED: 5,
     }
     words = "".join(f"words[{place}] = {value}\n" for place, value in control.items())
     played(words + READY + "until_stopped()")
@@ -148,9 +150,10 @@ def test_its_report_says_what_the_loop_wrote(plan_of: Plans, played: Callable[[s
     assert report.real_time_priority
     assert report.compiled_clock
     assert not report.memory_locked
-    assert report.processor_share == 0.25
+    assert (report.processor_share, report.spin_share) == (0.25, 0.75)
+    assert report.refused_commands == 5
     assert (report.dropped_samples, report.dropped_commands, report.dropped_rows) == (2, 3, 4)
-    assert report.stale_commands == 0
+    assert (report.lateness.made, report.stale_commands) == (0, 0)
 
 
 @pytest.mark.parametrize(
@@ -175,7 +178,7 @@ def test_what_was_asked_and_not_granted_is_said(
     ):
         report = loop.report()
     assert not report.compiled_clock
-    assert report.processor_share == 0.0
+    assert (report.processor_share, report.spin_share) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize(

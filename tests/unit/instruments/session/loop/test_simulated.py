@@ -13,7 +13,6 @@ from tests.simulated_loop import SimulatedLoop
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.lateness import lateness_of
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_stream
 
@@ -46,6 +45,8 @@ def test_ticks_are_made_before_a_time_and_not_at_it(plan_of: PlanOf) -> None:
     assert loop.take_rows().shape == (0, len(column.COLUMNS))
     assert loop.take_commands().shape == (4, len(column.COMMAND_COLUMNS))
     assert loop.take_commands().shape == (0, len(column.COMMAND_COLUMNS))
+    assert (loop.lateness.made, loop.lateness.lost, loop.lateness.longest) == (4, 0, 0.0)
+    assert loop.lateness.rate == RATE
     with pytest.raises(InputError, match="until"):
         loop.advance(math.inf)
 
@@ -61,7 +62,7 @@ def test_a_late_tick_says_how_late_and_what_was_lost(plan_of: PlanOf) -> None:
     lost = (rows[:, column.FLAGS].astype(int) & column.AFTER_LOST_TICKS) != 0
     assert lost.tolist() == [False, False, True, True]
     assert loop.time == pytest.approx(8 * PERIOD)
-    found = lateness_of(rows, PERIOD)
+    found = loop.lateness
     assert (found.made, found.lost) == (4, 4)
     assert found.longest == pytest.approx(3.5 * PERIOD)
 

@@ -68,7 +68,7 @@ def test_it_ticks_from_the_first_on_until_its_parent_is_gone(
     assert control[shared.PACING] == pacing
     rows = taken(memory)
     # Nothing of what was rehearsed is counted.
-    assert len(rows) > 0
+    assert len(rows) == memory.histogram.sum() == control[shared.NEXT] - control[shared.LOST] > 0
     assert rows[-1, column.TICK] == control[shared.NEXT] - 1
     assert np.all(rows[:, column.FLAGS].astype(int) & column.NOT_TOUCHING)
     assert not np.any(rows[:, column.FLAGS].astype(int) & column.HOST_SILENT)

@@ -14,6 +14,7 @@ import pytest
 
 from squeezefilm.core.errors import DeviceError, LoopError, RecordError
 from squeezefilm.instruments.device.wire.states import Fault, State
+from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.play import real_time
 from squeezefilm.instruments.session.play.plan import Ending
@@ -23,6 +24,7 @@ from squeezefilm.instruments.session.play.usability import Usability
 
 PlanOf = Callable[..., LoopPlan]
 USABLE = Usability(True, 100, 1.0, 2e-3, 0.0, "")
+LATENESS = Lateness(5e3, 0, 0, 0.0, np.zeros(CLASSES, dtype=np.int64))
 
 
 def test_only_time_and_user_end_a_session_without_failure() -> None:
@@ -97,7 +99,7 @@ class Bench:
 
             def stop(self) -> Any:
                 bench.note("loop stop")
-                return SimpleNamespace(dropped_rows=3)
+                return SimpleNamespace(lateness=LATENESS)
 
         return Loop()
 
@@ -148,7 +150,7 @@ class Bench:
 @pytest.fixture
 def bench(monkeypatch: pytest.MonkeyPatch, plan_of: PlanOf) -> Bench:
     monkeypatch.setattr(real_time, "to_json", lambda found: dict(vars(found)) if hasattr(
-        found, "dropped_rows") else found)  # fmt: skip
+        found, "lateness") else found)  # fmt: skip
     return Bench(monkeypatch, plan_of())
 
 
@@ -167,7 +169,7 @@ def test_a_session_plays_fades_ends_and_is_recorded_to_its_last_row(bench: Bench
     ]  # fmt: skip
     # Through the fade it steps on.
     assert bench.steps == pytest.approx(50 + FADING, abs=2)
-    assert bench.events["loop"] == {"dropped_rows": 3}
+    assert bench.events["loop"] == {"lateness": LATENESS.to_json()}
     assert bench.events["link"] == {"sent": pytest.approx(100.0)}
     assert signal.getsignal(signal.SIGINT) is before
 
