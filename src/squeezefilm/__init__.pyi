@@ -381,6 +381,7 @@ if TYPE_CHECKING:
         surface: str | None = ...,
         compensation: str = ...,
         amplitude_per_pickup: MetrePerVolt | str | None = ...,
+        bench_only: bool = ...,
         hold: bool = ...,
         sweep: str | Path | None = ...,
         out: str | Path | None = ...,

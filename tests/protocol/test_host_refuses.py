@@ -13,6 +13,7 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.serial_ports import SerialDrive
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.link import Link
 from squeezefilm.instruments.device.wire.states import State
@@ -51,6 +52,9 @@ CALLS: dict[str, tuple[Callable[[DeviceHost, Any], object], tuple[object, ...]]]
     "a report": (lambda host, odd: host.report(odd), (*NO_SCALAR, -1.0, 1e-300, 199e-6)),
     "a frequency": (lambda host, odd: host.set_frequency(odd), (*NO_SCALAR, 0.0, 19e3, 61e3)),
     "a first frequency": (lambda host, odd: host.start(odd), (*NO_SCALAR, 0.0, 19e3, 61e3)),
+    "a block": (lambda host, odd: SerialDrive(host, 1e-3).write(np.array([odd])), NO_VOLTS[:-1]),
+    "a drive's period": (lambda host, odd: SerialDrive(host, odd), (*NO_SCALAR, 0.0)),
+    "a drive's lead": (lambda host, odd: SerialDrive(host, 1e-3, odd), (*NO_SCALAR, -1.0)),
 }
 
 
@@ -59,6 +63,9 @@ def test_what_no_device_could_take_is_refused_before_it_is_sent(what: str) -> No
     call, odd = CALLS[what]
     wire, host = playing()
     for value in odd:
+        # A block is an array already; what cannot be one is its maker's mistake.
+        if what == "a block" and isinstance(value, list):
+            continue
         sent = host.link.statistics.sent
         with pytest.raises(InputError) as refused:
             call(host, value)

@@ -1,7 +1,9 @@
 """The host's side: commands, answers that go astray, clocks that drift, a stream without gaps."""
 
 import dataclasses
+import itertools
 import math
+import random
 
 import numpy as np
 import pytest
@@ -11,6 +13,8 @@ from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.limits import DeviceLimits
+from squeezefilm.instruments.device.ports import Drive
+from squeezefilm.instruments.device.serial_ports import SerialDrive
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.link import Link
 from squeezefilm.instruments.device.wire.states import Fault, State
@@ -252,6 +256,83 @@ def test_the_devices_clock_is_known_within_half_a_round_trip(drift: float) -> No
         errors.append(abs(error) * 1e-6)
         assert errors[-1] <= clock.error + 2e-6
     assert max(errors[20:]) < 0.7e-3
+
+
+def streamed(drift: float, jitter: int, block: int, seconds: float, seed: int) -> list[int]:
+    """The values (mV) that a device played of 1, 2, 3, …, one per 200 µs, and how long each."""
+    wire, _, host = playing(FAST, seed=seed, drift=drift, jitter=jitter)
+    drive: Drive = SerialDrive(host, 200e-6, lead=6e-3)
+    run(wire, host, 0.05)
+    wire.levels.clear()
+    count, dice = 0, random.Random(seed)
+    total = round(seconds / 200e-6)
+    start = wire.clock()
+    while count < total:
+        due = start + (count + block) * 200e-6
+        # The writer wakes up to 1 ms late.
+        wire.wait(max(1e-6, due + dice.uniform(0, 1e-3) - wire.clock()))
+        host.pump()
+        values = np.arange(count + 1, count + block + 1) * 1e-3 % 60.0
+        assert drive.write(values) == block
+        count += block
+    run(wire, host, 0.03)
+    assert drive.stops_by_itself
+    assert drive.gaps == 0  # type: ignore[attr-defined]
+    return [level for _, level in wire.levels]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("block", [5, 25])
+@pytest.mark.parametrize("drift", [-100e-6, 100e-6])
+def test_a_stream_at_5_khz_has_no_gap_and_no_repeated_sample(block: int, drift: float) -> None:
+    levels = streamed(drift, jitter=3_000, block=block, seconds=2.0, seed=block)
+    held = [(value, len(list(ticks))) for value, ticks in itertools.groupby(levels)]
+    values = [round(value / 1000) for value, _ in held if value]
+    assert values == list(range(1, 10_001))
+    # Every sample is held for its two ticks, but for one more or less where it is rounded.
+    lengths = [length for value, length in held if value][:-1]
+    assert set(lengths) <= {1, 2, 3}
+    assert np.mean(lengths) == pytest.approx(2 * (1 + drift), abs=2e-3)
+    print(
+        f"5 kHz in blocks of {block}: held {sorted({n: lengths.count(n) for n in lengths}.items())}"
+    )
+
+
+def test_a_late_writer_starts_again_and_is_counted() -> None:
+    wire, _, host = playing(FAST)
+    host.report(1e-3)
+    drive = SerialDrive(host, 200e-6)
+    drive.write(np.full(25, 1.0))
+    came = run(wire, host, 0.03)
+    assert any(reading.flags & m.RAN_DRY for reading in came)
+    drive.write(np.full(25, 2.0))
+    run(wire, host, 0.02)
+    assert drive.gaps == 1
+    assert wire.machine.level == 2_000_000
+
+
+def test_a_writer_far_ahead_is_told_what_fits() -> None:
+    wire, _, host = playing(FAST)
+    drive = SerialDrive(host, 200e-6)
+    fitted = drive.write(np.full(2_000, 1.0))
+    assert 400 < fitted < 512
+    run(wire, host, 0.05)
+    assert wire.machine.refused == 0
+    assert drive.write(np.full(2_000, 1.0)) == pytest.approx(250, abs=10)
+
+
+def test_a_writer_of_long_periods_is_at_most_a_second_ahead() -> None:
+    _, _, host = playing(FAST)
+    assert 90 < SerialDrive(host, 10e-3).write(np.full(200, 1.0)) < 100
+
+
+def test_a_drive_needs_a_clock() -> None:
+    wire = Wire(Machine(9))
+    host = DeviceHost(Link(wire, wire.clock, wire.wait))
+    with pytest.raises(DeviceError, match="clock is not known"):
+        SerialDrive(host, 200e-6).write(np.zeros(5))
+    with pytest.raises(InputError, match="lead"):
+        SerialDrive(host, 200e-6, lead=0.2)
 
 
 def test_statistics_are_plain_numbers() -> None:

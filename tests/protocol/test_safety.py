@@ -1,6 +1,8 @@
 """The host's own limits: refused with a reason, never clipped."""
 
+import contextlib
 import dataclasses
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -9,6 +11,7 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.device.machine.limits import level_of
 from squeezefilm.instruments.device.wire.messages import limits_message
+from squeezefilm.instruments.device.wire.safety import Use, require_safe_drive
 
 from .adversary import LIMITS
 
@@ -30,6 +33,23 @@ from .adversary import LIMITS
 def test_limits_that_cannot_be_used_are_refused(changes: dict[str, Any], words: str) -> None:
     with pytest.raises(InputError, match=words):
         dataclasses.replace(LIMITS, **changes)
+
+
+CARD: Any = SimpleNamespace(stops_by_itself=False)
+DEVICE: Any = SimpleNamespace(stops_by_itself=True)
+LOW = dataclasses.replace(LIMITS, voltage=42.0)
+
+
+@pytest.mark.parametrize(
+    ("use", "refused"), [("own hand", "bench_only"), ("study", "in a study"), ("bench", None)]
+)
+def test_which_drives_are_safe(use: Use, refused: str | None) -> None:
+    for limits in (LIMITS, LOW):
+        require_safe_drive(DEVICE, limits, use)
+    with pytest.raises(InputError, match=r"does not stop by itself .* at most 42 V"):
+        require_safe_drive(CARD, LIMITS, use)
+    with pytest.raises(InputError, match=refused) if refused else contextlib.nullcontext():
+        require_safe_drive(CARD, LOW, use)
 
 
 def test_the_wire_rounds_limits_to_the_safe_side() -> None:

@@ -164,6 +164,9 @@ class PlayOptions:
         ),
     ] = "none"
     amplitude_per_pickup: Pickup = None
+    bench_only: Annotated[
+        bool, typer.Option("--bench-only", help="Allow a drive that does not stop by itself.")
+    ] = False
     hold: Annotated[
         bool, typer.Option("--hold", help="The device's loops hold resonance and amplitude.")
     ] = False

@@ -52,7 +52,7 @@ def test_a_texture_is_played_on_the_twin_for_four_seconds(play: SimpleNamespace)
     assert named == {
         "drive": "twin", "sensor": "device", "mode": "stream", "stroke": "60 mm/s over 4 cm",
         "duration": 4.0, "rate": 5000.0, "voltage": None, "surface": None,
-        "compensation": "none", "amplitude_per_pickup": None, "hold": False,
+        "compensation": "none", "amplitude_per_pickup": None, "bench_only": False, "hold": False,
         "sweep": None,
         "out": None,
         "seed": 0,
@@ -69,7 +69,7 @@ def test_every_option_of_a_session_arrives(play: SimpleNamespace, tmp_path: Path
         "--finger", "mean",
         "--mode", "tile", "--stroke", "50 mm/s over 2 cm", "--duration", "10 s", "--rate", "2 kHz",
         "--voltage", "15 V", "--surface", "copper", "--compensate", "inverse", "--pickup",
-        "2 um/V", "--hold", "--sweep", "sweep.csv", "--out", tmp_path,
+        "2 um/V", "--bench-only", "--hold", "--sweep", "sweep.csv", "--out", tmp_path,
         "--seed", "3", "--json",
     )  # fmt: skip
     named = dict(play.asked.named)
@@ -78,7 +78,7 @@ def test_every_option_of_a_session_arrives(play: SimpleNamespace, tmp_path: Path
         "drive": "serial:/dev/null", "sensor": "x", "mode": "tile", "stroke": "50 mm/s over 2 cm",
         "duration": 10.0, "rate": 2000.0, "voltage": 15.0, "surface": "copper",
         "compensation": "inverse", "amplitude_per_pickup": pytest.approx(2e-6),
-        "hold": True, "sweep": Path("sweep.csv"), "out": tmp_path,
+        "bench_only": True, "hold": True, "sweep": Path("sweep.csv"), "out": tmp_path,
         "seed": 3,
     }  # fmt: skip
     assert "mean of people" in play.asked.given[0].whose_finger

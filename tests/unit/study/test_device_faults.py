@@ -13,6 +13,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import DeviceError, InputError
+from squeezefilm.instruments.session.play import real_time as playing
+from squeezefilm.instruments.session.play.plan import PlayPlan
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.study.conduct.run import StudyRun
@@ -139,3 +141,43 @@ def test_a_surface_that_is_halted_before_it_plays_is_not_presented(
         device.present(SURFACE, 1)
     assert not device.presenting
     device.close()
+
+
+def test_a_study_refuses_a_drive_that_does_not_stop_by_itself(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from squeezefilm.core.drive_limits import Limits
+    from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+    from squeezefilm.physics.render.motion.estimator import MotionEstimator
+    from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+    from squeezefilm.physics.render.program.lowering import lower
+    from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+    from squeezefilm.physics.render.texture.levels import Amplitude
+    from squeezefilm.physics.render.texture.shapes import SquareWave
+
+    class Silent:
+        sent = b""
+
+        def read(self) -> bytes:
+            return b""
+
+        def write(self, data: bytes) -> None:
+            self.sent += data
+
+        def close(self) -> None:
+            pass
+
+    loop = LoopPlan(
+        program=lower(Amplitude(SquareWave(2e-3), 0.5e-6, 1e-6), largest_amplitude=1e-6),
+        rate=1e3,
+        envelope=DrivenEnvelope(1e-3, 1e-3, 1e-6),
+        drive=DriveTable.linear(1e-7, 10.0),
+        estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
+    )
+    plan = PlayPlan(loop, Limits(15.0, 15e3, 15.0, 2e4, 30e3, 36e3), 33.5e3)
+    stream = Silent()
+    monkeypatch.setattr(playing, "open_stream", lambda _: stream)
+    monkeypatch.setattr(playing.SerialDrive, "stops_by_itself", False)
+    with pytest.raises(InputError, match="in a study, where people touch the plate"):
+        playing.run_play(plan, "serial:X", tmp_path / "a.sqft", {}, duration=1.0, use="study")
+    assert stream.sent == b""

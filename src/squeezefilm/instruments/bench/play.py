@@ -102,6 +102,7 @@ class PlayRequest:
     surface: str | None = None
     compensation: str = "none"
     amplitude_per_pickup: si.MetrePerVolt | None = None
+    bench_only: bool = False
     hold: bool = False
     sweep: str | Path | None = None
     out: str | Path | None = None
@@ -130,6 +131,7 @@ def play_texture(asked: PlayRequest) -> PlayResult:
         surface: of the display.
         compensation: of the resonator's slowness, "none" or "inverse".
         amplitude_per_pickup: of a device's pickup (m/V); a twin's is known.
+        bench_only: whether a drive that does not stop by itself may be used.
         hold: whether the device's loops shall hold resonance and amplitude; one that has none
             plays without, and the outcome says so.
         sweep: a CSV of what its free plate's pickup shows, for `hold`: frequency_Hz, drive_V,
@@ -232,6 +234,7 @@ def _played(
             sensor=_replay(asked.sensor),
             show=asked.show,
             tap=asked.tap,
+            use="bench" if asked.bench_only else "own hand",
         )
 
 

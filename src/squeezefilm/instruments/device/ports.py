@@ -36,6 +36,19 @@ class Sensor(Protocol):
         ...
 
 
+class Drive(Protocol):
+    """Converter of drive amplitudes into voltage on the plate."""
+
+    @property
+    def stops_by_itself(self) -> bool:
+        """True where the output goes to zero on its own within 60 ms when the host falls silent."""
+        ...
+
+    def write(self, block: si.FloatArray) -> int:
+        """Play the amplitudes (V, zero-to-peak) in `block`, shape (n,); returns how many fitted."""
+        ...
+
+
 class ReplaySensor:
     """Plays a recording's samples by a clock. Not thread-safe.
 

@@ -33,7 +33,9 @@ from squeezefilm.instruments.bench.play import device_stream
 from squeezefilm.instruments.bench.resonance_sweep import sweep_resonance
 from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.instruments.device.host import DeviceHost
+from squeezefilm.instruments.device.serial_ports import SerialDrive
 from squeezefilm.instruments.device.wire.link import Link
+from squeezefilm.instruments.device.wire.safety import require_safe_drive
 from squeezefilm.instruments.device.wire.states import State
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.loop import rows as column
@@ -139,6 +141,7 @@ class Bench:
         settle = _SETTLE * mode.quality_factor / (math.pi * mode.resonance_frequency)
         with contextlib.closing(open_stream(self._streaming("none"))) as stream:
             host = DeviceHost(Link(stream))
+            require_safe_drive(SerialDrive(host, 1 / self._orders.rate), limits, "study")
             swept = sweep_resonance(host, limits, carriers, volts, settle=settle)
         if swept is None:
             return DeviceVerification(
@@ -190,6 +193,7 @@ class Bench:
             duration=LONGEST_PRESENTATION,
             show=show,
             until=self._connection.poll,
+            use="study",
         )
         trace = read_trace(outcome.trace)
         felt = dataclasses.replace(

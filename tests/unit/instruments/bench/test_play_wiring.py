@@ -96,7 +96,7 @@ def test_a_twin_is_played_over_the_way_of_its_finger(bench: Bench, tmp_path: Pat
     ((plan, stream, trace, metadata), said) = bench.runs[0]
     assert (plan, stream, trace) == (PLAN, "serial:there", folder / "trace.sqft")
     assert said == {
-        "duration": 4.0, "sensor": None, "show": None, "tap": None,
+        "duration": 4.0, "sensor": None, "show": None, "tap": None, "use": "own hand",
     }  # fmt: skip
     expected = {
         "texture": "a grating", "display": DISPLAY, "drive": "twin", "sensor": "device",
@@ -118,7 +118,7 @@ def test_a_device_has_its_own_finger_and_pickup(bench: Bench) -> None:
     tap: Any = object()
     found = play_texture(
         DISPLAY, TEXTURE, drive="serial:x", amplitude_per_pickup=3e-6, voltage=9.0, rate=2e3,
-        surface="s", compensation="inverse", mode="tile", duration=1.5,
+        surface="s", compensation="inverse", mode="tile", duration=1.5, bench_only=True,
         show=show, tap=tap,
     )  # fmt: skip
     (how,) = bench.setup
@@ -128,7 +128,7 @@ def test_a_device_has_its_own_finger_and_pickup(bench: Bench) -> None:
     assert bench.streams[0][4] is None
     ((_, _, trace, metadata), said) = bench.runs[0]
     assert said == {
-        "duration": 1.5, "sensor": None, "show": show, "tap": tap,
+        "duration": 1.5, "sensor": None, "show": show, "tap": tap, "use": "bench",
     }  # fmt: skip
     assert metadata["stroke"] is None
     assert bench.judged[0][2] is None

@@ -82,6 +82,7 @@ class Around:
         self.plays: list[tuple[tuple[Any, ...], dict[str, Any]]] = []
         self.swept: Any = None
         self.sweeps: list[tuple[Any, ...]] = []
+        self.safe: list[tuple[Any, bool]] = []
         self.views: list[State] = [State.PLAYING]
         self.ending, self.message = Ending.INTERRUPTED, ""
         self.trace = record()
@@ -98,6 +99,8 @@ class Around:
             "open_stream": lambda name: contextlib.nullcontext(name),
             "Link": lambda stream: stream,
             "DeviceHost": lambda link: link,
+            "SerialDrive": lambda host, tick: (host, tick),
+            "require_safe_drive": lambda drive, limits, use: self.safe.append((drive, use)),
             "sweep_resonance": self._sweep,
         }
         for name, made in put.items():
@@ -190,6 +193,7 @@ def test_a_surface_is_played_until_an_order_comes(around: Around) -> None:
     assert repr(known) == repr(explored(record(), NAME))
     ((plan, stream, path, metadata), how) = around.plays[0]
     assert (plan, stream, path) == ("the plan", "stream 1", around.folder / NAME)
+    assert how["use"] == "study"
     assert how["duration"] == LONGEST_PRESENTATION == 600.0
     assert how["until"] == pipe.poll
     assert (metadata["display"], metadata["drive"]) == ("biet2008-plate", "serial")
@@ -321,6 +325,7 @@ def test_the_carrier_is_swept_about_the_prediction_at_a_quarter_of_the_voltage(
     assert carriers[-1] == pytest.approx(min(limits.highest_frequency, 30.4e3))
     # Ten time constants of Q/(π f).
     assert how["settle"] == pytest.approx(10 * 150 / (math.pi * 30e3))
+    assert around.safe == [(("stream 1", 1 / 4e3), "study")]
     assert found.resonance_frequency == 29.9e3
     assert found.expected_resonance_frequency == 30e3
     assert found.amplitude == pytest.approx(2e-6 * 0.5)

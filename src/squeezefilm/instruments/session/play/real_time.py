@@ -31,7 +31,9 @@ from squeezefilm.instruments.device.priority import (
     collect_garbage_first,
     real_time_granted,
 )
+from squeezefilm.instruments.device.serial_ports import SerialDrive
 from squeezefilm.instruments.device.wire.link import Link
+from squeezefilm.instruments.device.wire.safety import Use, require_safe_drive
 from squeezefilm.instruments.device.wire.states import Fault
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.loop.process import LoopProcess
@@ -94,6 +96,7 @@ def run_play(
     show: Callable[[PlayView], None] | None = None,
     tap: Callable[[si.FloatArray], None] | None = None,
     until: Callable[[], bool] | None = None,
+    use: Use = "own hand",
 ) -> PlayOutcome:
     """Play for a time, or until Ctrl-C, and record it.
 
@@ -107,9 +110,10 @@ def run_play(
         show: is told what there is to see, ten times a second and when the device's state changes.
         tap: is given the rows as they are recorded; must be quick.
         until: is asked every millisecond whether to end as on Ctrl-C; must be quick.
+        use: whose hand touches the plate, see `require_safe_drive`.
 
     Raises:
-        InputError: a text that names no stream.
+        InputError: a drive that is not safe, see `require_safe_drive`.
         DeviceError, LoopError, RecordError: what fails before anything was played.
     """
     with (
@@ -124,6 +128,8 @@ def run_play(
 
         link = Link(stream, clock)
         host = DeviceHost(link)
+        drives = SerialDrive(host, plan.loop.period)
+        require_safe_drive(drives, plan.limits, use)
         eyes = None if sensor is None else sensor(clock)
         player = Player(plan, loop, host, writer, clock, eyes, tap)
         _compile()

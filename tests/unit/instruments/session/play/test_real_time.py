@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.core.errors import DeviceError, LoopError, RecordError
+from squeezefilm.core.errors import DeviceError, InputError, LoopError, RecordError
 from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
@@ -62,6 +62,8 @@ class Bench:
             "TraceWriter": lambda *_: self, "LoopProcess": lambda _: self.loop(),
             "Link": lambda stream, clock: SimpleNamespace(statistics={"sent": clock()}),
             "DeviceHost": lambda _: SimpleNamespace(stop=lambda: self.note("host stop")),
+            "SerialDrive": lambda host, period: "drive",
+            "require_safe_drive": lambda *given, **how: self.note(("safe", given, how)),
             "Player": self.player_of, "_compile": lambda: self.note("compiled"),
             "time": SimpleNamespace(sleep=self.sleep, monotonic=lambda: self.now + 1000.0),
         }.items():  # fmt: skip
@@ -162,7 +164,7 @@ def test_a_session_plays_fades_ends_and_is_recorded_to_its_last_row(bench: Bench
     found = bench.run()
     assert found == PlayOutcome(Ending.DURATION, "", Path("trace"), 12, bench.now + 1000.0, USABLE)
     assert bench.done == [
-        "compiled",
+        ("safe", ("drive", "limits", "own hand"), {}), "compiled",
         "loop start", "begin", ("fade", pytest.approx(50, abs=1)),
         ("end", Ending.DURATION, ""), "loop stop", "drain", "judged", "record closed",
         "close serial:one",
@@ -261,6 +263,19 @@ def test_what_nobody_expected_stops_the_device_and_the_loop(bench: Bench, where:
     with pytest.raises(RecordError):
         bench.run()
     assert bench.done[-4:] == ["host stop", "loop stop", "record closed", "close serial:one"]
+
+
+def test_an_unsafe_drive_is_refused_before_the_loop_starts(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused(*given: Any, **how: Any) -> None:
+        assert (given[2], how) == ("study", {})
+        raise InputError("it is not safe")
+
+    monkeypatch.setattr(real_time, "require_safe_drive", refused)
+    with pytest.raises(InputError):
+        bench.run(use="study")
+    assert bench.done == ["record closed", "close serial:one"]
 
 
 def test_another_sensor_is_given_the_loops_clock(bench: Bench) -> None:
