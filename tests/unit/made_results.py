@@ -17,7 +17,7 @@ def made_result(kind: type, **values: Any) -> Any:
 
 WARM = Warming(
     frequency=33.58e3, half_bandwidth=279.8, cold_amplitude=2.449e-6, cold_power=7.86,
-    thermal_resistance=9.418, heat_capacity=40.0, thermal_time=376.6, biot_number=0.12,
+    thermal_resistance=9.418, heat_capacity=40.0, thermal_time=376.6,
     tracked=WarmState(73.51, -246.8, 2.446e-6, 7.8), fixed=WarmState(55.1, -185.2, 2.037e-6, 5.4),
     other_fixed=(), time_to_fall=309.0, speed=0.366, field=15e3, assumed=("still air", "linear"),
     doubts=("it is hot",),

@@ -11,16 +11,10 @@ from typing import Annotated, NamedTuple
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.materials import SOLID_HEAT
-from squeezefilm.physics.plate.laminate import ceramics_of
 from squeezefilm.physics.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 
 LOSS_TANGENT = 0.02
 """Dielectric loss of the ceramic (assumed; data sheets of soft PZT give 0.015 to 0.03)."""
-CERAMIC_CONDUCTIVITY = 0.14
-"""W/(m K) of PZT-5H along its poling at 300 K, the least that was found (Yarlagadda et al. 1995,
-Low temperature thermal conductivity, heat capacity and heat generation of PZT; its abstract)."""
-GLASS_CONDUCTIVITY = 1.0
-"""W/(m K), taken for any substrate: metals conduct a hundred times better (handbooks)."""
 STATOR_THICKNESS: si.Metre = 4e-3
 """Thickness of a motor's stator, which no description of it states (assumed)."""
 
@@ -69,14 +63,12 @@ class ThermalBody:
     """Body that is warm: one temperature, two faces that give heat away.
 
     `face_area` is of one face, `perimeter` around it, `heat_capacity` of all that vibrates, without
-    glue and supports. `through` is the thermal resistance of its thickness times area, which the
-    Biot number compares with the air's. `assumed` says what its description leaves open.
+    glue and supports. `assumed` says what its description leaves open.
     """
 
     face_area: si.SquareMetre
     perimeter: si.Metre
     heat_capacity: si.JoulePerKelvin
-    through: Annotated[float, si.Unit("m2*K/W")]
     assumed: tuple[str, ...] = ()
 
 
@@ -90,9 +82,8 @@ def thermal_body(actuator: Actuator) -> ThermalBody:
         around = math.pi * actuator.mean_diameter
         area = around * actuator.radial_width
         capacity = area * STATOR_THICKNESS * SOLID_HEAT
-        through = STATOR_THICKNESS / GLASS_CONDUCTIVITY
         stator = f"a stator {1e3 * STATOR_THICKNESS:g} mm thick that takes 3 J/(cm3 K)"
-        return ThermalBody(area, 2 * around, capacity, through, (stator,))
+        return ThermalBody(area, 2 * around, capacity, (stator,))
     if isinstance(actuator, DiscPlate):
         outer, inner = actuator.diameter, actuator.inner_diameter
         area = math.pi / 4 * (outer**2 - inner**2)
@@ -104,12 +95,10 @@ def thermal_body(actuator: Actuator) -> ThermalBody:
         ceramic = sum(patch.length * patch.width * patch.thickness for patch in actuator.patches)
     metal, piezo = actuator.substrate, actuator.ceramic
     capacity = area * actuator.thickness * metal.heat_per_volume + ceramic * piezo.heat_per_volume
-    bonded = sum(ceramics_of(actuator))
-    through = actuator.thickness / GLASS_CONDUCTIVITY + bonded / CERAMIC_CONDUCTIVITY
     said = tuple(
         f"specific heat of {part.name}" for part in (metal, piezo) if part.specific_heat is None
     )
-    return ThermalBody(area, perimeter, capacity, through, said)
+    return ThermalBody(area, perimeter, capacity, said)
 
 
 def driven_thickness(actuator: Actuator) -> si.Metre | None:

@@ -55,7 +55,7 @@ class Warming:
     `frequency` is the drive's; `cold_amplitude` and `cold_power` are those there when it is
     switched on. `tracked` is the state where the frequency follows the resonance, `fixed` the one
     reached from cold where it does not, `other_fixed` the further stable ones there.
-    `thermal_resistance`, `thermal_time` and `biot_number` are at the tracked state.
+    `thermal_resistance` and `thermal_time` are at the tracked state.
     `rise_range` (K) and `drift_range` (Hz) are those of the tracked state over `EMISSIVITIES`
     where neither resistance nor emissivity is told (else no `rise_range`) and over
     `COEFFICIENT_SHARES` of the temperature coefficient, lower end first. `time_to_fall` is when
@@ -70,7 +70,6 @@ class Warming:
     thermal_resistance: si.KelvinPerWatt
     heat_capacity: si.JoulePerKelvin
     thermal_time: si.Second
-    biot_number: si.Dimensionless
     tracked: WarmState
     fixed: WarmState
     other_fixed: tuple[WarmState, ...]
@@ -143,7 +142,6 @@ def warming(
         thermal_resistance=resistance,
         heat_capacity=case.capacity,
         thermal_time=time,
-        biot_number=given / (2 * body.face_area) * body.through if resistance else 0.0,
         tracked=tracked,
         fixed=states[0],
         other_fixed=states[1:],

@@ -37,7 +37,7 @@ def mode(frequency: float = 40e3, harmonic: int = 2, **changes: Any) -> AnnularM
         "harmonic": harmonic, "label": f"B(1,{harmonic})", "frequency": frequency,
         "frequency_error": 4.0, "quality_factor": 100.0, "modal_mass": 2e-3,
         "modal_force_all_round": 4e-3, "half_wavelength": 31e-3 if harmonic else None,
-        "axial_share": 1.0, "layer_energy": np.ones(1), "node_radius": RADIUS,
+        "axial_share": 1.0, "node_radius": RADIUS,
         "node_height": np.zeros(5), "displacement": np.zeros((5, 3)), "surface_radius": RADIUS,
         "surface_shape": np.linspace(-1 / 3, 1, 5), "model": "a-model",
     }  # fmt: skip

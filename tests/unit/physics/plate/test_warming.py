@@ -84,7 +84,6 @@ def test_still_air_gives_the_plate_about_what_the_twin_once_assumed() -> None:
     mild, hot = (one.thermal_resistance for one in found)
     assert 9 < hot < mild < 14
     assert 300 < found[1].thermal_time < found[0].thermal_time < 550
-    assert found[1].biot_number < 0.15
 
 
 def test_a_softening_drift_from_below_has_two_states_and_from_cold_the_lower_is_reached() -> None:
@@ -204,10 +203,3 @@ def test_the_ranges_are_those_of_the_assumed_emissivity_and_coefficient() -> Non
         assert not any("emissivity" in said for said in known.assumed)
     # The warmth hardly depends on the drift, so that only the coefficient's share is left in it.
     assert known.drift_range[0] / known.drift_range[1] == pytest.approx(4.0, rel=0.05)
-
-
-def test_how_even_the_plate_is_warm_follows_from_what_the_air_takes() -> None:
-    """Biot's number: the coefficient of heat transfer of both faces, times the way through."""
-    found, body = warming(SOURCE, PLATE, MEASURED), thermal_body(PLATE)
-    transfer = 1 / (12.0 * 2 * body.face_area)
-    assert found.biot_number == pytest.approx(transfer * body.through, rel=1e-9)

@@ -38,8 +38,7 @@ class AnnularMode:
     `node_radius` and `node_height`, scaled so that the largest |W| on the surface is 1;
     `surface_shape` is W at `surface_radius`. `modal_mass` belongs to that scale.
     `modal_force_all_round` is the force of one volt for the polarity cos mθ ↦ 1, per radian of
-    ∫ s cos mθ dθ. `axial_share` is the share of the kinetic energy in u_z; `layer_energy` that of
-    the strain energy in each layer.
+    ∫ s cos mθ dθ. `axial_share` is the share of the kinetic energy in u_z.
     """
 
     harmonic: int
@@ -51,7 +50,6 @@ class AnnularMode:
     modal_force_all_round: si.NewtonPerVolt
     half_wavelength: si.Metre | None
     axial_share: si.Dimensionless
-    layer_energy: si.DimensionlessArray
     node_radius: si.MetreArray
     node_height: si.MetreArray
     displacement: si.DimensionlessArray
@@ -285,7 +283,6 @@ def _mode(
     axial = axial[axial >= 0]
     share = float(vector[axial] @ (system.mass @ vector)[axial])
     energies = np.array([vector @ (part @ vector) for part in system.layer_stiffness])
-    total = float(energies.sum())
     rigid = _rigid_share(system, vector) > 0.5
     m, mean = system.harmonic, section.mean_diameter
     return AnnularMode(
@@ -298,7 +295,6 @@ def _mode(
         modal_force_all_round=float(vector @ system.force) / scale,
         half_wavelength=math.pi * mean / (2 * m) if m > 0 else None,
         axial_share=share,
-        layer_energy=energies / total if total > 0 else energies,
         node_radius=system.r,
         node_height=system.z,
         displacement=field / scale,

@@ -30,7 +30,7 @@ def mode(frequency: float, quality: float, mass: float, force: float, tilt: floa
         harmonic=3, label="rigid" if frequency == 0 else "B(0,3)", frequency=frequency,
         frequency_error=0.0, quality_factor=quality, modal_mass=mass,
         modal_force_all_round=force, half_wavelength=None, axial_share=1.0,
-        layer_energy=np.ones(1), node_radius=SURFACE, node_height=SURFACE,
+        node_radius=SURFACE, node_height=SURFACE,
         displacement=np.zeros((30, 3)), surface_radius=SURFACE,
         surface_shape=1 + tilt * (SURFACE - 10e-3),
     )  # fmt: skip
