@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.instruments.control.fixed_point import clamped, quotient, scaled
+from squeezefilm.instruments.control.plate_loop import clamped, quotient, scaled
 
 POINTS = 33
 """Levels of the inverse table, at equal steps of friction."""

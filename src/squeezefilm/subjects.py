@@ -38,7 +38,7 @@ from squeezefilm.design.textures.report import figures as textures
 from squeezefilm.design.textures.report.page import write_render
 from squeezefilm.instruments.bench.play import PlayResult
 from squeezefilm.instruments.bench.played_session import PlayedSession
-from squeezefilm.instruments.report import figures as played
+from squeezefilm.instruments.report import page as played
 from squeezefilm.instruments.report.page import write_play
 from squeezefilm.measure.calibration.folder import FolderCalibration
 from squeezefilm.measure.report.calibration_page import FIGURES as CALIBRATION_FIGURES

@@ -29,7 +29,7 @@ from squeezefilm.instruments.bench.conversation import Conversation
 from squeezefilm.instruments.bench.loop_check import waited_time
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.states import Reason
+from squeezefilm.instruments.device.wire.frames import Reason
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.physics.render.motion.sensor import SensorModel
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm.instruments.device.machine.device import Machine
-from squeezefilm.instruments.device.wire.states import Fault
+from squeezefilm.instruments.device.wire.frames import Fault
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.pty_server import PtyServer

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 import pytest
 
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.states import Fault, State
+from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.twin import pty_server
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.pty_server import PtyServer

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.device.wire.states import Fault
+from squeezefilm.instruments.device.wire.frames import Fault
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.record.trace import read_trace
 

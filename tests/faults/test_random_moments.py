@@ -19,7 +19,7 @@ from tests.faults.forked import Forked
 from tests.faults.playing_host import tell_ending
 
 from squeezefilm.instruments.device.machine.playing import CLOCK
-from squeezefilm.instruments.device.wire.states import Fault
+from squeezefilm.instruments.device.wire.frames import Fault
 from squeezefilm.instruments.session.record.trace import read_trace
 
 from .test_play_faults import observed_twin

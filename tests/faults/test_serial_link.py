@@ -17,8 +17,8 @@ from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.playing import CLOCK
+from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.device.wire.link import Link
-from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.device.wire.streams import SerialStream, open_stream
 
 LIMITS = Limits(40.0, 20e3, 40.0, 0.0, 20e3, 60e3)

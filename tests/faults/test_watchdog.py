@@ -8,8 +8,7 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import Deframer
-from squeezefilm.instruments.device.wire.states import Fault
+from squeezefilm.instruments.device.wire.frames import Deframer, Fault
 
 # The slowest ramp that limits may have: 10 ms from the top.
 SLOWEST = Limits(60.0, 6000.0, 60.0, 0.0, 20e3, 60e3, insulation="glass")

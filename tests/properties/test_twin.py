@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import Deframer
-from squeezefilm.instruments.device.wire.states import State
+from squeezefilm.instruments.device.wire.frames import Deframer, State
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.plant import Plant

@@ -21,8 +21,7 @@ from squeezefilm.instruments.device.machine.held import HeldPlate
 from squeezefilm.instruments.device.machine.limits import DeviceLimits
 from squeezefilm.instruments.device.machine.playing import Mode
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import Deframer
-from squeezefilm.instruments.device.wire.states import State
+from squeezefilm.instruments.device.wire.frames import Deframer, State
 
 from .adversary import GAINS, LIMITS, Adversary
 from .test_frames import FINGER, PHASES, TEMPERATURE, check_the_session

@@ -24,8 +24,7 @@ from squeezefilm.instruments.device.machine import device
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.playing import Finger
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import Frame
-from squeezefilm.instruments.device.wire.states import Reason
+from squeezefilm.instruments.device.wire.frames import Frame, Reason
 from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness, lateness_class
 from squeezefilm.physics.render.motion.sensor import SensorModel
 

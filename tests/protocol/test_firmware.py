@@ -13,8 +13,7 @@ from squeezefilm.instruments.control.plate_loop import LOCKED, PROBING, SEARCHIN
 from squeezefilm.instruments.device.machine.limits import NO_LEVEL, level_of
 from squeezefilm.instruments.device.machine.playing import Mode
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import LONGEST_PAYLOAD, Frame, cobs_encode
-from squeezefilm.instruments.device.wire.states import State
+from squeezefilm.instruments.device.wire.frames import LONGEST_PAYLOAD, Frame, State, cobs_encode
 
 from .builds import Library, Sanitized
 from .recording import (

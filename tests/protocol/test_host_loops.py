@@ -14,9 +14,8 @@ from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.held import HeldPlate
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import Frame
+from squeezefilm.instruments.device.wire.frames import Frame, Reason, State
 from squeezefilm.instruments.device.wire.link import Link
-from squeezefilm.instruments.device.wire.states import Reason, State
 
 from .adversary import LIMITS as NARROW
 from .wire import Wire

@@ -15,8 +15,8 @@ from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.serial_ports import SerialDrive
 from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import State
 from squeezefilm.instruments.device.wire.link import Link
-from squeezefilm.instruments.device.wire.states import State
 
 from .wire import Wire
 

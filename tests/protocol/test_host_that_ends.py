@@ -15,8 +15,8 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import DeviceError
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.machine.device import Machine
+from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.device.wire.link import Link
-from squeezefilm.instruments.device.wire.states import Fault, State
 
 from .wire import TICK, Wire
 

@@ -11,8 +11,7 @@ from hypothesis.stateful import RuleBasedStateMachine, invariant, rule, run_stat
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.held import HeldPlate
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import Deframer
-from squeezefilm.instruments.device.wire.states import Fault, State
+from squeezefilm.instruments.device.wire.frames import Deframer, Fault, State
 
 from .adversary import Adversary
 from .recording import Resonator

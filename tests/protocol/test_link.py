@@ -16,8 +16,8 @@ from squeezefilm.instruments.device.machine.limits import DeviceLimits
 from squeezefilm.instruments.device.ports import Drive
 from squeezefilm.instruments.device.serial_ports import SerialDrive
 from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.device.wire.link import Link
-from squeezefilm.instruments.device.wire.states import Fault, State
 
 from .adversary import LIMITS
 from .wire import Faults, Wire

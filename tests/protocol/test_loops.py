@@ -19,9 +19,16 @@ from tests.friction_loop import (
 
 from squeezefilm.core.compiled import compiled
 from squeezefilm.instruments.control import plate_loop as loop
-from squeezefilm.instruments.control.fixed_point import QUARTER, quotient, scaled, sine
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
-from squeezefilm.instruments.control.plate_loop import LoopGains, first_state, plate_step
+from squeezefilm.instruments.control.plate_loop import (
+    QUARTER,
+    LoopGains,
+    first_state,
+    plate_step,
+    quotient,
+    scaled,
+    sine,
+)
 
 from .arm import Arm, instruction_counter
 from .builds import LOOPS, STRICT, build, tool

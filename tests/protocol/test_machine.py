@@ -9,8 +9,7 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.instruments.device.machine.device import Machine, next_token
 from squeezefilm.instruments.device.machine.limits import DeviceLimits, level_of
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import Frame, frame_from_bytes
-from squeezefilm.instruments.device.wire.states import Fault, Reason, State
+from squeezefilm.instruments.device.wire.frames import Fault, Frame, Reason, State, frame_from_bytes
 
 from .adversary import LIMITS
 

@@ -13,7 +13,7 @@ import pytest
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.states import State
+from squeezefilm.instruments.device.wire.frames import State
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.settings import PlateDrift, TwinSettings

@@ -17,7 +17,7 @@ from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.core.results import to_json
 from squeezefilm.instruments.bench import play as bench_play
 from squeezefilm.instruments.bench.check_result import CheckResult
-from squeezefilm.instruments.device.wire.states import Fault, State
+from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.report import page
 from squeezefilm.instruments.session.loop.rows import COLUMNS
 from squeezefilm.instruments.session.play.plan import PlayView

@@ -25,8 +25,8 @@ from squeezefilm.instruments.bench.conversation import Conversation
 from squeezefilm.instruments.bench.reading_check import reading_checks, sensor_checks
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m
+from squeezefilm.instruments.device.wire.frames import Fault, Reason, State
 from squeezefilm.instruments.device.wire.link import ANSWER_LIMIT
-from squeezefilm.instruments.device.wire.states import Fault, Reason, State
 from squeezefilm.instruments.session.play.plan import REPORT_PERIOD
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel
 

@@ -16,8 +16,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import WATCHDOG
 from squeezefilm.instruments.device.machine.device import LATE_TICK
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import Deframer, Frame
-from squeezefilm.instruments.device.wire.states import Fault, Reason, State
+from squeezefilm.instruments.device.wire.frames import Deframer, Fault, Frame, Reason, State
 
 if TYPE_CHECKING:
     from squeezefilm.instruments.device.wire.streams import ByteStream

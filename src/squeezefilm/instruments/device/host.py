@@ -32,8 +32,8 @@ from squeezefilm.instruments.device.wire.arguments import (
     number,
     whole_number,
 )
+from squeezefilm.instruments.device.wire.frames import Fault, Reason, State
 from squeezefilm.instruments.device.wire.link import Link, refusal
-from squeezefilm.instruments.device.wire.states import Fault, Reason, State
 
 MOST_READINGS = 10_000
 """Readings kept for those who have not read them yet."""

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, write_folder
-from squeezefilm.core.kit.numbers import printable
+from squeezefilm.core.kit.numbers import HZ, M, S, printable, shown
 from squeezefilm.core.kit.page_style import (
+    FigureOf,
     bullets,
     drawn_figures,
     links,
@@ -20,13 +26,162 @@ from squeezefilm.core.kit.page_style import (
     stamped,
     text_table,
 )
-from squeezefilm.instruments.report import figures as draw
 from squeezefilm.instruments.report.terminal import play_rows, play_warnings
+from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.loop.lateness import Lateness, class_ends
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.instruments.bench.play import PlayResult
+    from squeezefilm.instruments.bench.played_session import PlayedSession, PlayedWay
+
+_WINDOW = 0.25
+
+
+@style.drawn
+def friction(session: PlayedSession) -> Figure:
+    """Friction wanted and rendered over the finger's place, as recorded and as it was."""
+    judged = session.by_truth or session.by_record
+    way = judged.way
+    if way.time.size < 8:
+        said = "There is no place to draw friction over."
+        return style.message_figure("The finger was not seen", said)
+    title = f"{style.plain(session.setup.name, 40)}: "
+    fidelity = judged.fidelity
+    if fidelity is None:
+        title += "it cannot be judged"
+    else:
+        kept = fidelity.contrast_kept[np.isfinite(fidelity.contrast_kept)]
+        title += f"{100 * float(kept[0]):.0f} % of the contrast is kept" if kept.size else "played"
+        if math.isfinite(fidelity.lag):
+            word = "late" if fidelity.lag >= 0 else "early"
+            title += f", {1e3 * abs(fidelity.lag):.2f} mm {word}"
+    figure = style.new_figure(title, f"{way.source}; friction by the display's law", 4.2)
+    axes = figure.subplots()
+    part = _middle_pass(way)
+    order = part[np.argsort(way.x[part])]
+    x, wanted = 1e3 * way.x[order], way.relative_friction_wanted[order]
+    axes.plot(x, wanted, **style.WANTED, label="wanted where the finger was")
+    axes.plot(x, way.relative_friction_rendered[order], **style.RENDERED, label="rendered")
+    if session.by_truth is not None:
+        seen = session.by_record.way
+        inside = (seen.time >= way.time[part[0]]) & (seen.time <= way.time[part[-1]])
+        x, rendered = 1e3 * seen.x[inside], seen.relative_friction_rendered[inside]
+        named = "by the record (sensor and pickup)"
+        axes.plot(x, rendered, ".", ms=3, color=style.GREEN, label=named)
+    axes.set(xlabel="place of the finger (mm)", ylabel="relative friction µ′/µ", ylim=(0, 1.05))
+    style.legend_below(axes, columns=3)
+    return figure
+
+
+def _middle_pass(way: PlayedWay) -> si.FloatArray:
+    """Indices of the one-way pass in the middle of a session."""
+    turns = _turns(way)
+    middle = int(np.searchsorted(turns, way.x.size // 2))
+    first = turns[middle - 1] if 0 < middle <= turns.size else 0
+    last = turns[middle] if middle < turns.size else way.x.size - 1
+    return np.arange(first, last + 1)
+
+
+def _turns(way: PlayedWay) -> si.FloatArray:
+    """Places where the finger turns: the ends of a lazy follower's moves of more than 1 mm."""
+    turns, extreme, at, rising = [], float(way.x[0]), 0, True
+    for k, x in enumerate(way.x.tolist()):
+        if (x >= extreme) if rising else (x <= extreme):
+            extreme, at = x, k
+        elif abs(x - extreme) > 1e-3:
+            turns.append(at)
+            extreme, at, rising = x, k, not rising
+    return np.array(turns, dtype=np.int64)
+
+
+@style.drawn
+def amplitude(session: PlayedSession) -> Figure:
+    """The amplitude commanded, reported by the pickup and true, over a quarter of a second."""
+    rows = session.trace.rows
+    if len(rows) < 8:
+        return style.message_figure("Nothing was played", "The record holds no rows.")
+    plan = session.setup.plan.loop
+    time = rows[:, column.TIME]
+    middle = float(time[len(time) // 2])
+    inside = np.abs(time - middle) <= 0.5 * _WINDOW
+    t = time[inside]
+    largest = plan.drive.largest_amplitude
+    figure = style.new_figure(
+        f"The display reaches {shown(largest, M, 3)}; the plate follows its commands with "
+        f"τ = {shown(plan.envelope.rise_time_constant, S, 2)}",
+        f"mode {session.setup.plan.mode}, compensation {plan.compensation}, commands "
+        f"{shown(plan.output_delay, S, 2)} ahead",
+        5.0,
+    )
+    above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
+    commanded = plan.drive.amplitude_per_volt * np.abs(rows[inside, column.VOLTAGE])
+    above.step(
+        t + plan.output_delay,
+        1e6 * commanded,
+        where="post",
+        color=style.ORANGE,
+        lw=1.2,
+        label="commanded, at its time",
+    )
+    if session.by_truth is not None:
+        way = session.by_truth.way
+        near = np.abs(way.time - middle) <= 0.5 * _WINDOW
+        above.plot(way.time[near], 1e6 * way.amplitude[near], **style.RENDERED, label="true")
+    seen = session.by_record.way
+    near = np.abs(seen.time - middle) <= 0.5 * _WINDOW
+    x, y = seen.time[near], 1e6 * seen.amplitude[near]
+    above.plot(x, y, ".", ms=3.5, color=style.GREEN, label="in the record")
+    above.set(ylabel="amplitude (µm)", ylim=(0, 1.12e6 * largest))
+    style.legend_beside(above)
+    below.plot(t, 1e3 * rows[inside, column.X], color=style.INK, lw=1.4)
+    below.set(xlabel="time (s)", ylabel="place (mm)", xlim=(t[0], t[-1]))
+    return figure
+
+
+@style.drawn
+def lateness(session: PlayedSession) -> Figure:
+    """Figure of how late ticks were made, and how long samples wait for their command."""
+    said = session.last("loop").get("lateness")
+    if not said or not said["made"]:
+        return style.message_figure("The loop could not say how late it was", "It made no tick.")
+    ticks = Lateness.from_json(said)
+    due = ticks.made + ticks.lost
+    lost = f"{100 * ticks.lost / max(due, 1):.2g} % of {due} ticks were lost"
+    if not ticks.lost:
+        lost = f"None of {due} ticks was lost"
+    figure = style.new_figure(
+        f"{lost}; half are made within {shown(ticks.p50, S, 2)}, 99.9 % within "
+        f"{shown(ticks.p99_9, S, 2)}",
+        f"loop at {shown(ticks.rate, HZ, 3)}; a tick is lost when the next is due before it began",
+        3.8,
+    )
+    left, right = figure.subplots(1, 2)
+    # The first class, whatever is below 100 ns, is drawn as wide as the next.
+    ends = 1e6 * class_ends()[:-1]
+    edges = np.concatenate([[ends[0] ** 2 / ends[1]], ends])
+    left.stairs(ticks.counts[:-1], edges, fill=True, color=style.BLUE)
+    used = np.flatnonzero(ticks.counts[:-1])
+    left.set_xlim(edges[max(int(used[0]) - 2, 0)], max(2e6 / ticks.rate, 1.5 * edges[used[-1] + 1]))
+    left.axvline(1e6 / ticks.rate, **style.REFERENCE, label="a period")
+    left.set(xscale="log", yscale="log", xlabel="lateness (µs)", ylabel="ticks")
+    left.set_ylim(0.7, None)
+    style.plain_log(left.xaxis, left.yaxis)
+    left.legend(loc="upper left", frameon=False)
+    lag = session.trace.rows[:, column.LAG]
+    lag = 1e3 * lag[np.isfinite(lag)]
+    if lag.size:
+        right.hist(lag, bins=60, color=style.GREEN)
+    right.set(xlabel="way from sample to its command (mm)", ylabel="ticks")
+    return figure
+
+
+FIGURES = (
+    FigureOf("friction", "Friction along the finger's way", friction),
+    FigureOf("amplitude", "Amplitude", amplitude),
+    FigureOf("lateness", "Lateness and lag", lateness),
+)
 
 
 def write_play(
@@ -38,7 +193,7 @@ def write_play(
     """
     tell = progress or (lambda _: None)
     tell("figures")
-    figures = drawn_figures(draw.FIGURES, result.session, "play-")
+    figures = drawn_figures(FIGURES, result.session, "play-")
     files = picture_files(figures)
     files["summary.json"] = json_text(result.summary())
     there = {*files, *(file.name for file in folder.glob("*"))}

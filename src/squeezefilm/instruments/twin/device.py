@@ -16,7 +16,7 @@ from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.held import HeldPlate
 from squeezefilm.instruments.device.machine.limits import DeviceLimits
 from squeezefilm.instruments.device.machine.playing import CLOCK, until
-from squeezefilm.instruments.device.wire.states import State
+from squeezefilm.instruments.device.wire.frames import State
 from squeezefilm.instruments.twin.hand import Hand
 from squeezefilm.instruments.twin.plant import Plant, TruthRecord
 from squeezefilm.instruments.twin.settings import TwinSettings

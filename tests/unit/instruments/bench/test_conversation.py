@@ -11,7 +11,7 @@ from squeezefilm.core.drive_limits import WATCHDOG
 from squeezefilm.instruments.bench.conversation import KEEP_ALIVE, Conversation
 from squeezefilm.instruments.device.machine.device import LATE_TICK
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.states import Fault, State
+from squeezefilm.instruments.device.wire.frames import Fault, State
 
 
 class Stream:

@@ -14,8 +14,8 @@ from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.bench import resonance_sweep
 from squeezefilm.instruments.bench.resonance_sweep import ResonanceSweep, peak, sweep_resonance
 from squeezefilm.instruments.device.host import DeviceHost
+from squeezefilm.instruments.device.wire.frames import State
 from squeezefilm.instruments.device.wire.link import Link
-from squeezefilm.instruments.device.wire.states import State
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.settings import PickupModel, PlateDrift, TwinSettings

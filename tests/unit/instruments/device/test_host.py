@@ -14,7 +14,7 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.device.host import MOST_READINGS, DeviceHost
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.states import Fault, Reason, State
+from squeezefilm.instruments.device.wire.frames import Fault, Reason, State
 
 LIMITS = Limits(60.0, 10_000.0, 30.0, 5.0, 20e3, 60e3, duty=0.8, insulation="glass")
 # A firmware that allows exactly these.

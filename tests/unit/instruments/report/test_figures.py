@@ -13,7 +13,7 @@ from tests.unit.drawn import labelled, words
 
 from squeezefilm.core.kit.style import BLUE, GREEN, ORANGE
 from squeezefilm.instruments.bench.played_session import PlayedWay
-from squeezefilm.instruments.report.figures import amplitude, friction, lateness
+from squeezefilm.instruments.report.page import amplitude, friction, lateness
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness, lateness_class
 

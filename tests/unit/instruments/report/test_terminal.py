@@ -12,7 +12,7 @@ import pytest
 from tests.unit.printed import printed
 
 from squeezefilm.instruments.bench.check_result import CheckResult, DeviceCheck
-from squeezefilm.instruments.device.wire.states import Fault, State
+from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.report.terminal import (
     line_a_second,
     play_rows,
@@ -22,8 +22,7 @@ from squeezefilm.instruments.report.terminal import (
     show_play,
     view_line,
 )
-from squeezefilm.instruments.session.play.held import HeldState
-from squeezefilm.instruments.session.play.plan import PlayView
+from squeezefilm.instruments.session.play.plan import HeldState, PlayView
 from squeezefilm.instruments.session.play.usability import Usability
 from squeezefilm.instruments.session.record.trace import TraceExport
 

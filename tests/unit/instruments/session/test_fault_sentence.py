@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.instruments.device.wire.states import Fault
+from squeezefilm.instruments.device.wire.frames import Fault
 from squeezefilm.instruments.session.play.real_time import fault_sentence
 
 

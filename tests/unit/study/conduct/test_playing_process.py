@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import DeviceError, InputError
-from squeezefilm.instruments.device.wire.states import State
+from squeezefilm.instruments.device.wire.frames import State
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.play.plan import Ending
 from squeezefilm.instruments.session.play.real_time import PlayOutcome

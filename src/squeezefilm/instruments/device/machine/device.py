@@ -21,8 +21,14 @@ from squeezefilm.instruments.device.machine.playing import (
     Tile,
 )
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import VERSION, Deframer, Frame
-from squeezefilm.instruments.device.wire.states import Fault, Reason, State
+from squeezefilm.instruments.device.wire.frames import (
+    VERSION,
+    Deframer,
+    Fault,
+    Frame,
+    Reason,
+    State,
+)
 
 SILENCE = 50_000
 """µs without an accepted frame after which an armed device faults."""

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from squeezefilm.instruments.control.fixed_point import quotient, scaled
 from squeezefilm.instruments.control.gains import within_bounds
 from squeezefilm.instruments.control.plate_loop import (
     LOCKED,
@@ -20,10 +19,12 @@ from squeezefilm.instruments.control.plate_loop import (
     LoopState,
     first_state,
     plate_step,
+    quotient,
+    scaled,
 )
 from squeezefilm.instruments.device.machine.limits import DeviceLimits
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.states import Reason
+from squeezefilm.instruments.device.wire.frames import Reason
 
 _NO_COMMAND = LoopCommand(0, 0, 0)
 _NO_STATE = LoopState(SEARCHING, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)

@@ -11,12 +11,12 @@ from collections import deque
 from dataclasses import dataclass, field
 from enum import Enum, auto
 
+from squeezefilm.instruments.device.wire.frames import Reason
 from squeezefilm.instruments.device.wire.messages import (
     CAME_LATE,
     LONGEST_TILE,
     RAN_DRY,
 )
-from squeezefilm.instruments.device.wire.states import Reason
 
 CLOCK = 0xFFFFFFFF
 LONGEST_QUEUE = 512

@@ -11,6 +11,7 @@ import struct
 import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from enum import IntEnum
 
 from squeezefilm.core.errors import InputError
 
@@ -136,3 +137,40 @@ class Deframer:
             except InputError:
                 self.damaged += 1
                 yield None
+
+
+class State(IntEnum):
+    """State of the device."""
+
+    OFF = 0
+    ARMED = 1
+    PLAYING = 2
+    FAULT = 3
+
+
+class Fault(IntEnum):
+    """Reason of a fault."""
+
+    NONE = 0
+    WATCHDOG = 1
+    HEAT = 2
+    DUTY = 3
+    LATE_TICK = 4
+    TRIPPED = 5
+
+
+class Reason(IntEnum):
+    """Answer of the device to a frame."""
+
+    ACCEPTED = 0
+    VERSION = 1
+    TYPE = 2
+    LENGTH = 3
+    SEQUENCE = 4
+    STATE = 5
+    VALUE = 6
+    TOKEN = 7
+    NO_LIMITS = 8
+    TILE = 9
+    FULL = 10
+    NO_LOOPS = 11

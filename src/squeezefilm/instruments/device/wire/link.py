@@ -19,8 +19,7 @@ from squeezefilm.core.errors import DeviceError, RefusedError
 from squeezefilm.instruments.device.device_clock import DeviceClock
 from squeezefilm.instruments.device.machine.playing import until
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import Deframer, Frame
-from squeezefilm.instruments.device.wire.states import Fault, Reason, State
+from squeezefilm.instruments.device.wire.frames import Deframer, Fault, Frame, Reason, State
 from squeezefilm.instruments.device.wire.streams import ByteStream
 
 KEEP_ALIVE_PERIOD: si.Second = 15e-3

@@ -20,17 +20,22 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import DeviceError, LoopError
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.ports import Sensor
+from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.device.wire.messages import (
     MOST_LEVELS,
     PICKUP_PRESENT,
     SENSOR_PRESENT,
     Reading,
 )
-from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.rows import flag_meanings
-from squeezefilm.instruments.session.play.held import HeldState, held_columns
-from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, PlayView
+from squeezefilm.instruments.session.play.plan import (
+    Ending,
+    HeldState,
+    PlayPlan,
+    PlayView,
+    held_columns,
+)
 from squeezefilm.instruments.session.play.usability import TickCount, Usability
 from squeezefilm.instruments.session.record.trace_writer import TraceWriter
 

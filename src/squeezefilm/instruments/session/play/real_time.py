@@ -32,9 +32,9 @@ from squeezefilm.instruments.device.priority import (
     real_time_granted,
 )
 from squeezefilm.instruments.device.serial_ports import SerialDrive
+from squeezefilm.instruments.device.wire.frames import Fault
 from squeezefilm.instruments.device.wire.link import Link
 from squeezefilm.instruments.device.wire.safety import Use, require_safe_drive
-from squeezefilm.instruments.device.wire.states import Fault
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.instruments.session.loop.ring import ring_put_all, taken

@@ -14,8 +14,8 @@ from squeezefilm.instruments.device.machine.playing import (
     Tile,
     until,
 )
+from squeezefilm.instruments.device.wire.frames import Reason
 from squeezefilm.instruments.device.wire.messages import RAN_DRY
-from squeezefilm.instruments.device.wire.states import Reason
 
 # The device's clock wraps within a block that begins here.
 WRAPS = 2**32 - 250

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from squeezefilm.instruments.device.machine.playing import LONGEST_REPORT, SHORTEST_REPORT, Reports
-from squeezefilm.instruments.device.wire.states import Reason
+from squeezefilm.instruments.device.wire.frames import Reason
 
 TURN = 2**32
 

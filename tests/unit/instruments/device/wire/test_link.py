@@ -10,9 +10,8 @@ import pytest
 
 from squeezefilm.core.errors import DeviceError
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.frames import Deframer, Frame
+from squeezefilm.instruments.device.wire.frames import Deframer, Fault, Frame, Reason, State
 from squeezefilm.instruments.device.wire.link import ATTEMPTS, WORDS, Link, LinkStatistics, refusal
-from squeezefilm.instruments.device.wire.states import Fault, Reason, State
 
 Answers = Callable[[Frame, int], list[m.Message]]
 

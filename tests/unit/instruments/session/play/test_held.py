@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.session.play.held import HELD_COLUMNS, HeldState, held_columns
+from squeezefilm.instruments.session.play.plan import HELD_COLUMNS, HeldState, held_columns
 
 SAID = m.Loops(
     time=5, mode=2, flags=m.LOOPS_ON | m.TEMPERATURE_KNOWN, lost=0, false_locks=0,

@@ -13,13 +13,13 @@ import pytest
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import DeviceError, InputError, LoopError
 from squeezefilm.core.quantities import FloatArray
+from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.device.wire.messages import (
     MOST_LEVELS,
     PICKUP_PRESENT,
     SENSOR_PRESENT,
     Reading,
 )
-from squeezefilm.instruments.device.wire.states import Fault, State
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, tile_of

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import DeviceError, InputError, LoopError, RecordError
-from squeezefilm.instruments.device.wire.states import Fault, State
+from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.play import real_time
