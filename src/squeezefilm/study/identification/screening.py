@@ -68,7 +68,7 @@ class Screening:
         rule: of the design.
         people: everybody, judged.
         results: the main number (Weber fraction, exponent, d′ or share of right answers) of
-            "everybody" and "without those named".
+            "everybody", "without those named", and "robust, everybody".
         said: of all people together; empty for nothing.
     """
 

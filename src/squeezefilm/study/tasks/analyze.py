@@ -134,6 +134,7 @@ def _screened(answers: Answers, how: _How) -> StudyAnalysis:
     rule = rule_of(answers.design)
     out = [person.person for person in people if person.reasons]
     results: dict[str, Estimate | None] = {}
+    robust: Estimate | None = None
     if not out or len(out) == len(people):
         chosen = analysis(answers, how)
         results["everybody"] = chosen.main_number
@@ -142,21 +143,26 @@ def _screened(answers: Answers, how: _How) -> StudyAnalysis:
         rest = answers.take(~np.isin(answers.participant, numbers))
         excludes = rule.action == "exclude"
         chosen = analysis(rest if excludes else answers, how)
-        other = _main_number(answers if excludes else rest, how)
+        other, robust = _main_numbers(answers if excludes else rest, how)
         pair = (other, chosen.main_number) if excludes else (chosen.main_number, other)
         results |= dict(zip(("everybody", "without those named"), pair, strict=True))
+    if isinstance(chosen, TaskAnalysis):
+        is_everybody = len(chosen.people) == len(people)
+        results["robust, everybody"] = chosen.robust if is_everybody else robust
     known = {name: result for name, result in results.items() if result is not None}
     screening = Screening(rule, people, known, said)
     methods = chosen.methods + screening.left_out_sentence
     return dataclasses.replace(chosen, screening=screening, methods=methods)
 
 
-def _main_number(answers: Answers, how: _How) -> Estimate | None:
-    """The main number that a display's analysis would have."""
+def _main_numbers(answers: Answers, how: _How) -> tuple[Estimate | None, Estimate | None]:
+    """The main number that a display's analysis would have, and the robust one."""
     main = answers.main(how.display)
     if answers.design.task != "match-to-sample":
-        return measured(main, how.level, how.seed, how.tell).pooled
-    return proportion_correct(_identified(main, how))
+        found = measured(main, how.level, how.seed, how.tell)
+        return found.pooled, found.robust
+    asked = _identified(main, how)
+    return proportion_correct(asked), None
 
 
 def stimuli_and_answers(design: StudyDesign) -> tuple[list[str], list[str]]:

@@ -102,6 +102,7 @@ class TaskAnalysis(Result):
         notes: what could not be computed, or needs care, and why.
         methods: the methods section of a paper.
         screening: who does the task, by the design's rule.
+        robust: `pooled` as people who do not do the task hardly move it.
         seed: of resampling.
     """
 
@@ -127,6 +128,7 @@ class TaskAnalysis(Result):
     notes: tuple[str, ...]
     methods: str
     screening: Screening | None
+    robust: Estimate | None
     seed: int
     _shown: ClassVar[str] = "name origin measure participants trials"
 

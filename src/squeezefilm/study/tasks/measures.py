@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy import stats
+from scipy.stats import mstats
 
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers
@@ -46,10 +49,11 @@ class Measured:
     more: dict[str, Estimate]
     functions: dict[str, PersonFunction]
     notes: list[str]
+    robust: Estimate | None = None
 
 
 def measured(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
-    """Results of the analysis that the answers' task has.
+    """Results of the analysis that the answers' task has, with a robust number where there is one.
 
     `level` is of the intervals (1), `seed` of resampling; `tell` hears each step.
     """
@@ -59,7 +63,23 @@ def measured(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
         analysis = _ranked
     elif any(series.in_runs for series in main.design.adaptive):
         analysis = _set
-    return analysis(main, level, seed, tell)
+    found = analysis(main, level, seed, tell)
+    return replace(found, robust=found.robust or _trimmed(found.persons, level))
+
+
+def _trimmed(persons: Sequence[PersonEstimate], level: float) -> Estimate | None:
+    """The mean of people's values without the fifth at either end, with Yuen's interval (1974,
+    10.1093/biomet/61.1.165); None of fewer than five people."""
+    values = np.sort([person.estimate.value for person in persons])
+    cut = values.size // 5
+    if not cut:
+        return None
+    kept = values.size - 2 * cut
+    error = float(mstats.winsorize(values, (cut / values.size,) * 2).std(ddof=1))
+    reach = float(stats.t.isf((1 - level) / 2, kept - 1)) * error * math.sqrt(values.size - 1)
+    reach /= math.sqrt(kept * (kept - 1.0))
+    mean = float(values[cut : values.size - cut].mean())
+    return Estimate(mean, mean - reach, mean + reach, level, "trimmed by a fifth at either end")
 
 
 def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
@@ -69,10 +89,12 @@ def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> Measur
     tell("mixed model over people")
     notes: list[str] = []
     persons = people.estimates(level)
-    pooled, spread = persons[0].estimate, None
+    pooled, spread, robust = persons[0].estimate, None, None
     if len(persons) > 1:
         population = people.population
         pooled, spread = of_population(population.estimate(level), _POPULATION)
+        low, middle, high = (math.exp(end) for end in population.robust(level))
+        robust = Estimate(middle, low, high, level, "posterior, some do not do the task")
         # Answers at random go into a criterion where there is one.
         criterion = main.model.criterion
         notes += [note for note in [population.lapse_note] if note and not criterion]
@@ -89,6 +111,7 @@ def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> Measur
         more_numbers(main, people.bias, level),
         people.functions(level),
         notes,
+        robust,
     )
 
 

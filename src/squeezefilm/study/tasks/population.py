@@ -40,6 +40,8 @@ USUAL_SPREAD = 0.5
 """Scale of τ's half-normal prior (1): thresholds of most people lie within a factor of e of the
 middle one. Assumed."""
 _NARROWEST = 1e-3
+NOT_DOING_IT: si.Dimensionless = 0.1
+"""Share of people who do not do the task, as a robust estimate has it. Assumed."""
 # Spreads at which the scatter of people is computed; two people may bound theirs nowhere below.
 _TRIED = np.concatenate([[0.0], np.geomspace(1e-3, 1e3, 700)])
 
@@ -84,12 +86,18 @@ class Population:
         width: of each cell, likewise.
         people: likelihood of each one's answers at x under each of `MEAN_LAPSES`, up to one factor,
             shape (lapses, cells).
+        otherwise: likelihood of each one's answers from somebody who does not do the task, up to
+            the same factor; 0 where it is not known.
 
     Raises `InputError` for nobody.
     """
 
     def __init__(
-        self, x: si.FloatArray, width: si.FloatArray, people: Sequence[si.FloatArray]
+        self,
+        x: si.FloatArray,
+        width: si.FloatArray,
+        people: Sequence[si.FloatArray],
+        otherwise: Sequence[float] = (),
     ) -> None:
         if not people:
             raise InputError("a population needs at least one person")
@@ -100,6 +108,7 @@ class Population:
         self._widths = np.diff(edges) * np.exp(-0.5 * (self._spreads / USUAL_SPREAD) ** 2)
         self._edges = edges
         self._x, self._width, self._people = x, width, people
+        self._otherwise = otherwise or [0.0] * len(people)
         self._logs = self._log_likelihoods()
 
     def _log_likelihoods(self) -> si.FloatArray:
@@ -174,6 +183,18 @@ class Population:
         density = density / density.sum()
         mean = float(density @ self._x)
         return mean, float(density @ (self._x - mean) ** 2)
+
+    def robust(self, level: si.Dimensionless = 0.95) -> tuple[float, float, float]:
+        """Lower end, median and upper end of the mean over people who do the task, where each may
+        be one of the `NOT_DOING_IT` who do not: a mixture in place of a verdict."""
+        si.require("level", level, above=0.0, below=1.0)
+        greatest = [(likelihood * self._width).max() for likelihood in self._people]
+        other = np.array(self._otherwise) / np.array(greatest)
+        # The densities over x leave this factor out.
+        with np.errstate(divide="ignore"):
+            otherwise = np.log(NOT_DOING_IT * other * np.sqrt(2 * np.pi))
+        mixed = np.logaddexp(np.log(1 - NOT_DOING_IT) + self._logs, otherwise[:, None, None, None])
+        return self._mean(mixed.sum(axis=0), level)
 
     def _mean(self, total: si.FloatArray, level: float) -> tuple[float, float, float]:
         """Ends and median of μ from the logarithm of a likelihood of all people."""

@@ -17,7 +17,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy import stats
-from scipy.special import ndtr
+from scipy.special import betaln, ndtr
 
 from squeezefilm.core import quantities as si
 from squeezefilm.study.adaptive.series import adaptive_method
@@ -36,6 +36,7 @@ from squeezefilm.study.tasks.findings import (
 from squeezefilm.study.tasks.population import LAPSES, Population, lapse_weights
 
 _SPREADS = 101
+_MOST = 600.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,6 +51,7 @@ class PeopleOnGrid:
         bias: mean of the person's bias or criterion.
         lapse: mean of the person's lapse rate (1).
         trials: of each person.
+        otherwise: likelihood of each one's answers from somebody who does not do the task.
     """
 
     names: list[str]
@@ -59,12 +61,13 @@ class PeopleOnGrid:
     bias: list[float]
     lapse: list[float]
     trials: list[int]
+    otherwise: list[float]
 
     @cached_property
     def population(self) -> Population:
         """All of them, put together once."""
         middle, width = 0.5 * (self.edges[1:] + self.edges[:-1]), np.diff(self.edges)
-        return Population(middle, width, self.likelihood)
+        return Population(middle, width, self.likelihood, self.otherwise)
 
     def estimates(self, level: si.Dimensionless) -> list[PersonEstimate]:
         """Each person's threshold: the posterior's median and central interval, with the lapse
@@ -104,7 +107,7 @@ def on_grid(main: Answers, tell: Callable[[str], None] = lambda _: None) -> Peop
     prior = lapse_weights()
     thresholds = model.threshold * np.exp(edges)
     thresholds = np.log(thresholds if main.design.in_amounts else np.expm1(thresholds))
-    people = PeopleOnGrid([], thresholds, np.diff(edges), [], [], [], [])
+    people = PeopleOnGrid([], thresholds, np.diff(edges), [], [], [], [], [])
     for person in np.unique(main.participant):
         tell(f"psychometric function {len(people.names) + 1} of {len(main.people)}")
         mine = main.participant == person
@@ -112,11 +115,17 @@ def on_grid(main: Answers, tell: Callable[[str], None] = lambda _: None) -> Peop
         k = np.bincount(where, hit[mine].astype(float)).astype(np.float64)
         n = np.bincount(where).astype(np.float64)
         found = logs(places, k, n)
-        whole = np.exp(found - found.max())
+        greatest = float(found.max())
+        whole = np.exp(found - greatest)
         likely = whole * prior.mean(axis=0)[:, None, None]
         likely /= likely.sum()
         people.names.append(main.people[person])
         people.likelihood.append(prior @ whole.mean(axis=1))
+        anyhow = _anyhow(model, float(k.sum()), float(n.sum()), greatest)
+        if model.rate is None:
+            mixed_up = np.exp(np.minimum(logs(places, n - k, n) - greatest, _MOST))
+            anyhow = 0.5 * anyhow + 0.5 * float((prior[1] @ mixed_up.mean(axis=1)).mean())
+        people.otherwise.append(anyhow)
         people.bias.append(float(likely.sum(axis=(0, 2)) @ criteria))
         people.lapse.append(float(likely.sum(axis=(1, 2)) @ LAPSES))
         people.trials.append(int(mine.sum()))
@@ -150,6 +159,15 @@ def _logs(model: DifferenceModel, criteria: si.FloatArray, deviations: si.FloatA
         return total
 
     return logs
+
+
+def _anyhow(model: DifferenceModel, hits: float, trials: float, greatest: float) -> float:
+    """Likelihood of answers that do not go by the surfaces, over one whose logarithm is `greatest`:
+    by chance, or one of two with a probability that may be anything (Jeffreys' prior)."""
+    logs = float(betaln(hits + 0.5, trials - hits + 0.5) - betaln(0.5, 0.5))
+    if model.counts < 0:
+        logs = hits * math.log(model.lapses) + (trials - hits) * math.log1p(-model.lapses)
+    return math.exp(min(logs - greatest, _MOST))
 
 
 def endings(main: Answers, person: int) -> list[Ending]:

@@ -77,7 +77,7 @@ def named(answers: Answers) -> list[str]:
 def require_recipe(folder: Path, seeds: range) -> None:
     """The three bad people named each time, at most one good person in 160, and the population's
     interval without them holding the truth."""
-    wrong, held = 0, 0
+    wrong, held, robust = 0, 0, 0
     for seed in seeds:
         answers = recorded(folder, GOOD + BAD, seed)
         found = analyze_answers(answers, "made up")["biet2008-plate"]
@@ -89,11 +89,14 @@ def require_recipe(folder: Path, seeds: range) -> None:
         assert bad <= out, seed
         wrong += len(out - bad)
         held += found.pooled.low <= TRUTH <= found.pooled.high
+        mixture = found.screening.results["robust, everybody"]
+        robust += mixture.low <= TRUTH <= mixture.high
         assert set(found.people) == set(answers.people) - out
     assert wrong * 160 <= len(seeds) * 8
     # Of 95 % intervals, beyond what so many seeds scatter.
     least = len(seeds) - (3 if len(seeds) >= 20 else 1)
     assert held >= least
+    assert robust >= least
 
 
 @pytest.mark.slow

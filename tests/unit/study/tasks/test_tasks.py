@@ -273,7 +273,9 @@ def test_a_persons_interval_holds_the_middle_of_the_posterior() -> None:
     flat = np.diff(edges)
     one = np.array([[0.0, 0.4, 0.2, 0.0], [0.0, 0.0, 0.8, 0.0]])
     edge = np.array([[1.0, 0.2, 0.1, 0.0]] * 2)
-    people = PeopleOnGrid(["a", "b"], edges, flat, [one, edge], [0.0] * 2, [0.0] * 2, [40, 41])
+    people = PeopleOnGrid(
+        ["a", "b"], edges, flat, [one, edge], [0.0] * 2, [0.0] * 2, [40, 41], [1.0] * 2
+    )
     weighed: Any = SimpleNamespace(lapses=lambda: np.array([0.75, 0.25]))
     vars(people)["population"] = weighed
     first, second = people.estimates(0.8)
