@@ -74,6 +74,8 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "study/record/deletion.py": {"json.loads": ROW},
     "study/record/schema.py": {"json.loads": ROW, "sqlite3.connect": "in memory"},
     "study/record/store.py": {"json.loads": ROW},
+    "study/record/erasure.py": {"os.open": "plain files only, of one name and no link"},
+    "study/record/sittings.py": {"os.open": "a folder, to lock or sync it"},
     "study/record/database.py": {
         "os.open": "made anew, and refused where something is",
         "sqlite3.connect": "after `require_regular`: another opening would drop SQLite's locks",

@@ -160,8 +160,9 @@ def test_a_link_among_an_exports_files_is_left(store: StudyStore, tmp_path: Path
     folder = export_study(store, "psych-ds")
     (folder / "README.md").unlink()
     (folder / "README.md").symlink_to(target)
-    export_study(store, "psych-ds")
-    assert not (folder / "README.md").is_symlink()
+    with pytest.raises(InputError, match=r"has files of its own \(README\.md\)"):
+        export_study(store, "psych-ds")
+    (folder / "README.md").unlink()
     (folder / "data").rename(tmp_path / "data")
     (folder / "data").symlink_to(tmp_path / "data")
     with pytest.raises(InputError, match=r"has files of its own \(data\)"):
@@ -176,6 +177,18 @@ def test_a_damaged_mark_is_one_message(store: StudyStore, mark: str) -> None:
     (folder / ".squeezefilm-export.json").write_text(mark)
     with pytest.raises(InputError, match="remove this export by hand"):
         export_study(store, "csv")
+
+
+def test_an_export_whose_mark_a_full_disk_left_half_erased_is_made_again(store: StudyStore) -> None:
+    folder = export_study(store, "csv")
+    mark = folder / ".squeezefilm-export.json"
+    content = mark.read_text()
+    for path in folder.iterdir():
+        if path != mark:
+            path.unlink()
+    mark.write_text("\0" * 8 + content[8:])
+    export_study(store, "csv")
+    assert mark.read_text() == content
 
 
 def test_no_cell_of_any_export_is_a_formula(tmp_path: Path) -> None:

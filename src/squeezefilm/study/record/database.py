@@ -1,7 +1,8 @@
 """A study's database on the disk: made exclusively, looked at before anything of it is changed.
 
-SQLite goes on writing into a file that was removed or replaced behind it. So a file that does not
-lie there any more acknowledges nothing.
+SQLite goes on writing into a file that was removed or replaced behind it. So the places of the
+file, its log and the log's index are known by device and inode, and what does not lie there any
+more acknowledges nothing.
 """
 
 from __future__ import annotations
@@ -18,14 +19,29 @@ from squeezefilm.study.record.schema import APPLICATION_ID, VERSION
 
 _PATIENCE = 5000
 """Longest wait of a write for another program's (ms)."""
+_PARTS = ("", "-wal", "-shm")
 _LEFT_BEHIND = ("-wal", "-shm", "-journal")
 
 FAILURES = (sqlite3.Error, UnicodeDecodeError)
 """Errors that `sqlite3` raises; the last where it cannot read what SQLite says of a torn file."""
 
+Identity = tuple[int, int]
 
-def claim(path: Path) -> None:
-    """Make an empty file where there was nothing.
+
+def identity_of(path: Path) -> Identity | None:
+    """Device and inode of what lies at a path; None for nothing.
+
+    Never opens it: closing a file drops all locks that this process has on it, SQLite's too.
+    """
+    try:
+        status = path.stat()
+    except OSError:
+        return None
+    return status.st_dev, status.st_ino
+
+
+def claim(path: Path) -> Identity:
+    """Make an empty file where there was nothing, and say which it is.
 
     Raises:
         InputError: something is there, or a log of a file that was removed.
@@ -39,6 +55,7 @@ def claim(path: Path) -> None:
         if isinstance(error, FileExistsError) and os.path.lexists(path):
             raise InputError(f"{path} exists; open it to go on, or give another name") from error
         raise RecordError(f"{path} cannot be made: {error.strerror}; choose another") from error
+    status = os.fstat(handle)
     os.close(handle)
     for part in _LEFT_BEHIND:
         if os.path.lexists(f"{path}{part}"):
@@ -47,16 +64,18 @@ def claim(path: Path) -> None:
                 f"{path.name}{part} lies there from a file that was removed, and would be taken "
                 f"for this one's; move it away, or give another name than {path}"
             )
+    return status.st_dev, status.st_ino
 
 
-def discard(path: Path) -> None:
-    """Remove a file that this process claimed, with its log.
+def discard(path: Path, claimed: Identity) -> None:
+    """Remove a file that this process claimed, with its log; whatever else lies there stays.
 
-    What the disk does not let go of stays: why it was to be removed is what a person must see.
+    What the disk does not let go of stays too: why it was to be removed is what a person must see.
     """
-    for part in (*_LEFT_BEHIND, ""):
-        with contextlib.suppress(OSError):
-            path.with_name(path.name + part).unlink(missing_ok=True)
+    if identity_of(path) == claimed:
+        for part in (*_LEFT_BEHIND, ""):
+            with contextlib.suppress(OSError):
+                path.with_name(path.name + part).unlink(missing_ok=True)
 
 
 def is_study(path: Path) -> bool:
@@ -75,6 +94,12 @@ def require_study(path: Path) -> None:
     require_regular(path, "a study's file")
     if not path.exists():
         raise InputError(f"{path} does not exist; plan a study and create its file first")
+    for part in _LEFT_BEHIND:
+        beside = path.with_name(path.name + part)
+        require_regular(beside, "what belongs to a study's file")
+        # What is written to the log must lie beside the file, and not where a link leads.
+        if beside.is_symlink():
+            raise InputError(f"{beside} is a link, which no study's file has; move it away")
     if path.stat().st_size == 0 and not path.with_name(f"{path.name}-wal").exists():
         raise InputError(
             f"{path} is empty and so no study's file; if no other program is creating it just "
@@ -124,7 +149,7 @@ def _require_marks(path: Path, kind: int, version: int) -> None:
 
 
 class Database:
-    """An open database, and which file it was when it was opened.
+    """An open database, and which files it was when it was opened.
 
     Args:
         path: of the file, which exists.
@@ -138,18 +163,38 @@ class Database:
     def __init__(self, path: Path, *, new: bool = False) -> None:
         self.path = path
         # Also for who goes to another folder meanwhile.
-        self._place = path.absolute()
-        self._file = _file_at(self._place)
+        place = path.absolute()
+        found = identity_of(place)
         self.connection = _connect(path, new)
+        try:
+            # The log is there once something was read.
+            self.connection.execute("SELECT count(*) FROM sqlite_schema").fetchone()
+            # SQLite puts log and index beside the file itself, a link or not.
+            real = path.resolve()
+            parts = (place, *(real.with_name(real.name + part) for part in _PARTS))
+            self._parts = {part: identity_of(part) for part in parts}
+            if self._parts[place] != found:
+                raise RecordError(f"{path} was replaced while it was being opened; open it again")
+        except FAILURES as error:
+            self.connection.close()
+            raise RecordError(f"{path} cannot be opened: {error}") from error
+        except BaseException:
+            self.connection.close()
+            raise
 
     def require_in_place(self) -> None:
-        """Refuse a file that was removed or replaced since it was opened. Raises `RecordError`."""
-        if _file_at(self._place) != self._file:
-            raise RecordError(
-                f"{self._place} was removed or replaced while it was open, so nothing is "
-                "acknowledged any more: it would be lost. Close every program that has the study "
-                "open, put the file back (backups are made by `study backup`) and open it again"
-            )
+        """Refuse a file that was removed or replaced since it was opened, or whose log was.
+
+        Raises `RecordError`.
+        """
+        for place, known in self._parts.items():
+            if identity_of(place) != known:
+                raise RecordError(
+                    f"{place} was removed or replaced while {self.path.name} was open, so nothing "
+                    "is acknowledged any more: it would be lost. Close every program that has the "
+                    "study open, put the file back (backups are made by `study backup`) and open "
+                    "it again"
+                )
 
     def compact(self) -> None:
         """Rewrite the file without anything deleted, and empty its log.
@@ -189,13 +234,22 @@ def same_folders(path: Path) -> list[Path]:
     return sorted(one for one in beside if one.stem == path.stem and one != path and is_study(one))
 
 
-def _file_at(path: Path) -> tuple[int, int] | None:
-    """Device and inode of a file, never opened: closing it would drop SQLite's locks on it."""
+def require_alone(path: Path) -> None:
+    """Refuse a file that any other connection has open, of this program or another.
+
+    Raises `RecordError`.
+    """
     try:
-        status = path.stat()
-    except OSError:
-        return None
-    return status.st_dev, status.st_ino
+        with contextlib.closing(
+            sqlite3.connect(path, isolation_level=None, timeout=0.5)
+        ) as connection:
+            connection.execute("PRAGMA locking_mode = EXCLUSIVE")
+            connection.execute("BEGIN IMMEDIATE")
+            connection.execute("ROLLBACK")
+    except FAILURES as error:
+        raise RecordError(
+            f"{path} is open in another program ({error}); close every session, then try again"
+        ) from error
 
 
 def _connect(path: Path, new: bool) -> sqlite3.Connection:
@@ -232,7 +286,7 @@ def _connect(path: Path, new: bool) -> sqlite3.Connection:
         if "not a database" in str(error):
             raise InputError(f"{path} is no study's file: {error}") from error
         raise RecordError(f"{path} cannot be opened: {error}") from error
-    except BaseException:
+    except (InputError, RecordError):
         connection.close()
         raise
     return connection

@@ -19,10 +19,11 @@ from typing import Any, Literal, get_args
 from squeezefilm import __version__
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import OWN_BYTES
-from squeezefilm.core.regular_file import read_json
+from squeezefilm.core.regular_file import parsed_json, read_json, read_regular_text
 from squeezefilm.core.results import write_whole
 from squeezefilm.study.design.plan import StudyPlan
 from squeezefilm.study.design.trials import Trial
+from squeezefilm.study.record.erasure import erase_file, require_plain
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import (
     COLUMNS,
@@ -92,7 +93,7 @@ def exported_folders(store: StudyStore) -> list[tuple[Format, Path]]:
 
 
 def export_again(store: StudyStore) -> int:
-    """Make every export anew, its old files removed. Returns how many there are."""
+    """Make every export anew, its old files erased. Returns how many there are."""
     folders = exported_folders(store)
     for format, folder in folders:
         export_study(store, format, folder)
@@ -110,23 +111,31 @@ def own_files(folder: Path) -> set[Path]:
     # A link is never ours, whatever it leads to.
     present = {path for path in folder.rglob("*") if path.is_symlink() or not path.is_dir()}
     ours: set[Path] = set()
-    if mark.is_file():
+    if mark.is_file() and not mark.is_symlink():
         ours = {folder / name for name in _marked(mark)} | {mark}
         # A file that was being written when a program was killed.
         ours |= {p for p in present if any(p.name.startswith(f".{our.name}.") for our in ours)}
+        ours = {path for path in ours if not path.is_symlink()}
     if others := sorted(str(path.relative_to(folder)) for path in present - ours):
         raise InputError(
             f"{folder} has files of its own ({', '.join(others[:3])}), which an export would "
             "replace; move them, or give a new or empty folder"
         )
+    for path in present:
+        require_plain(path)
     return present
 
 
 def _marked(mark: Path) -> list[str]:
-    """The names of the files that an export's mark lists."""
+    """The names of the files that an export's mark lists.
+
+    None for a mark of zeros: it was being erased, as the last of its files.
+    """
     try:
-        listed = read_json(mark, OWN_BYTES, "the mark of an export")["files"]
-        return [str(name) for name in listed]
+        text = read_regular_text(mark, OWN_BYTES, "the mark of an export")
+        if text.startswith("\0"):
+            return []
+        return [str(name) for name in parsed_json(text)["files"]]
     except (ValueError, KeyError, TypeError) as error:
         raise InputError(
             f"{mark} cannot be read ({error!r:.100}); remove this export by hand, or give another "
@@ -135,11 +144,11 @@ def _marked(mark: Path) -> list[str]:
 
 
 def _remove_export(folder: Path) -> None:
-    """Remove an earlier export. The mark goes last, so that an interrupted removal can be
+    """Erase an earlier export. The mark goes last, so that an interrupted removal can be
     repeated. Raises what `own_files` raises."""
     mark = folder / _MARK
     for path in sorted(own_files(folder), key=lambda file: file == mark):
-        path.unlink()
+        erase_file(path)
     for path in sorted((p for p in folder.rglob("*") if p.is_dir()), reverse=True):
         path.rmdir()
 

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from squeezefilm.core.errors import ContradictionError, InputError
-from squeezefilm.core.hard_limits import TRACE_BYTES
-from squeezefilm.core.regular_file import read_regular
 from squeezefilm.core.results import write_whole
+from squeezefilm.study.record.erasure import read_plain, require_own_folder
 from squeezefilm.study.record.schema import TABLES
 from squeezefilm.study.record.store import StudyStore, insert
 
@@ -73,6 +72,7 @@ def merge(store: StudyStore, other: str | Path) -> Merge:
                     f"{other} is of another study: its {what} is {there}, here it is {here}; "
                     "stations must be created from one design and one seed"
                 )
+        require_own_folder(store.traces)
         store.require_whole()
         theirs.require_whole()
         traces = _copy_traces(store, theirs)
@@ -135,11 +135,11 @@ def _copy_traces(store: StudyStore, theirs: StudyStore) -> int:
             source, target = theirs.traces / name, store.traces / name
             if os.path.lexists(target):
                 continue
-            if source.is_symlink() or not source.is_file():
+            if not os.path.lexists(source):
                 raise InputError(
                     f"{theirs.path} names the trace {name}, which is not in {theirs.traces}; "
                     "bring the folder along"
                 )
-            write_whole(target, read_regular(source, TRACE_BYTES, "a trace"))
+            write_whole(target, read_plain(source))
             count += 1
     return count

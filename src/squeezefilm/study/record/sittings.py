@@ -1,7 +1,8 @@
 """Sittings: a participant at a station, from the experimenter's preparation to the last answer.
 
 Sittings are kept in one file beside the studies, so that a participant's page finds its own again
-after the lab was killed. They hold no name, only the pseudonym of the study's file. What could not
+after the lab was killed. They hold no name, only the pseudonym of the study's file. Several
+programs may use the file: each change is read, made and written under a lock, and what could not
 be written has not happened.
 """
 
@@ -11,19 +12,33 @@ import contextlib
 import dataclasses
 import json
 import os
+import re
 import secrets
+import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from squeezefilm.core.errors import InputError
+from squeezefilm.core import quantities as si
+from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.core.hard_limits import OWN_BYTES
 from squeezefilm.core.regular_file import read_json
 from squeezefilm.core.results import write_whole
+from squeezefilm.study.record.erasure import erase_file, overwrite, plain_file, require_plain
+
+try:
+    import fcntl
+except ImportError:
+    # Windows has no such locks: two labs on one folder are not kept apart there.
+    _LOCKS = False
+else:
+    _LOCKS = True
 
 MOST_SITTINGS = 500
 FILE = ".sittings.json"
+_PATIENCE: si.Second = 5.0
+"""Longest wait of a change for another program's."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +73,9 @@ class Sittings:
 
     def __init__(self, file: Path) -> None:
         self.file = file
-        self._read()
+        self._known: dict[str, Sitting] = {}
+        self._version: tuple[int, int, int] | None = None
+        self._all()
 
     def new(self, **fields: Any) -> Sitting:
         """A sitting with a fresh id; those that the participant still had open are ended."""
@@ -81,25 +98,71 @@ class Sittings:
 
     def get(self, id: str) -> Sitting:
         """The sitting of an id. Raises `InputError` if there is none."""
-        return _of(self._read(), id)
+        return _of(self._all(), id)
 
     def is_open(self, id: str) -> bool:
         """True where there is such a sitting and it has not ended."""
-        sitting = self._read().get(id)
+        sitting = self._all().get(id)
         return sitting is not None and not sitting.ended
 
     def of_study(self, study: str) -> list[Sitting]:
         """The sittings of a study that have not ended."""
-        return [one for one in self._read().values() if one.study == study and not one.ended]
+        return [one for one in self._all().values() if one.study == study and not one.ended]
+
+    def require_erasable(self) -> None:
+        """Refuse what `forget` could not erase. Raises `InputError`."""
+        for path in (*self._files(), *self._half_written()):
+            require_plain(path)
 
     def forget(self, participant: str) -> int:
-        """Take a participant's sittings out. How many. Raises `RecordError` if the disk refused."""
-        gone = [key for key, one in self._read().items() if one.participant == participant]
-        if gone:
+        """Take a participant's sittings out, and overwrite the file they were in. How many.
+
+        Raises:
+            InputError: the file is a link, or cannot be written.
+            RecordError: the disk refused.
+        """
+        gone: list[str] = []
+        if not self._files():
+            return 0
+        with contextlib.ExitStack() as closing:
             with self._changing() as kept:
+                # The old file stays open, and is overwritten once the new one is in its place.
+                # Not so on Windows, which replaces no file that is open.
+                files = self._files() if os.name != "nt" else []
+                old = [closing.enter_context(plain_file(path, os.O_RDWR)) for path in files]
+                gone = [key for key, one in kept.items() if one.participant == participant]
                 for key in gone:
                     del kept[key]
+            for handle in old:
+                overwrite(handle, self.file)
+        for path in self._half_written():
+            erase_file(path)
         return len(gone)
+
+    def _files(self) -> list[Path]:
+        return [self.file] if os.path.lexists(self.file) else []
+
+    def _half_written(self) -> list[Path]:
+        """Files left of writes that were killed."""
+        if not self.file.parent.is_dir():
+            return []
+        name = re.compile(rf"\.{re.escape(self.file.name)}\.[a-z0-9_]+")
+        return sorted(file for file in self.file.parent.iterdir() if name.fullmatch(file.name))
+
+    def _all(self) -> Mapping[str, Sitting]:
+        """Contents of the file now; read again only where another program has replaced it."""
+        try:
+            found = self.file.stat()
+        except FileNotFoundError:
+            return {}
+        except OSError as error:
+            raise InputError(
+                f"{self.file} cannot be read: {error.strerror}; move it away"
+            ) from error
+        version = (found.st_ino, found.st_mtime_ns, found.st_size)
+        if version != self._version:
+            self._known, self._version = self._read(), version
+        return self._known
 
     def _read(self) -> dict[str, Sitting]:
         if not os.path.lexists(self.file):
@@ -116,10 +179,12 @@ class Sittings:
     @contextlib.contextmanager
     def _changing(self) -> Iterator[dict[str, Sitting]]:
         """The sittings to be changed; what they are then is written, or nothing has changed."""
-        kept = self._read()
-        yield kept
-        rows = [dataclasses.asdict(sitting) for sitting in kept.values()]
-        write_whole(self.file, json.dumps(rows, ensure_ascii=False, indent=1))
+        with _locked(self.file.parent):
+            kept = self._read()
+            yield kept
+            rows = [dataclasses.asdict(sitting) for sitting in kept.values()]
+            write_whole(self.file, json.dumps(rows, ensure_ascii=False, indent=1))
+            self._version = None
 
 
 def _of(kept: Mapping[str, Sitting], id: str) -> Sitting:
@@ -127,3 +192,40 @@ def _of(kept: Mapping[str, Sitting], id: str) -> Sitting:
     if sitting is None:
         raise InputError("this sitting is not known; ask the experimenter to prepare it again")
     return sitting
+
+
+@contextlib.contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """The folder's lock; Windows has none here, and takes one lab on a folder only.
+
+    Raises `RecordError` where another program keeps it.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        if not _LOCKS:
+            yield
+            return
+        handle = os.open(folder, os.O_RDONLY)
+    except OSError as error:
+        raise RecordError(f"sittings cannot be kept in {folder}: {error.strerror}") from error
+    try:
+        until = time.monotonic() + _PATIENCE
+        while not _taken(handle):
+            if time.monotonic() > until:
+                raise RecordError(
+                    f"another program has kept the sittings in {folder} locked for {_PATIENCE:g} "
+                    "s; end it, then try again"
+                )
+            time.sleep(0.005)
+        yield
+    finally:
+        # Closing gives the lock back.
+        os.close(handle)
+
+
+def _taken(handle: int) -> bool:
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    return True

@@ -30,9 +30,11 @@ from squeezefilm.study.record.database import (
     Database,
     claim,
     discard,
+    require_alone,
     require_study,
     same_folders,
 )
+from squeezefilm.study.record.erasure import require_own_folder, require_plain
 from squeezefilm.study.record.schema import APPLICATION_ID, SCHEMA, VERSION, is_trace, problems
 
 _HIGHEST_SEED = 2**53
@@ -87,18 +89,25 @@ class StudyStore:
         si.require("station", station, at_least=0, below=stations)
         if path.suffix in ("", ".traces", ".backups", ".exports"):
             raise InputError(f"{path}: give the file a suffix of its own, like study.sqlite")
-        if others := same_folders(path):
-            raise InputError(
-                f"{others[0]} keeps its traces, backups and exports in the folders that {path} "
-                "would use; give a name that differs in more than the suffix"
-            )
-        claim(path)
-        with contextlib.ExitStack() as half_made:
-            half_made.callback(discard, path)
-            store = cls(path, Database(path, new=True))
-            half_made.callback(store.close)
+        claimed = claim(path)
+        try:
+            if others := same_folders(path):
+                raise InputError(
+                    f"{others[0]} keeps its traces, backups and exports in the folders that {path} "
+                    "would use; give a name that differs in more than the suffix"
+                )
+            database = Database(path, new=True)
+        except BaseException:
+            discard(path, claimed)
+            raise
+        store = cls(path, database)
+        try:
             store._fill(design, seed, station, stations)
-            half_made.pop_all()
+        except BaseException:
+            # Nothing half-made stays, and nothing goes that somebody else put there.
+            store.close()
+            discard(path, claimed)
+            raise
         return store
 
     def _fill(self, design: StudyDesign, seed: int, station: int, stations: int) -> None:
@@ -154,13 +163,20 @@ class StudyStore:
 
     @contextlib.contextmanager
     def closed_meanwhile(self) -> Iterator[None]:
-        """Let go of the file, and open it again at the end: for who reads its bytes, since closing
-        a file drops SQLite's locks on it."""
+        """Let go of the file, and open it again at the end: for who reads its bytes.
+
+        Raises `RecordError` if it was replaced meanwhile.
+        """
         self._database.close()
         try:
             yield
         finally:
             self._database = Database(self.path)
+
+    def require_alone(self) -> None:
+        """Refuse while any other connection has the file open. Raises `RecordError`."""
+        with self.closed_meanwhile():
+            require_alone(self.path)
 
     def require_whole(self) -> None:
         """Refuse a damaged file: numbers of it are not to be trusted. Raises `RecordError`."""
@@ -306,20 +322,27 @@ class StudyStore:
         """
         name = f"{secrets.token_hex(16)}.csv"
         try:
+            require_own_folder(self.traces)
             write_whole(self.traces / name, text)
         except InputError as error:
             raise RecordError(f"{error}; nothing was acknowledged") from error
         return name
 
     def unreferenced_traces(self) -> list[Path]:
-        """Traces that this program wrote and no answer names: of programs that were killed."""
+        """Traces that this program wrote and no answer names: of programs that were killed.
+
+        Raises `InputError` where one of them is a link, or has a second name.
+        """
         if not self.traces.is_dir():
             return []
         rows = self.rows("SELECT traces FROM response")
         named = {name for row in rows for name in json.loads(row["traces"])}
-        return sorted(
+        stray = sorted(
             path for path in self.traces.iterdir() if is_trace(path.name) and path.name not in named
         )
+        for path in stray:
+            require_plain(path)
+        return stray
 
     def compact(self) -> None:
         """Rewrite the file without anything deleted, and empty its write-ahead log.
@@ -331,6 +354,7 @@ class StudyStore:
     def back_up(self) -> Path:
         """A copy of the file as it is now, in `backups`; there whole or not at all. Raises
         `RecordError`, also for a damaged file."""
+        require_own_folder(self.backups)
         self.require_whole()
         stamp = datetime.now(UTC).strftime("%Y%m%dT%H%M%S%fZ")
         target = self.backups / f"{self.path.stem}-{stamp}-{secrets.token_hex(3)}{self.path.suffix}"

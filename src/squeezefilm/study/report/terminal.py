@@ -145,6 +145,8 @@ def show_deletion(done: Deletion, pseudonym: str) -> None:
         if done.enrolled
         else f"{pseudonym} was not enrolled; nothing found in {done.searched} files"
     )
+    if done.left:
+        print(f"left as they are, being no files of this program: {', '.join(done.left)}")
 
 
 def show_merge(done: Merge, other: str) -> None:

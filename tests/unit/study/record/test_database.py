@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import shutil
 import sqlite3
@@ -20,7 +21,9 @@ from squeezefilm.study.record.database import (
     Database,
     claim,
     discard,
+    identity_of,
     is_study,
+    require_alone,
     require_study,
     same_folders,
 )
@@ -48,18 +51,6 @@ def _answer(run: StudyRun) -> int:
     return run.respond(shown.token, Response(choice=choice)).number
 
 
-def test_a_creation_that_fails_leaves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def full(*_: object) -> None:
-        raise RecordError("no room")
-
-    monkeypatch.setattr(StudyStore, "_fill", full)
-    with pytest.raises(RecordError, match="no room"):
-        StudyStore.create(tmp_path / "other.sqlite", gratings(), 7)
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_who_comes_second_removes_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "study.sqlite"
     seeds: list[int] = []
@@ -77,6 +68,31 @@ def test_who_comes_second_removes_nothing(tmp_path: Path, monkeypatch: pytest.Mo
     StudyStore.create(path, gratings(), 7).close()
     with StudyStore.open(path) as store:
         assert store.study["seed"] == 7
+
+
+def test_a_creation_that_fails_leaves_what_another_put_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "study.sqlite"
+
+    def replaced(store: StudyStore, *_: object) -> None:
+        path.unlink()
+        path.write_text("somebody's")
+        raise RecordError("no room")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(StudyStore, "_fill", replaced)
+        with pytest.raises(RecordError, match="no room"):
+            StudyStore.create(path, gratings(), 7)
+    assert path.read_text() == "somebody's"
+
+    def full(*_: object) -> None:
+        raise RecordError("no room")
+
+    monkeypatch.setattr(StudyStore, "_fill", full)
+    with pytest.raises(RecordError, match="no room"):
+        StudyStore.create(tmp_path / "other.sqlite", gratings(), 7)
+    assert [one.name for one in tmp_path.iterdir() if one.name.startswith("other")] == []
 
 
 RACE = """
@@ -171,7 +187,15 @@ def _moved(path: Path) -> None:
     path.rename(path.with_name("moved.sqlite"))
 
 
-@pytest.mark.parametrize("change", [_removed, _replaced, _moved])
+def _without_log(path: Path) -> None:
+    path.with_name(f"{path.name}-wal").unlink()
+
+
+def _without_index(path: Path) -> None:
+    path.with_name(f"{path.name}-shm").unlink()
+
+
+@pytest.mark.parametrize("change", [_removed, _replaced, _moved, _without_log, _without_index])
 def test_nothing_is_acknowledged_into_a_file_that_is_not_there(
     tmp_path: Path, change: Callable[[Path], None]
 ) -> None:
@@ -188,7 +212,7 @@ def test_nothing_is_acknowledged_into_a_file_that_is_not_there(
         store.compact,
     ):
         with pytest.raises(
-            RecordError, match=r"study\.sqlite was removed or replaced while it was open"
+            RecordError, match=r"was removed or replaced while study\.sqlite was open"
         ):
             attempt()
     store.close()
@@ -350,6 +374,7 @@ FULL = sqlite3.OperationalError("database or disk is full")
 @pytest.mark.parametrize(
     ("statement", "by", "kind", "says"),
     [
+        ("count(*) FROM sqlite_schema", FULL, RecordError, "cannot be opened: database or disk is"),
         ("journal_mode", "'delete'", RecordError, r"\(journal_mode is delete\); put it on a local"),
         ("foreign_keys", FULL, RecordError, "cannot be opened: database or disk is full"),
         ("synchronous", sqlite3.DatabaseError("file is not a database"), InputError,
@@ -392,6 +417,43 @@ def test_a_folder_that_keeps_nothing_is_told(
     with monkeypatch.context() as patched:
         patched.setattr(database_module.sqlite3, "sqlite_version_info", (3, 37))
         Database(path).close()
+
+
+def test_a_file_that_was_replaced_while_it_was_opened_is_not_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "study.sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+    connect = database_module._connect
+
+    def slow(path: Path, new: bool) -> sqlite3.Connection:
+        made = connect(path, new)
+        _replaced(path)
+        return made
+
+    monkeypatch.setattr(database_module, "_connect", slow)
+    with pytest.raises(RecordError, match="was replaced while it was being opened; open it again"):
+        Database(path)
+
+
+def test_a_person_who_stops_an_opening_leaves_nothing_open(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "study.sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+    made = _failing(monkeypatch, "nothing that is asked", 0)
+    looks: list[Path] = []
+
+    def look(at: Path) -> tuple[int, int] | None:
+        looks.append(at)
+        if len(looks) > 1:
+            raise KeyboardInterrupt
+        return identity_of(at)
+
+    monkeypatch.setattr(database_module, "identity_of", look)
+    with pytest.raises(KeyboardInterrupt):
+        Database(path)
+    assert [one.closed for one in made] == [True]
 
 
 def test_what_is_no_study_is_told_from_one_of_another_version(tmp_path: Path) -> None:
@@ -437,7 +499,8 @@ def test_what_is_no_study_is_told_from_one_of_another_version(tmp_path: Path) ->
 
 def test_a_file_is_claimed_once_and_discarded_by_who_claimed_it(tmp_path: Path) -> None:
     path = tmp_path / "deep" / "study.sqlite"
-    claim(path)
+    claimed = claim(path)
+    assert claimed == identity_of(path) == (path.stat().st_dev, path.stat().st_ino)
     assert path.read_bytes() == b""
     with pytest.raises(InputError, match="exists; open it to go on"):
         claim(path)
@@ -447,10 +510,30 @@ def test_a_file_is_claimed_once_and_discarded_by_who_claimed_it(tmp_path: Path) 
         claim(path / "a-file.sqlite")  # the folder is a file
     log = path.with_name("study.sqlite-wal")
     log.touch()
-    discard(path)
+    discard(path, (claimed[0], claimed[1] + 1))
+    assert path.exists()
+    assert log.exists()
+    discard(path, claimed)
     assert list(path.parent.iterdir()) == []
     # Nothing is there any more, and nothing is made of that.
-    discard(path)
+    discard(path, claimed)
+    assert identity_of(path) is None
+
+
+def test_who_is_not_alone_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "study.sqlite"
+    StudyStore.create(path, gratings(), 7).close()
+    require_alone(path)
+    connect = sqlite3.connect
+    # Nobody else will end meanwhile: do not wait half a second for them.
+    monkeypatch.setattr(
+        database_module.sqlite3, "connect", lambda *at, **how: connect(*at, **{**how, "timeout": 0})
+    )
+    with contextlib.closing(connect(path, isolation_level=None)) as other:
+        other.execute("BEGIN IMMEDIATE")
+        with pytest.raises(RecordError, match=r"open in another program \(database is locked\)"):
+            require_alone(path)
+    require_alone(path)
 
 
 def test_a_file_that_another_reads_is_not_compacted(

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import functools
+import os
 import shutil
 import sqlite3
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from squeezefilm.core.errors import InputError, RecordError
+from squeezefilm.core.errors import InputError, RecordError, SqueezefilmError
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session, end_session
 from squeezefilm.study.conduct.terminal_run import conduct
+from squeezefilm.study.record import deletion
 from squeezefilm.study.record.deletion import delete_participant
 from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.sittings import FILE, Sittings
@@ -126,10 +129,12 @@ def test_the_search_finds_what_is_planted(tmp_path: Path) -> None:
     store.backups.mkdir()
     planted = store.backups / "mail.txt"
     planted.write_bytes(b"x" * (1 << 20) + people[0][:8].encode() + people[0][8:].encode())
-    with pytest.raises(RecordError, match=r"traces are left in .*mail\.txt; delete these files"):
+    with pytest.raises(InputError, match=r"nothing was deleted: .*mail\.txt"):
         delete_participant(store, people[0])
-    assert len(store.participants()) == 2
+    assert len(store.participants()) == 3
     planted.unlink()
+    done = delete_participant(store, people[0])
+    assert done.enrolled
     assert not delete_participant(store, people[0]).enrolled
     store.close()
 
@@ -144,6 +149,18 @@ def test_nothing_is_deleted_while_somebody_reads(tmp_path: Path) -> None:
         delete_participant(store, people[0])
     assert len(store.participants()) == 4
     reader.close()
+    assert delete_participant(store, people[0]).enrolled
+    store.close()
+
+
+def test_nothing_is_deleted_while_another_program_has_the_file_open(tmp_path: Path) -> None:
+    store, people = _study(tmp_path)
+    idle = sqlite3.connect(store.path)
+    idle.execute("SELECT count(*) FROM response").fetchall()
+    with pytest.raises(RecordError, match="close every session"):
+        delete_participant(store, people[0])
+    assert len(store.participants()) == 3
+    idle.close()
     assert delete_participant(store, people[0]).enrolled
     store.close()
 
@@ -181,6 +198,66 @@ def test_the_labs_sittings_go_too(tmp_path: Path) -> None:
     store.close()
 
 
+def test_a_persons_own_files_are_left_and_told(tmp_path: Path) -> None:
+    store, people = _study(tmp_path)
+    target = tmp_path / "precious.txt"
+    target.write_text("precious")
+    (store.traces / "notes.txt").write_text("mine")
+    (store.traces / "folder").mkdir()
+    (store.traces / "folder" / "more.csv").write_text("mine")
+    (store.traces / "link.csv").symlink_to(target)
+    done = delete_participant(store, people[1])
+    assert _left(tmp_path, [people[1], SECRET]) == []
+    assert [Path(one).relative_to(store.traces).as_posix() for one in done.left] == [
+        "folder",
+        "folder/more.csv",
+        "link.csv",
+        "notes.txt",
+    ]
+    assert {target.read_text(), (store.traces / "notes.txt").read_text()} == {"precious", "mine"}
+    store.close()
+
+
+def _link_in_place_of_a_trace(store: StudyStore, who: str) -> None:
+    (name, *_), *_ = _traces(store, who)
+    (store.traces / name).rename(store.traces.with_name("elsewhere.csv"))
+    (store.traces / name).symlink_to(store.traces.with_name("elsewhere.csv"))
+
+
+def _second_name_of_a_trace(store: StudyStore, who: str) -> None:
+    (name, *_), *_ = _traces(store, who)
+    os.link(store.traces / name, store.traces.with_name("elsewhere.csv"))
+
+
+def _notes_about_somebody(store: StudyStore, who: str) -> None:
+    (store.traces / "folder").mkdir()
+    (store.traces / "folder" / "notes.txt").write_text(f"{who} was late")
+
+
+def _linked_traces(store: StudyStore, who: str) -> None:
+    store.traces.rename(store.traces.with_name("far away"))
+    store.traces.symlink_to(store.traces.with_name("far away"))
+
+
+def _linked_export(store: StudyStore, who: str) -> None:
+    folder = export_study(store, "csv")
+    (folder / "small_trials.csv").rename(store.traces.with_name("elsewhere.csv"))
+    (folder / "small_trials.csv").symlink_to(store.traces.with_name("elsewhere.csv"))
+
+
+def _linked_sittings(store: StudyStore, who: str) -> None:
+    store.path.with_name("elsewhere.json").write_text("[]")
+    store.path.with_name(FILE).symlink_to(store.path.with_name("elsewhere.json"))
+
+
+def _open_elsewhere(store: StudyStore, who: str) -> None:
+    _OPEN.append(sqlite3.connect(store.path))
+    _OPEN[-1].execute("SELECT count(*) FROM response").fetchone()
+
+
+_OPEN: list[sqlite3.Connection] = []
+
+
 def _traces(store: StudyStore, who: str) -> list[list[str]]:
     import json
 
@@ -192,6 +269,34 @@ def _traces(store: StudyStore, who: str) -> list[list[str]]:
     return [json.loads(row["traces"]) for row in rows]
 
 
+@pytest.mark.skipif(os.name == "nt", reason="Windows has other links")
+@pytest.mark.parametrize(
+    ("obstacle", "says"),
+    [
+        (_link_in_place_of_a_trace, "is a link"),
+        (_second_name_of_a_trace, "2 names of the same file"),
+        (_notes_about_somebody, r"notes\.txt was not written by this program"),
+        (_linked_traces, "is a link"),
+        (_linked_export, "has files of its own"),
+        (_linked_sittings, "is a link"),
+        (_open_elsewhere, "is open in another program"),
+    ],
+)
+def test_what_would_not_be_complete_is_refused_with_nothing_deleted(
+    tmp_path: Path, obstacle: Callable[[StudyStore, str], None], says: str
+) -> None:
+    store, people = _study(tmp_path)
+    obstacle(store, people[1])
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*.[cj]s*") if path.is_file()}
+    with pytest.raises(SqueezefilmError, match=says):
+        delete_participant(store, people[1])
+    assert {path: path.read_bytes() for path in before} == before
+    assert len(store.participants()) == 3
+    while _OPEN:
+        _OPEN.pop().close()
+    store.close()
+
+
 def test_a_backup_that_was_never_finished_goes(tmp_path: Path) -> None:
     store, people = _study(tmp_path)
     whole = store.back_up()
@@ -201,7 +306,7 @@ def test_a_backup_that_was_never_finished_goes(tmp_path: Path) -> None:
     mine = store.backups / "foreign.sqlite"
     sqlite3.connect(mine).close()
     done = delete_participant(store, people[1])
-    assert done.backups == 1
+    assert (done.backups, done.left) == (1, (str(mine),))
     assert sorted(store.backups.iterdir()) == sorted([whole, mine])
     store.close()
 
@@ -222,7 +327,7 @@ def test_a_relative_path_is_the_same_study(tmp_path: Path, monkeypatch: pytest.M
         export_study(store, format)  # type: ignore[arg-type]
     store.back_up()
     done = delete_participant(store, people[1])
-    assert (done.exports, done.backups) == (2, 1)
+    assert (done.exports, done.backups, done.left) == (2, 1, ())
     assert _left(tmp_path, [people[1], SECRET]) == []
     monkeypatch.chdir(tmp_path.parent)
     assert store.enrol()
@@ -230,23 +335,58 @@ def test_a_relative_path_is_the_same_study(tmp_path: Path, monkeypatch: pytest.M
 
 
 def test_notes_of_anything_random_that_is_theirs_are_found(tmp_path: Path) -> None:
-    queries = (
-        "SELECT uuid FROM trial WHERE participant = ?",
-        "SELECT uuid FROM session WHERE participant = ?",
-        "SELECT v.uuid FROM verification v JOIN session s ON s.uuid = v.session "
-        "WHERE s.participant = ?",
-        "SELECT p.uuid FROM presentation p JOIN trial t ON t.uuid = p.trial "
-        "WHERE t.participant = ?",
-    )
-    for place, query in enumerate(queries):
-        (tmp_path / str(place)).mkdir()
-        store, people = _study(tmp_path / str(place))
-        notes = store.path.with_name("study.sqlite.notes.txt")
-        word = store.rows(query, [people[1]])[-1]["uuid"]
+    store, people = _study(tmp_path)
+    notes = tmp_path / "study.sqlite.notes.txt"
+    gone = people[1]
+    theirs = [
+        store.rows(query, [gone])[-1]["uuid"]
+        for query in (
+            "SELECT uuid FROM trial WHERE participant = ?",
+            "SELECT uuid FROM session WHERE participant = ?",
+            "SELECT v.uuid FROM verification v JOIN session s ON s.uuid = v.session "
+            "WHERE s.participant = ?",
+            "SELECT p.uuid FROM presentation p JOIN trial t ON t.uuid = p.trial "
+            "WHERE t.participant = ?",
+        )
+    ]
+    theirs += [gone, _traces(store, gone)[0][0]]
+    for word in theirs:
         notes.write_text(f"at {word} the plate was loud")
-        with pytest.raises(RecordError, match=r"traces are left in .*notes\.txt"):
+        with pytest.raises(InputError, match=r"notes\.txt was not written .* belongs to"):
+            delete_participant(store, gone)
+    # Of somebody else they say nothing of this one.
+    notes.write_text(people[0])
+    assert delete_participant(store, gone).left == (str(notes),)
+    store.close()
+
+
+def test_what_is_left_after_a_deletion_is_told_with_its_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store, people = _study(tmp_path)
+    late = store.path.with_name("study.sqlite.late")
+
+    def slow(_: StudyStore) -> int:
+        """Another program writes while exports are made anew."""
+        late.write_bytes(b"x" * 5_000 + people[1].encode())
+        return 0
+
+    monkeypatch.setattr(deletion, "export_again", slow)
+    with pytest.raises(RecordError, match=rf"traces are left in {late}; delete these files by"):
+        delete_participant(store, people[1])
+    late.unlink()
+    assert not delete_participant(store, people[0]).left
+    store.close()
+
+
+def test_a_word_across_two_pieces_of_a_file_is_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(deletion, "_PIECE", 64)
+    store, people = _study(tmp_path)
+    notes = tmp_path / "study.sqlite.notes.txt"
+    for before in (0, 48, 56, 63, 64, 100):
+        notes.write_text("-" * before + people[1] + "-" * 70)
+        with pytest.raises(InputError, match=r"notes\.txt was not written"):
             delete_participant(store, people[1])
-        # Of somebody else they say nothing of this one.
-        notes.write_text(people[0])
-        assert not delete_participant(store, people[1]).enrolled
-        store.close()
+    store.close()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -24,6 +25,26 @@ from ..scripted import gratings
 def store(tmp_path: Path) -> Iterator[StudyStore]:
     with StudyStore.create(tmp_path / "a.sqlite", gratings(), 7) as found:
         yield found
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has other links")
+def test_a_file_with_a_second_name_keeps_an_export_as_it_is(
+    store: StudyStore, tmp_path: Path
+) -> None:
+    folder = export_study(store, "csv")
+    before = contents(folder)
+    first, *_ = sorted(name for name in before if name.endswith(".csv"))
+    os.link(folder / first, tmp_path / "mine.csv")
+    with pytest.raises(InputError, match="one of 2 names of the same file"):
+        own_files(folder)
+    with pytest.raises(InputError, match="one of 2 names of the same file"):
+        export_study(store, "csv")
+    assert contents(folder) == before
+    assert (tmp_path / "mine.csv").read_bytes() == before[first]
 
 
 def test_files_of_ones_own_are_named_up_to_three(store: StudyStore) -> None:

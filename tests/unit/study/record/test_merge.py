@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.core.errors import ContradictionError, InputError
+from squeezefilm.core.errors import ContradictionError, InputError, RecordError
 from squeezefilm.study.conduct.study_device import NoDevice
 from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record.merge import merge, open_or_begin
@@ -181,10 +181,28 @@ def test_a_link_among_anothers_traces_is_not_followed(tmp_path: Path) -> None:
         trace.symlink_to(tmp_path / "secret.txt")
     with _station(tmp_path / "a.sqlite", 0, people=1) as store:
         before = _contents(store)
-        with pytest.raises(InputError, match="bring the folder along"):
+        with pytest.raises(InputError, match="is a link"):
             merge(store, other)
         assert _contents(store) == before
         assert not (store.traces / trace.name).exists()
+
+
+def test_a_link_in_place_of_the_folder_of_traces_is_not_written_through(tmp_path: Path) -> None:
+    a, b = (_station(tmp_path / f"{name}.sqlite", k, 1) for k, name in enumerate("ab"))
+    b.close()
+    elsewhere = tmp_path / "elsewhere"
+    a.traces.rename(elsewhere)
+    before = sorted(elsewhere.iterdir())
+    a.traces.symlink_to(elsewhere)
+    with pytest.raises(InputError, match="is a link, and nothing is written to where it leads"):
+        merge(a, tmp_path / "b.sqlite")
+    with pytest.raises(RecordError, match="is a link"):
+        a.save_trace("time_s,x_m\n")
+    assert sorted(elsewhere.iterdir()) == before
+    a.traces.unlink()
+    elsewhere.rename(a.traces)
+    assert merge(a, tmp_path / "b.sqlite").traces > 0
+    a.close()
 
 
 def test_stations_merge_into_a_new_file(tmp_path: Path) -> None:

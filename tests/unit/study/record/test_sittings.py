@@ -1,16 +1,17 @@
-"""Sittings: shared by two labs, kept on a full disk, and forgotten."""
+"""Sittings: shared by two labs, kept on a full disk, and forgotten without a byte left."""
 
 from __future__ import annotations
 
 import errno
 import json
 import os
+import threading
 from pathlib import Path
 from typing import NoReturn
 
 import pytest
 
-from squeezefilm.core.errors import InputError
+from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.lab.studying.studies import Studies
 from squeezefilm.study.record import sittings as sittings_module
 from squeezefilm.study.record.sittings import FILE, MOST_SITTINGS, Sittings
@@ -38,6 +39,36 @@ def test_two_labs_keep_each_others_sittings(tmp_path: Path) -> None:
     assert first.get(ids[0]).session == "begun"
     first.change(ids[1], ended=True)
     assert not second.is_open(ids[1])
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no lock on a folder")
+def test_at_once_no_sitting_is_lost(tmp_path: Path) -> None:
+    labs = [Sittings(tmp_path / FILE) for _ in range(4)]
+    threads = [
+        threading.Thread(target=lambda k=k: [_new(labs[k], f"{k}{n:015x}") for n in range(5)])
+        for k in range(4)
+    ]
+    for one in threads:
+        one.start()
+    for one in threads:
+        one.join()
+    assert len(Sittings(tmp_path / FILE).of_study("s")) == 20
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no lock on a folder")
+def test_who_keeps_the_lock_is_not_waited_for_for_ever(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import fcntl
+
+    sittings = Sittings(tmp_path / FILE)
+    monkeypatch.setattr(sittings_module, "_PATIENCE", 0.02)
+    handle = os.open(tmp_path, os.O_RDONLY)
+    fcntl.flock(handle, fcntl.LOCK_EX)
+    with pytest.raises(RecordError, match="another program has kept the sittings"):
+        _new(sittings)
+    os.close(handle)
+    assert _new(sittings)
 
 
 def test_a_full_disk_ends_no_sitting_that_runs(
@@ -88,11 +119,17 @@ def test_a_damaged_file_is_one_message(tmp_path: Path, text: str) -> None:
         Sittings(tmp_path / FILE)
 
 
-def test_who_is_forgotten_is_in_no_file(tmp_path: Path) -> None:
+def test_who_is_forgotten_is_overwritten(tmp_path: Path) -> None:
     sittings = Sittings(tmp_path / FILE)
     _new(sittings)
     other = _new(sittings, "f" * 16)
+    old = (tmp_path / FILE).open("rb")
+    (tmp_path / f".{FILE}.k1ll3d_x").write_text(WHO)
     assert Sittings(tmp_path / FILE).forget(WHO) == 1
+    # What the file was before is zeros; what a killed program left is gone.
+    assert set(old.read()) == {0}
+    old.close()
+    assert [one.name for one in tmp_path.iterdir()] == [FILE]
     assert [one["id"] for one in json.loads((tmp_path / FILE).read_text())] == [other]
     assert [one.id for one in sittings.of_study("s")] == [other]
     assert Sittings(tmp_path / "elsewhere" / FILE).forget(WHO) == 0
