@@ -13,12 +13,14 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.conduct.rehearsal import MOST_PEOPLE, rehearse
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior
 from squeezefilm.study.record.database import require_study
+from squeezefilm.study.record.exploration import coverage
 from squeezefilm.study.record.exports import LIST, exported_folders, own_files
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.simulated.participants import simulate_matches
@@ -68,6 +70,7 @@ def a_file(folder: Path) -> object:
         (a_file, "is a file; give a folder"),
         (linked, "is no study's file|is a link"),
         (lambda at: require_study(at / "none.sqlite"), "does not exist"),
+        (lambda at: coverage((), (0.0, 0.1)), "face"),
     ],
 )
 def test_what_cannot_be_is_refused(
@@ -75,6 +78,17 @@ def test_what_cannot_be_is_refused(
 ) -> None:
     with pytest.raises(InputError, match=word):
         build(tmp_path)
+
+
+def test_the_cells_that_a_path_came_over_are_counted_once() -> None:
+    time = np.linspace(0, 1, 5)
+    across = FingerPath(time, np.linspace(0.5e-3, 9.5e-3, 5), np.full(5, 2.5e-3))
+    along = FingerPath(time, np.full(5, 4.5e-3), np.linspace(0.5e-3, 3.5e-3, 5))
+    face, cell = (10e-3, 5e-3), 1e-3
+    assert coverage((across,), face, cell) == pytest.approx(10 / 50)
+    assert coverage((across, along, across), face, cell) == pytest.approx(13 / 50)
+    assert coverage((along,), (1e-3, 2e-3), cell) == 1.0
+    assert coverage((), face, cell) == 0.0
 
 
 @pytest.mark.parametrize("axis", ["linear", "log"])

@@ -81,6 +81,8 @@ COLUMNS = (
     Column("peak_speed_m_per_s", "Greatest speed between two samples of its path", "m/s", "number"),
     Column("time_in_touch_s", "How long the finger touched", "s", "number"),
     Column("passes", "Straight stretches one way, of 4 mm or more", "", "number"),
+    Column("along_x_share", "Share of their way along x more than along y", "", "number"),
+    Column("coverage", "Share of the face's cells of 5 mm that it came over", "", "number"),
     Column("set_aside", "Why the answer does not count and the trial was asked again; else empty"),
     Column("presentations", "How often the trial was presented until answered", kind="whole"),
     Column("started_utc", "Wall clock when it began (UTC)"),
@@ -137,7 +139,7 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
         names = json.loads(row.pop("stimuli"))
         row["task"] = design.task
         traces = json.loads(row["traces"])
-        row |= measures(store, traces) if traces else NO_MEASURES
+        row |= measures(store, row["display"], traces) if traces else NO_MEASURES
         row["traces"] = " ".join(traces)
         row["correct"] = None if row["correct"] is None else bool(row["correct"])
         for prefix, name in itertools.zip_longest(SURFACES, names):

@@ -65,7 +65,7 @@ def test_exports_name_surfaces(place: Path, form: str) -> None:
     assert {len(one) for one in hashes.values()} == {64}
     disc = next(row for row in rows if row["stimulus"] == "disc")
     assert disc["stimulus_period_m"] == ""
-    assert disc["passes"] == ""
+    assert disc["coverage"] == ""
 
 
 @pytest.mark.slow

@@ -9,7 +9,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.motion.finger_path import FingerPath
-from squeezefilm.study.record.exploration import exploration, touches
+from squeezefilm.study.record.exploration import coverage, exploration, touches
 
 
 def test_steady_motion() -> None:
@@ -66,13 +66,34 @@ def _raster(lines: int, length: float, apart: float, offset: float) -> FingerPat
     return FingerPath(np.arange(float(len(places))), places[:, 0], places[:, 1])
 
 
-def test_passes_and_peak_speed_of_a_raster() -> None:
+@pytest.mark.parametrize(("lines", "apart"), [(4, 0.01), (8, 0.005), (3, 0.015), (16, 0.0025)])
+def test_the_coverage_of_a_raster_is_that_of_its_rows_of_cells(lines: int, apart: float) -> None:
+    # Lines in the middle of rows of 5 mm cells, 8 cells long; the joints go through the cells
+    # between two rows, at the ends, one column of them at each side.
+    found = coverage([_raster(lines, 0.0399, apart, 0.00251)], (0.08, 0.05))
+    rows = {math.floor((0.00251 + number * apart) / 0.005) for number in range(lines)}
+    between = max(rows) + 1 - len(rows)
+    assert found == pytest.approx((8 * len(rows) + between) / 160)
+
+
+def test_coverage_is_the_same_wherever_whole_cells_away_and_at_most_all() -> None:
+    path = _raster(4, 0.0399, 0.01, 0.0025)
+    moved = FingerPath(path.time, path.x + 0.015, path.y - 0.035)
+    assert coverage([path], (0.08, 0.05)) == coverage([moved], (0.08, 0.05))
+    assert coverage([path, path], (0.08, 0.05)) == coverage([path], (0.08, 0.05))
+    assert coverage([path], (0.01, 0.01)) == 1.0
+    assert coverage([], (0.08, 0.05)) == 0.0
+
+
+def test_passes_peak_speed_and_directions_of_a_raster() -> None:
     path = _raster(4, 0.04, 0.01, 0.0)
-    found = exploration(path.time, path.x, path.y)
+    found = exploration(path.time, path.x, path.y, face=(0.08, 0.05))
     # Four lines and three joints, a second each.
     assert found.passes == 7
+    assert found.along_x_share == pytest.approx(0.16 / 0.19)
     assert (found.peak_speed, found.mean_speed) == pytest.approx((0.04, 0.19 / 7))
     assert found.touched == found.duration == 7.0
+    assert math.isnan(exploration(path.time, path.x, path.y).coverage)
 
 
 def test_what_the_finger_does_in_the_air_is_left_out() -> None:

@@ -17,7 +17,7 @@ from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import SessionConditions, begin_session
 from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
 from squeezefilm.study.record.answers import recorded_answers
-from squeezefilm.study.record.exploration import MEASURES
+from squeezefilm.study.record.exploration import MEASURES, face_of
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import csv_text as trials_csv
 from squeezefilm.study.record.tables import trial_columns, trial_table
@@ -44,12 +44,13 @@ def _answered(path: Path, trace: str) -> StudyStore:
     return store
 
 
-def test_a_line_is_one_pass(tmp_path: Path) -> None:
+def test_a_line_is_one_pass_over_a_row_of_cells(tmp_path: Path) -> None:
     with _answered(tmp_path / "study.sqlite", _line(2.0, 0.0399)) as store:
         (row,) = trial_table(store)
-        assert row["passes"] == 1.0
+        assert (row["passes"], row["along_x_share"]) == (1.0, 1.0)
         assert row["time_in_touch_s"] == pytest.approx(2.0)
         assert row["peak_speed_m_per_s"] == pytest.approx(0.0399 / 2)
+        assert row["coverage"] == pytest.approx(8 * 0.005**2 / (0.083 * 0.049))
         assert (
             row["stimulus_surface_sha256"]
             == store.design.stimulus(str(row["stimulus"])).surface_sha256
@@ -57,7 +58,7 @@ def test_a_line_is_one_pass(tmp_path: Path) -> None:
         found = recorded_answers(store)
         assert set(MEASURES) <= set(found.exploration)
         (cells,) = csv.DictReader(io.StringIO(trials_csv([row], trial_columns(store.design))))
-        assert float(cells["passes"]) == row["passes"]
+        assert float(cells["coverage"]) == row["coverage"]
         # Every measure says its unit in the column's description.
         units = {one.name: one.unit for one in trial_columns(store.design)}
         assert (units["peak_speed_m_per_s"], units["time_in_touch_s"]) == ("m/s", "s")
@@ -77,5 +78,11 @@ def test_a_path_that_went_away_is_blank_and_the_answer_stays(tmp_path: Path) -> 
         for path in store.traces.iterdir():
             path.unlink()
         (row,) = trial_table(store)
-        assert row["passes"] is None
+        assert row["coverage"] is None
         assert row["choice"]
+
+
+def test_a_display_that_is_no_plane_or_nowhere_has_no_face() -> None:
+    assert face_of("biet2008-plate") == (0.083, 0.049)
+    assert face_of("biet2008-stator") is None
+    assert face_of("nowhere.toml") is None
