@@ -2,8 +2,8 @@
 jsPsych saves it; one file, or a folder with one for each person or session.
 
 A row is a trial, or an answer that was given many times (`count`). Columns of the names that
-`study export` writes need not be told. Rows that cannot be what they say (pasted twice, times in
-another unit) are refused by their line.
+`study export` writes need not be told. Rows that cannot be what they say (pasted twice, another
+unit) are refused by their line.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from squeezefilm.core.hard_limits import FOREIGN_TRIALS, TABLE_BYTES, require_wi
 from squeezefilm.core.regular_file import read_json
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.answers import EXPLORED, Answers, answers_of
-from squeezefilm.study.record.implausible import require_plausible_rows
+from squeezefilm.study.record.implausible import Answered, require_plausible_rows
 from squeezefilm.study.record.tables import SURFACES, Cell, presented, unguarded
 
 NUMBERS = ("intensity", "estimate", "response_time_s", *EXPLORED)
@@ -82,7 +82,7 @@ def read_answers(
     how = dict(columns or {}), dict(values or {}), decimal_comma
     rows: list[dict[str, Cell]] = []
     given: dict[str, int] = {}
-    known: dict[str, str] = {}
+    known: dict[Answered, str] = {}
     for file in _files(path):
         found = _rows(file, design, *how, given=given, named=file != Path(path))
         numbered = list(itertools.islice(found, limit + 1 - len(rows)))

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
+import re
+import unicodedata
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
+from itertools import combinations, pairwise
 from pathlib import Path
 from statistics import median
 
@@ -12,27 +15,34 @@ from squeezefilm.core.errors import ConfigError
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.tables import SURFACES, Cell
 
+Answered = tuple[tuple[str, ...], ...]
+"""The answers of a person, row by row."""
 Numbered = Sequence[tuple[int, Mapping[str, Cell]]]
 """Rows with their line in the file."""
 LONGEST_USUAL = 100.0
 """Median response time of somebody (s) above which it is held to be in milliseconds."""
 _FACTOR = 300.0
-_TIMED = ("display", "phase", *SURFACES, "choice", "estimate", "response_time_s")
+_FEWEST, _FEWEST_SURFACES = 12, 4
+_OFF_SCALE = math.log(30.0)
+"""Logarithm of the factor beyond which a number is of another unit."""
+_ANSWERED = ("display", "phase", *SURFACES, "choice", "estimate")
+_TIMED = (*_ANSWERED, "response_time_s")
 
 
 def require_plausible_rows(
     path: str | Path,
     design: StudyDesign,
     rows: Numbered,
-    known: dict[str, str],
+    known: dict[Answered, str],
 ) -> None:
     """Refuse rows that cannot be what they say, with their line.
 
-    `known` has the names of people in other files, and takes up those of this one.
+    `known` has the answers of people in other files, and takes up those of this one.
 
-    Raises `ConfigError` for times below 0 or in milliseconds, a pair without the reference, an
-    intensity outside its series, a trial that is there twice, rows that were pasted twice, and a
-    person without a name or with two ways to write it.
+    Raises `ConfigError` for times below 0, in milliseconds or that are moments, a pair without the
+    reference, an intensity outside its series, numbers of another unit than the same person's
+    others, a trial that is there twice, a part that was pasted twice, a person without a name or
+    with two ways to write it, and two people with the same answers.
     """
     people: dict[str, list[tuple[int, Mapping[str, Cell]]]] = defaultdict(list)
     for line, row in rows:
@@ -45,16 +55,40 @@ def require_plausible_rows(
     for who, mine in people.items():
         _require_seconds(path, who, mine)
         _require_once(path, who, mine)
+        _require_one_scale(path, design, who, mine)
         _require_own_name(path, who, mine[0][0], known)
+        _require_own_answers(path, who, mine, known)
 
 
-def _require_own_name(path: str | Path, who: str, line: int, known: dict[str, str]) -> None:
+def _require_own_name(path: str | Path, who: str, line: int, known: dict[Answered, str]) -> None:
     """Refuse somebody without a name, or with one that is another's but for its writing."""
-    seen = "".join(who.casefold().split())
-    other = known.setdefault(seen, who)
+    seen = unicodedata.normalize("NFKC", who).casefold()
+    seen = "".join(sign for sign in seen if sign.isprintable() and not sign.isspace())
+    seen = re.sub(r"(?<!\d)0+(?=\d)", "", re.sub(r"\.0+$", "", seen))
+    other = known.setdefault((("name", seen),), who)
     if not seen or other != who:
         said = f"'{who}' and '{other}' are written alike; give one person one name"
         raise _refused(path, line, "participant_id", said if seen else "says nobody; write who")
+
+
+def _require_own_answers(
+    path: str | Path, who: str, mine: Numbered, known: dict[Answered, str]
+) -> None:
+    """Refuse answers that are in another file or another's: twelve rows running.
+
+    Times or numbers tell: where most are the same, as those in whole seconds, nothing is said.
+    """
+    rows = [tuple(str(row[name]) for name in _TIMED) for _, row in mine]
+    told = [(str(row["response_time_s"]), str(row["estimate"])) for _, row in mine]
+    for at in range(len(rows) - _FEWEST + 1):
+        part = tuple(rows[at : at + _FEWEST])
+        if part in known and len(set(told[at : at + _FEWEST])) > _FEWEST // 2:
+            said = (
+                f"'{who}' has the same answers and times as '{known[part]}', row by row; keep one"
+            )
+            raise _refused(path, mine[at][0], "participant_id", said)
+    for at in range(len(rows) - _FEWEST + 1):
+        known[tuple(rows[at : at + _FEWEST])] = who
 
 
 def _require_pair(
@@ -97,6 +131,9 @@ def _require_seconds(path: str | Path, who: str, mine: Numbered) -> None:
                 'milliseconds, say so by columns = "response_time_ms=COLUMN"'
             )
             raise _refused(path, line, "response_time_s", said)
+    if len(times) >= _FEWEST and all(then > now for now, then in pairwise(times)):
+        said = f"'{who}' takes longer in every row: are these moments in place of durations?"
+        raise _refused(path, timed[0][0], "response_time_s", said)
 
 
 def _require_once(path: str | Path, who: str, mine: Numbered) -> None:
@@ -113,6 +150,11 @@ def _require_once(path: str | Path, who: str, mine: Numbered) -> None:
             cells = tuple(str(row[name]) for name in _TIMED)
             again += [(first[cells], line)] if cells in first else []
             first.setdefault(cells, line)
+    keys = [tuple(str(row[name]) for name in _ANSWERED) for _, row in mine]
+    half = len(mine) // 2
+    pasted = half >= _FEWEST and keys[:half] == keys[half:] and mine[0][0] != mine[half][0]
+    if pasted and len(set(keys)) > 1 and not first:
+        again = [(mine[0][0], mine[half][0])] * half
     if len(again) >= max(3, 0.1 * len(mine)):
         raise _refused(
             path,
@@ -121,6 +163,42 @@ def _require_once(path: str | Path, who: str, mine: Numbered) -> None:
             f"'{who}' has {len(again)} rows twice, this one in line {again[0][0]} already; was a "
             "part pasted again?",
         )
+
+
+def _require_one_scale(path: str | Path, design: StudyDesign, who: str, mine: Numbered) -> None:
+    """Refuse a number far from the others to its surface, and numbers to a surface that are far
+    from the person's power law (through the median of all slopes between two surfaces)."""
+    of_surface: dict[str, list[tuple[int, float]]] = defaultdict(list)
+    for line, row in mine:
+        if (number := _value_of(row, "estimate")) > 0:
+            of_surface[str(row["stimulus"])].append((line, math.log(number)))
+    if sum(map(len, of_surface.values())) < _FEWEST:
+        return
+    middles = {name: median(log for _, log in here) for name, here in of_surface.items()}
+    for name, here in of_surface.items():
+        for line, log in here:
+            if len(here) > 2 and abs(log - middles[name]) > _OFF_SCALE:
+                ratio = math.exp(log - middles[name])
+                said = f"'{who}' gave '{name}' {ratio:.3g} times the usual; is a unit another?"
+                raise _refused(path, line, "estimate", said)
+    levels = {name: design.level(design.stimulus(name)) for name in middles}
+    slopes = [
+        (middles[one] - middles[other]) / (levels[one] - levels[other])
+        for one, other in combinations(middles, 2)
+        if levels[one] != levels[other]
+    ]
+    if len(middles) < _FEWEST_SURFACES or not slopes:
+        return
+    exponent = median(slopes)
+    off = {name: middles[name] - exponent * levels[name] for name in middles}
+    usual = median(off.values())
+    for name, here in of_surface.items():
+        if abs(off[name] - usual) > _OFF_SCALE:
+            said = (
+                f"'{who}' gave '{name}' {math.exp(off[name] - usual):.3g} times what the other "
+                "surfaces say; is a unit another?"
+            )
+            raise _refused(path, here[0][0], "estimate", said)
 
 
 def _value_of(row: Mapping[str, Cell], key: str) -> float:

@@ -276,6 +276,14 @@ def test_a_folder_holds_a_file_for_each_person(tmp_path: Path) -> None:
     answers = read_answers(folder, DESIGN, columns, values)
     people = [answers.people[number] for number in answers.participant]
     assert people == ["who1"] * 4 + ["who2"]
+    # A file that was copied holds the same answers at the same times.
+    again = "participant,a,b,key,rt\n" + "".join(
+        f"who1,30 %,22 %,left,0.{number}\n" for number in (*range(25, 40), *range(11, 25))
+    )
+    for name in ("3.csv", "3 (1).csv"):
+        (folder / name).write_text(again, encoding="utf-8")
+    with pytest.raises(ConfigError, match=r"3\.csv.*same answers and times.*keep one"):
+        read_answers(folder, DESIGN, {**columns, "response_time_s": "rt"}, values)
 
 
 def test_in_a_folder_a_files_name_may_be_the_person(tmp_path: Path) -> None:
