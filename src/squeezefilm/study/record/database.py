@@ -141,7 +141,7 @@ def _marks_of(connection: sqlite3.Connection) -> tuple[int, int]:
 def _require_marks(path: Path, kind: int, version: int) -> None:
     if kind != APPLICATION_ID:
         raise InputError(f"{path} is no study's file; give one that `study run` made")
-    if version != VERSION:
+    if version not in (1, VERSION):
         raise InputError(
             f"{path} has tables of version {version}; this program reads version {VERSION}; "
             "use the version of squeezefilm that made it"

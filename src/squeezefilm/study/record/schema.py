@@ -1,16 +1,17 @@
 """Tables of a study's file, and what they may hold: checked once, so that all else may rely on it.
 
-A file may come from elsewhere, or have been edited. Identifiers and the names of traces go into
-names of files, so nothing but what this program makes is let in. SQLite itself keeps the types.
+A file may come from elsewhere, or be damaged. Identifiers and the names of traces go into names
+of files and are searched for byte by byte, so nothing but what this program makes is let in.
 """
 
 from __future__ import annotations
 
-import contextlib
 import json
+import math
 import re
 import sqlite3
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from datetime import datetime
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core.errors import InputError
@@ -22,9 +23,13 @@ if TYPE_CHECKING:
 APPLICATION_ID = 0x73_66_73_74
 """Marks the file as a study of squeezefilm in SQLite's header ("sfst")."""
 VERSION = 2
-"""Version of the tables in SQLite's header; a file of another one is refused."""
+"""Version of the tables in SQLite's header: 1, without `set_aside`, is brought up to date when it
+is opened; another one is refused."""
 
-SCHEMA = """
+SCHEMA = f"""
+PRAGMA application_id = {APPLICATION_ID};
+PRAGMA user_version = {VERSION};
+
 CREATE TABLE study (
     uuid TEXT PRIMARY KEY,
     name TEXT NOT NULL,
@@ -138,12 +143,17 @@ TABLES = (
 )
 """Tables that merge from other stations, each table after those it refers to. Keys come first."""
 
+UPGRADE_1 = next(part for part in SCHEMA.split(";") if "CREATE TABLE set_aside" in part)
+"""Statement that gives a file of version 1 what it lacks."""
+
 _IDENTIFIER = re.compile(r"[0-9a-f-]{16,36}")
 _TRACE = re.compile(r"[0-9a-f]{32}\.(csv|sqft)")
 _HALF_WRITTEN = re.compile(rf"\.{_TRACE.pattern}\.[a-z0-9_]+")
 _PHASES = ("familiarisation", "practice", "main", "catch")
+_PLAIN = (str, int, float, bool, type(None))
+_KINDS: dict[str, type] = {"TEXT": str, "INTEGER": int, "REAL": float}
 
-Check = Callable[[str], bool]
+Check = Callable[[Any], bool]
 Rows = Callable[[str], list[dict[str, Any]]]
 
 
@@ -166,28 +176,59 @@ def problems(rows: Rows, design: Callable[[], StudyDesign]) -> Iterator[str]:
 
     `rows` asks the file, `design` reads its design once the study's own row is known to be good.
     """
-    with contextlib.closing(sqlite3.connect(":memory:")) as reference:
+    with sqlite3.connect(":memory:") as reference:
         reference.row_factory = sqlite3.Row
         reference.executescript(SCHEMA)
-        for name in ("study", *TABLES):
-            columns = f"PRAGMA table_info({name})"
-            if rows(columns) != [dict(row) for row in reference.execute(columns)]:
-                yield f"the table {name} has other columns"
-                return
+        wanted = {name: _shape(reference.execute, name) for name in ("study", *TABLES)}
+    reference.close()
+    for name in wanted:
+        if _shape(rows, name) != wanted[name]:
+            yield f"the table {name} has other columns"
+            return
     for row in rows("SELECT name FROM sqlite_schema WHERE type IN ('trigger', 'view')"):
         yield f"{row['name']} is a trigger or a view, and a study has none"
     for row in rows("PRAGMA foreign_key_check"):
         yield f"a row of {row['table']} belongs to one of {row['parent']} that is gone"
-    studies = rows("SELECT uuid FROM study")
+    studies = rows("SELECT * FROM study")
     if len(studies) != 1:
         yield f"it holds {len(studies)} studies instead of one"
         return
-    for table, checks in _CHECKS.items():
-        for row in rows(f"SELECT {', '.join(checks)} FROM {table}"):
-            for column, holds in checks.items():
-                if not holds(row[column]):
-                    yield f"{table} has {column} = {row[column]!r:.60}"
+    yield from _row_problems("study", wanted["study"], studies, _CHECKS)
+    checks = _CHECKS | {
+        "display": lambda display: display in design().displays,
+        "adaptive": lambda text: not text or text in [series.name for series in design().adaptive],
+    }
+    for table in TABLES:
+        yield from _row_problems(table, wanted[table], rows(f"SELECT * FROM {table}"), checks)
     yield from _trial_problems(rows, design())
+
+
+Shape = dict[str, tuple[type, bool]]
+
+
+def _shape(execute: Callable[[str], Iterable[Any]], table: str) -> Shape:
+    """Columns of a table: the type of their values, and whether they may be NULL."""
+    columns = execute(f"PRAGMA table_info({table})")
+    return {
+        column["name"]: (_KINDS.get(column["type"], bytes), not (column["notnull"] or column["pk"]))
+        for column in columns
+    }
+
+
+def _row_problems(
+    table: str, shape: Shape, rows: list[dict[str, Any]], checks: dict[str, Check]
+) -> Iterator[str]:
+    key = next(iter(shape))
+    for row in rows:
+        for column, (kind, may_be_empty) in shape.items():
+            value = row[column]
+            if value is None and may_be_empty:
+                continue
+            holds = isinstance(value, kind) and (
+                not isinstance(value, float) or math.isfinite(value)
+            )
+            if not holds or (column in checks and not checks[column](value)):
+                yield f"{table} {row[key]!r:.40} has {column} = {value!r:.60}"
 
 
 def _trial_problems(rows: Rows, design: StudyDesign) -> Iterator[str]:
@@ -195,7 +236,6 @@ def _trial_problems(rows: Rows, design: StudyDesign) -> Iterator[str]:
     gratings = [alternative.name for alternative in design.alternatives]
     stimuli = [stimulus.name for stimulus in design.stimuli]
     catches = [trial.stimulus.name for trial in design.catch]
-    displays, series = design.displays, ("", *(one.name for one in design.adaptive))
     for row in rows(
         "SELECT t.*, r.trial AS answered, r.stimuli AS felt, r.choice, r.intensity, r.estimate "
         "FROM trial t LEFT JOIN response r ON r.trial = t.uuid"
@@ -206,9 +246,6 @@ def _trial_problems(rows: Rows, design: StudyDesign) -> Iterator[str]:
             "catch": stimuli + catches,
         }.get(row["phase"], stimuli)
         place = f"trial {row['uuid']}"
-        for what, of, named in (("on", displays, "display"), ("of", series, "adaptive")):
-            if row[named] not in of:
-                yield f"{place} is {what} {row[named]!r:.40}, which its design does not have"
         if bool(names) == bool(row["adaptive"]) or not set(names) <= set(known):
             yield f"{place} presents {names!r:.60}, which its design does not"
         if not set(offered) <= set(design.answers):
@@ -224,33 +261,79 @@ def _trial_problems(rows: Rows, design: StudyDesign) -> Iterator[str]:
             yield f"the answer to {place} is {row['choice']!r:.60}, which was not offered"
 
 
-def _texts(text: str) -> bool:
+def _json(text: str) -> Any:
     try:
-        found = parsed_json(text)
+        return parsed_json(text)
     except ValueError:
-        return False
+        # No JSON has this type, so that no check holds for it.
+        return ...
+
+
+def _texts(text: str) -> bool:
+    found = _json(text)
     return isinstance(found, list) and all(isinstance(item, str) for item in found)
 
 
 def _traces(text: str) -> bool:
-    return _texts(text) and all(_TRACE.fullmatch(name) for name in json.loads(text))
+    return _texts(text) and all(_TRACE.fullmatch(load) for load in json.loads(text))
+
+
+def _fields(text: str) -> bool:
+    """True where a text is an object of plain values."""
+    found = _json(text)
+    return isinstance(found, dict) and all(isinstance(value, _PLAIN) for value in found.values())
+
+
+def _fields_or_none(text: str) -> bool:
+    return _json(text) is None or _fields(text)
+
+
+def _verification(text: str) -> bool:
+    found = _json(text)
+    wanted = {"measurable", "amplitude_m", "resonance_frequency_Hz"}
+    return (
+        isinstance(found, dict)
+        and wanted <= found.keys()
+        and all(isinstance(found[key], _PLAIN) for key in wanted)
+    )
+
+
+def _moment(text: str) -> bool:
+    try:
+        return datetime.fromisoformat(text).utcoffset() is not None
+    except ValueError:
+        return False
+
+
+def _not_negative(value: float) -> bool:
+    return value >= 0
 
 
 def _identifier(text: str) -> bool:
     return bool(_IDENTIFIER.fullmatch(text))
 
 
-_CHECKS: dict[str, dict[str, Check]] = {
-    **{
-        name: {"uuid": _identifier}
-        for name in ("study", "participant", "session", "verification", "presentation")
-    },
-    "trial": {
-        "uuid": _identifier,
-        "phase": _PHASES.__contains__,
-        "stimuli": _texts,
-        "alternatives": _texts,
-    },
-    "response": {"stimuli": _texts, "traces": _traces},
+_CHECKS: dict[str, Check] = {
+    "uuid": _identifier,
+    "participant": _identifier,
+    "seed": lambda number: 0 <= number <= 2**53,
+    "stations": lambda number: number >= 1,
+    "station": _not_negative,
+    "number": _not_negative,
+    "phase": lambda phase: phase in _PHASES,
+    "stimuli": _texts,
+    "alternatives": _texts,
+    "pause_s": _not_negative,
+    "conditions": _fields,
+    "exposure": _fields_or_none,
+    "moment": lambda moment: moment in ("before", "after"),
+    "result": _verification,
+    "traces": _traces,
+    "correct": lambda flag: flag in (0, 1),
+    "response_time_s": _not_negative,
+    **dict.fromkeys(
+        ("created_utc", "enrolled_utc", "started_utc", "made_utc", "presented_utc", "ended_utc"),
+        _moment,
+    ),
 }
-"""Conditions on columns, by table."""
+"""Conditions on the columns, in whichever table they are."""

@@ -35,7 +35,7 @@ from squeezefilm.study.record.database import (
     same_folders,
 )
 from squeezefilm.study.record.erasure import require_own_folder, require_plain
-from squeezefilm.study.record.schema import APPLICATION_ID, SCHEMA, VERSION, is_trace, problems
+from squeezefilm.study.record.schema import SCHEMA, UPGRADE_1, VERSION, is_trace, problems
 
 _HIGHEST_SEED = 2**53
 UNFINISHED = ".unfinished"
@@ -129,8 +129,6 @@ class StudyStore:
             for statement in SCHEMA.split(";"):
                 if statement.strip():
                     write.execute(statement)
-            write.execute(f"PRAGMA application_id = {APPLICATION_ID}")
-            write.execute(f"PRAGMA user_version = {VERSION}")
             insert(write, "study", row)
 
     @classmethod
@@ -146,6 +144,7 @@ class StudyStore:
         require_study(path)
         store = cls(path, Database(path))
         try:
+            store._bring_up_to_date()
             for problem in problems(store.rows, lambda: store.design):
                 raise InputError(
                     f"{path} is damaged or was not written by this program: {problem}. Nothing of "
@@ -156,6 +155,16 @@ class StudyStore:
             store.close()
             raise
         return store
+
+    def _bring_up_to_date(self) -> None:
+        """Give a file of version 1 the table that it lacks; nothing in it changes."""
+        if self.rows("PRAGMA user_version")[0]["user_version"] != 1:
+            return
+        if self.rows("SELECT 1 FROM sqlite_schema WHERE name = 'set_aside'"):
+            return
+        with self.transaction() as write:
+            write.execute(UPGRADE_1)
+            write.execute(f"PRAGMA user_version = {VERSION}")
 
     def close(self) -> None:
         """Close the file; its write-ahead log is folded in where nobody else has it open."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import sqlite3
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -218,6 +219,19 @@ def test_what_was_set_aside_merges_and_is_deleted_with_its_person(tmp_path: Path
     other = StudyStore.create(tmp_path / "b.sqlite", design, 3, station=0)
     assert merge(other, tmp_path / "a.sqlite").added["set_aside"] == 1
     assert merge(other, tmp_path / "a.sqlite").added["set_aside"] == 0
+
+
+def test_a_file_of_version_1_gets_the_table_that_it_lacks(tmp_path: Path) -> None:
+    store, run = begun(tmp_path / "v.sqlite", dataclasses.replace(gratings(1), familiarisation=0))
+    answer(run)
+    store.close()
+    with sqlite3.connect(tmp_path / "v.sqlite") as old:
+        old.execute("DROP TABLE set_aside")
+        old.execute("PRAGMA user_version = 1")
+    with StudyStore.open(tmp_path / "v.sqlite") as found:
+        assert found.rows("PRAGMA user_version")[0]["user_version"] == 2
+        assert recorded_answers(found).trials == 1
+        assert found.rows("SELECT * FROM set_aside") == []
 
 
 def test_nothing_is_planned_twice_without_a_reason(tmp_path: Path) -> None:

@@ -15,6 +15,8 @@ import pytest
 
 from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.study.conduct.run import Response, StudyRun
+from squeezefilm.study.conduct.study_device import NoDevice
+from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.record import database as database_module
 from squeezefilm.study.record import store as store_module
 from squeezefilm.study.record.database import (
@@ -34,7 +36,9 @@ from squeezefilm.study.record.schema import APPLICATION_ID, VERSION
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.tasks.analyze import analyze_study
 
-from ..scripted import gratings, run_through, session
+from ..scripted import Script, gratings, run_through, session
+
+VERSION_1 = Path(__file__).with_name("version_1.sql")
 
 
 def _begun(path: Path) -> tuple[StudyStore, StudyRun]:
@@ -327,6 +331,22 @@ def test_a_damaged_file_is_given_to_nobody(tmp_path: Path) -> None:
         assert not store.exports.exists()
 
 
+def test_a_file_of_version_1_opens_goes_on_and_exports(tmp_path: Path) -> None:
+    path = tmp_path / "study.sqlite"
+    connection = sqlite3.connect(path)
+    # Dumped from a file that the first version of this room wrote.
+    connection.executescript(VERSION_1.read_text(encoding="utf-8"))
+    connection.close()
+    with StudyStore.open(path) as store:
+        (who,) = store.participants()
+        assert (who["uuid"], who["planned"], who["answered"]) == ("52a95791154444a6", 6, 3)
+        before = store.rows("SELECT * FROM response ORDER BY trial")
+        assert conduct(session(store, who["uuid"]), NoDevice(), Script()) == 3
+        after = store.rows("SELECT * FROM response ORDER BY trial")
+        assert [row for row in after if row in before] == before
+        export_study(store, "psych-ds")
+
+
 class Connection:
     """SQLite, of which one statement fails or answers otherwise."""
 
@@ -465,7 +485,7 @@ def test_what_is_no_study_is_told_from_one_of_another_version(tmp_path: Path) ->
         ("application_id", APPLICATION_ID + 1, "no study's file; give one that `study run`", False),
         ("application_id", 0, "no study's file; give one that `study run`", False),
         ("user_version", VERSION + 1, f"version {VERSION + 1}; this program reads version", True),
-        ("user_version", VERSION - 1, f"version {VERSION - 1}; this program reads version", True),
+        ("user_version", VERSION - 2, f"version {VERSION - 2}; this program reads version", True),
     ):
         other = tmp_path / "other.sqlite"
         shutil.copy(path, other)

@@ -168,7 +168,7 @@ def test_a_participant_whose_pseudonym_is_a_path_is_refused(tmp_path: Path) -> N
     connection.execute("UPDATE trial SET participant = '../../escaped'")
     connection.close()
     # It goes into names of files.
-    with pytest.raises(InputError, match=r"participant has uuid = '../../escaped'"):
+    with pytest.raises(InputError, match=r"participant '../../escaped' has uuid"):
         StudyStore.open(other)
 
 
