@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from squeezefilm.core.kit import style
-from squeezefilm.study.report.words import whose
+from squeezefilm.study.report.words import model_fit, whose
 from squeezefilm.study.tasks.findings import PARTS
 
 if TYPE_CHECKING:
@@ -88,6 +89,44 @@ def _worst(matrix: ConfusionMatrix) -> str:
         f"{style.plain(matrix.stimuli[j], 16)} is most often taken for "
         f"{style.plain(matrix.answers[i], 16)} ({wrong[i, j]:.0f} %)"
     )
+
+
+@style.drawn
+def sensitivity(analysis: IdentificationAnalysis) -> Figure:
+    """Stimuli and criteria on the decision axis, and d′ of neighbours with intervals."""
+    fit = analysis.sensitivity
+    if fit is None:
+        why = (note for note in analysis.notes if note.startswith("d′"))
+        return style.message_figure("No d′", next(why, "It was not computed."))
+    names = [style.plain(name, 14) for name in analysis.matrix.stimuli]
+    weakest = int(np.argmin(fit.d_prime))
+    figure = style.new_figure(
+        f"Δ′ = {fit.total:.2f} from {names[0]} to {names[-1]}; "
+        f"{names[weakest]} and {names[weakest + 1]} lie closest, d′ = {fit.d_prime[weakest]:.2f}",
+        f"{data_of(analysis)}; {model_fit(fit)}",
+        4.6,
+    )
+    top, below = figure.subplots(2, 1, height_ratios=[1.25, 1])
+    low, high = min(fit.positions.min(), fit.criteria.min()), fit.positions.max()
+    x = np.linspace(low - 2.6, max(high, fit.criteria.max()) + 2.6, 500)
+    for name, place in zip(names, fit.positions, strict=True):
+        curve = np.exp(-0.5 * (x - place) ** 2)
+        top.plot(x, curve, color=style.BLUE, lw=1.3)
+        top.text(place, 1.04, name, ha="center", va="bottom", fontsize=9.5)
+    for k, criterion in enumerate(fit.criteria):
+        named = "criteria" if k == 0 else None
+        top.axvline(criterion, color=style.ORANGE, lw=1.2, ls=(0, (4, 2)), label=named)
+    top.set(xlim=(x[0], x[-1]), ylim=(0, 1.3), xlabel="decision axis (standard deviations)")
+    top.set_yticks([])
+    top.spines["left"].set_visible(False)
+    top.legend(loc="upper right", frameon=False)
+    style.estimates(below, zip(fit.d_prime, fit.low, fit.high, strict=True))
+    below.axhline(0, **style.ZERO)
+    pairs = [f"{a} – {b}" for a, b in itertools.pairwise(names)]
+    below.set_xticks(range(len(pairs)), pairs)
+    below.set(ylabel="d′ of neighbours", xlim=(-0.5, len(pairs) - 0.5))
+    below.set_title(f"{100 * fit.level:g} % intervals: {fit.interval_method}")
+    return figure
 
 
 @style.drawn

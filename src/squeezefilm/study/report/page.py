@@ -46,6 +46,7 @@ _TIMES = FigureOf(
 )
 FIGURES = (
     FigureOf("confusion", "Confusion matrix", draw.confusion),
+    FigureOf("sensitivity", "Sensitivity along the stimuli", draw.sensitivity),
     _TIMES,
 )
 """The figures of an identification study."""

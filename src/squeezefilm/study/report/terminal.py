@@ -137,7 +137,7 @@ def show_status(store: StudyStore) -> None:
 
 
 def show_deletion(done: Deletion, pseudonym: str) -> None:
-    """Print what was deleted, and that nothing of them is left."""
+    """Print what was deleted, that nothing of them is left, and what was not touched."""
     print(
         f"{pseudonym}: {done.answers} answers, {done.traces} traces and {done.sittings} sittings "
         f"deleted; {done.backups} backups and {done.exports} exports gone through; nothing found "

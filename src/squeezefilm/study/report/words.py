@@ -293,7 +293,7 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
         ),
     ]
     if fit is not None:
-        rows.append(("Total sensitivity Δ′", f"{fit.total:.3g}", _model_fit(fit)))
+        rows.append(("Total sensitivity Δ′", f"{fit.total:.3g}", model_fit(fit)))
         rows += [
             (
                 f"d′ {stimulus} – {other}",
@@ -312,7 +312,7 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
     return rows
 
 
-def _model_fit(fit: OrderedSensitivity) -> str:
+def model_fit(fit: OrderedSensitivity) -> str:
     """How well the model of d′ along the stimuli describes the answers."""
     model = "equal-variance Thurstone model"
     if fit.corrected:

@@ -9,7 +9,11 @@ import numpy as np
 import pytest
 from tests.unit.drawn import words
 
-from squeezefilm.study.report.figures import confusion, data_of
+from squeezefilm.study.report.figures import (
+    confusion,
+    data_of,
+    sensitivity,
+)
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 
@@ -108,3 +112,46 @@ def test_a_stimulus_that_was_not_shown_has_no_shares() -> None:
     assert [one.get_text() for one in axes.texts if one.get_position()[0] == 1] == ["–"] * 3
     assert not axes.patches
     assert {one.get_weight() for one in axes.texts} == {"normal"}
+
+
+def test_stimuli_and_criteria_lie_on_the_decision_axis() -> None:
+    figure = sensitivity(analysis())
+    assert words(figure.get_suptitle()) == (
+        "Δ′ = 3.00 from fine to coarse; middle and coarse lie closest, d′ = 1.00"
+    )
+    assert "G² = 4.2 with 3 degrees of freedom (p = 0.23)" in words(figure.get_supxlabel())
+    top, below = figure.axes
+    curves = [one for one in top.get_lines() if len(one.get_xdata()) > 2]
+    for curve, place in zip(curves, (0, 2, 3), strict=True):
+        x, y = np.asarray(curve.get_xdata()), np.asarray(curve.get_ydata())
+        assert y == pytest.approx(np.exp(-((x - place) ** 2) / 2))
+        # All that is more than a thirtieth of a peak is seen.
+        assert x[0] < -2.5
+        assert x[-1] > 3 + 2.5
+    assert [(one.get_text(), one.get_position()[0]) for one in top.texts] == [
+        ("fine", 0), ("middle", 2), ("coarse", 3),
+    ]  # fmt: skip
+    criteria = [data(one)[0][0] for one in top.get_lines() if len(one.get_xdata()) == 2]
+    assert criteria == [1.0, 2.5]
+    assert [one.get_text() for one in top.get_legend().get_texts()] == ["criteria"]
+    assert upright(below) == [(0, 1.5, 2.5), (1, 0.5, 1.75)]
+    assert [data(one) for one in below.get_lines() if one.get_marker() == "o"] == [
+        [[0], [2]],
+        [[1], [1]],
+    ]
+    assert [one.get_text() for one in below.get_xticklabels()] == [
+        "fine – middle", "middle – coarse",
+    ]  # fmt: skip
+    assert below.get_xlim() == (-0.5, 1.5)
+    assert below.get_title(loc="left") == "95 % intervals: a-method"
+    corrected = SimpleNamespace(**{**vars(THURSTONE), "corrected": True})
+    said = words(sensitivity(analysis(sensitivity=corrected)).get_supxlabel())
+    assert "one trial per stimulus added (some never confused): d′ too low" in said
+
+
+def test_what_was_not_computed_says_why() -> None:
+    figure = sensitivity(analysis(notes=("times: none", "d′: too many"), sensitivity=None))
+    assert figure.get_suptitle() == "No d′"
+    assert figure.axes[0].texts[0].get_text() == "d′: too many"
+    figure = sensitivity(analysis(sensitivity=None))
+    assert figure.axes[0].texts[0].get_text() == "It was not computed."

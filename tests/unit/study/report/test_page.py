@@ -87,6 +87,14 @@ def test_every_figure_says_whose_answers_these_are(analysis: IdentificationAnaly
         assert "simulated answers" in " ".join(figure.get_supxlabel().split()), key
 
 
+def test_titles_carry_the_numbers(analysis: IdentificationAnalysis) -> None:
+    fit = analysis.sensitivity
+    assert fit is not None
+    assert f"Δ′ = {fit.total:.2f}" in " ".join(
+        study_figures.sensitivity(analysis).get_suptitle().split()
+    )
+
+
 def test_of_one_stimulus_no_time_is_the_longest(analysis: IdentificationAnalysis) -> None:
     times = analysis.response_times
     one, two = (
@@ -149,6 +157,7 @@ def test_too_few_data_make_a_message() -> None:
     assert found.sensitivity is None
     for figure in figures_of(found).values():
         assert figure[1].get_suptitle()
+    assert study_figures.sensitivity(found).get_suptitle() == "No d′"
 
 
 @pytest.mark.slow

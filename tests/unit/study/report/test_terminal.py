@@ -136,13 +136,14 @@ def test_the_status_lists_people_in_their_order() -> None:
     ]
 
 
-def test_a_deletion_says_what_went() -> None:
-    done = Deletion(True, 7, 5, 2, 4, 3, 11)
+def test_a_deletion_says_what_went_and_what_was_left() -> None:
+    done = Deletion(True, 7, 5, 2, 4, 3, 11, ("notes.txt", "b.txt"))
     assert printed(lambda: show_deletion(done, "abc")) == [
         "abc: 7 answers, 5 traces and 3 sittings deleted; 2 backups and 4 exports gone through; "
         "nothing found in 11 files",
+        "left as they are, being no files of this program: notes.txt, b.txt",
     ]
-    nobody = Deletion(False, 0, 0, 0, 0, 0, 4)
+    nobody = Deletion(False, 0, 0, 0, 0, 0, 4, ())
     assert printed(lambda: show_deletion(nobody, "abc")) == [
         "abc was not enrolled; nothing found in 4 files"
     ]
