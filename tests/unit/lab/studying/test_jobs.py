@@ -92,7 +92,7 @@ def test_every_figure_but_the_confusion_comes_with_its_title(
             for figure in one["figures"]
         }
         assert pictures == {title: named(figure) for title, figure in drawn.items()}
-        assert len(pictures) == 1
+        assert len(pictures) == 2
 
 
 def test_a_report_lies_beside_the_study_and_is_named_from_the_labs_folder(
