@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from tests.task_models import Placement, PlacementModel
 
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75
 from squeezefilm.study.adaptive.bayesian import BayesianAdaptive
@@ -134,6 +135,36 @@ def test_a_series_by_the_tasks_model_finds_its_threshold(task: Task) -> None:
     assert (below > 60) == (task == "direction")
     assert min(asked) >= 1 / 1.9 - 1 - 1e-12
     assert asked.count(0.0) == (150 if task == "yes-no" else 0)
+
+
+@pytest.mark.parametrize("task", ["same-different", "yes-no", "direction", "odd-one-out"])
+def test_a_series_chooses_as_the_placement_that_questplus_confirms(task: Task) -> None:
+    """`tests/verification/test_study_oracles.py` compares that placement with questplus."""
+    series = adaptive_method(dataclasses.replace(BAYES, count=40), task=task)
+    assert isinstance(series, ModelSeries)
+    model, random = series._model, np.random.default_rng(6)
+    rest = model.prior[: model.prior.size // model.thresholds.size]
+    same = Placement(
+        PlacementModel(
+            {"threshold": model.thresholds, "rest": np.arange(rest.size)},
+            model.differences,
+            model.answers,
+            np.stack([model.chances, 1.0 - model.chances]),
+            {"rest": rest},
+        ),
+        40,
+    )
+    for number in range(40):
+        told = np.where(model.differences == 0, -1.0, same.expected_information())
+        asked = series.next_stimulus()
+        at = int(np.argmin(np.abs(series._choices - asked)))
+        # Every fourth goes through all differences in turn.
+        assert number % 4 == 3 or told[at] == pytest.approx(told.max(), abs=1e-12)
+        first = bool(random.random() < 0.6)
+        chosen = model.answers[0 if first else 1]
+        series.update(asked, chosen if task in ("yes-no", "direction") else first)
+        same.update(at, 0 if first else 1)
+    assert series._weights == pytest.approx(same.probability.ravel(), abs=1e-12)
 
 
 @pytest.mark.parametrize("series", [STAIRS, BAYES], ids=["staircase", "bayesian"])
