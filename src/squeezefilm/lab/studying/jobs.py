@@ -46,7 +46,7 @@ def analysis_of(path: Path) -> dict[str, Any]:
 
 def _tables(display: str, analysis: StudyAnalysis) -> dict[str, Any]:
     """Answers by stimulus and by person, or confusions."""
-    from squeezefilm.study.report.words import answer_parts
+    from squeezefilm.study.report.answer_tables import answer_parts
 
     if isinstance(analysis, TaskAnalysis):
         tables = [

@@ -25,9 +25,9 @@ from squeezefilm.core.kit.page_style import (
 )
 from squeezefilm.study.report import figures as draw
 from squeezefilm.study.report import task_figures
+from squeezefilm.study.report.answer_tables import answer_parts
 from squeezefilm.study.report.words import (
     SCREENING_HEAD,
-    answer_parts,
     key_rows,
     read_first,
     screening_rows,

@@ -13,7 +13,7 @@ from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import M, printable, shown
 from squeezefilm.core.kit.page_style import bullets, links, section, text_table
 from squeezefilm.study.record.tables import SURFACES, Column, csv_text, trial_columns
-from squeezefilm.study.report.words import confusion_rows
+from squeezefilm.study.report.answer_tables import confusion_rows
 from squeezefilm.study.simulated.answers import SimulatedStudy
 from squeezefilm.study.simulated.chain_tables import ChainTables
 

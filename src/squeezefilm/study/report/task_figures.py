@@ -10,8 +10,9 @@ import numpy as np
 from squeezefilm.core.kit import style
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.design.tasks.task import JUDGED
+from squeezefilm.study.report.answer_tables import condition_head
 from squeezefilm.study.report.figures import data_of, named_ticks
-from squeezefilm.study.report.words import condition_head, estimate_words, most_and_least, scale_of
+from squeezefilm.study.report.words import estimate_words, most_and_least, scale_of
 from squeezefilm.study.tasks.findings import PARTS, through
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ import pytest
 from tests.unit.made_results import made_result
 
 from squeezefilm.lab.studying.jobs import _tables
-from squeezefilm.study.report import words
+from squeezefilm.study.report import answer_tables
 from squeezefilm.study.tasks.findings import TaskAnalysis
 
 
@@ -18,8 +18,8 @@ def test_a_task_has_its_stimuli_and_people_and_no_confusions(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     for name in ("condition_head", "condition_rows", "person_rows"):
-        monkeypatch.setattr(words, name, lambda _, name=name: name)
-    people = {"title": "People", "head": words.PERSON_HEAD, "rows": "person_rows"}
+        monkeypatch.setattr(answer_tables, name, lambda _, name=name: name)
+    people = {"title": "People", "head": answer_tables.PERSON_HEAD, "rows": "person_rows"}
     alone = _tables("plate", made_result(TaskAnalysis, measure="d", conditions=()))
     assert alone == {"tables": [people], "confusion": None}
     both = _tables("plate", made_result(TaskAnalysis, measure="d", conditions=("4 mm",)))

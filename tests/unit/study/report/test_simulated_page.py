@@ -19,6 +19,7 @@ from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.design.study_design import load_design
+from squeezefilm.study.report.answer_tables import confusion_rows
 from squeezefilm.study.report.simulated_page import (
     REMARK,
     evidence_rows,
@@ -26,7 +27,6 @@ from squeezefilm.study.report.simulated_page import (
     simulated_columns,
     write_simulated,
 )
-from squeezefilm.study.report.words import confusion_rows
 from squeezefilm.study.simulated.answers import SimulatedStudy
 from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.tasks import analyze

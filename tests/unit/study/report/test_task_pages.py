@@ -14,16 +14,11 @@ from tests.unit.printed import printed
 
 from squeezefilm.core.kit import style
 from squeezefilm.study.report import page as report
+from squeezefilm.study.report.answer_tables import condition_head, condition_rows, person_rows
 from squeezefilm.study.report.page import TASK_FIGURES, study_figures, write_overview, write_study
 from squeezefilm.study.report.task_figures import answers, persons
 from squeezefilm.study.report.terminal_analysis import show_analyses
-from squeezefilm.study.report.words import (
-    condition_head,
-    condition_rows,
-    key_rows,
-    person_rows,
-    read_first,
-)
+from squeezefilm.study.report.words import key_rows, read_first
 from squeezefilm.study.tasks.findings import TaskAnalysis
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
