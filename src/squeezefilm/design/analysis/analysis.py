@@ -44,11 +44,7 @@ from squeezefilm.design.analysis.verdict import (
     why_not_good,
 )
 from squeezefilm.design.analysis.wanted import Wanted
-from squeezefilm.design.textures.gratings_left import (
-    EXPLORING_SPEEDS,
-    GratingsLeft,
-    speed_gains,
-)
+from squeezefilm.design.textures.gratings_left import EXPLORING_SPEEDS, GratingsLeft
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.electronics import ElectricalLoad, load_of_mode
@@ -248,7 +244,6 @@ class Analysis(Result):
                 "swing": self.fidelity.kept,
                 "fundamental": self.fidelity.fundamental,
             },
-            "compensation_speed_gain": speed_gains(p),
             "friction_criterion": [
                 {
                     "surface": curve.surface,

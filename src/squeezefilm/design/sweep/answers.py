@@ -133,9 +133,7 @@ def asked_for(texts: Sequence[str]) -> tuple[AskedNumber, ...]:
     """
     wanted: dict[AskedNumber, None] = {}
     for text in texts:
-        # A few names have a comma in them.
-        whole = any(_spelled_out(text.strip(), keys) for keys in catalogue().values())
-        for name in [text] if whole else text.split(","):
+        for name in text.split(","):
             if name.strip():
                 wanted.update(dict.fromkeys(_asked_by(name.strip())))
     if not wanted:

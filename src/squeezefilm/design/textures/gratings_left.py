@@ -1,18 +1,13 @@
-"""Square gratings that a display's resonator leaves, and what compensation does for them."""
+"""Square gratings that a display's resonator leaves."""
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.chain.prediction import Prediction
-from squeezefilm.physics.render.resonator.compensation import (
-    DrivenEnvelope,
-    fastest_compensated_speed,
-)
 from squeezefilm.physics.render.resonator.envelope import (
     fastest_speed,
     finest_period,
@@ -27,9 +22,6 @@ EXPLORING_SPEEDS: tuple[si.MetrePerSecond, ...] = (0.01, 0.02, 0.05, 0.1, 0.2)
 
 KEPT: si.Dimensionless = 0.9
 """Share of its swing that a grating keeps which survives."""
-
-# Upper amplitude of a swing from 0, over what the full voltage holds.
-_LEVEL = 0.8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,25 +60,3 @@ def what_survives(prediction: Prediction, time_constant: si.Second) -> GratingsL
         finest_period=np.asarray(finest_period(speeds, time_constant, KEPT)),
         fastest_speed=np.asarray(fastest_speed(periods, time_constant, KEPT)),
     )
-
-
-def speed_gains(prediction: Prediction) -> dict[str, float] | None:
-    """Factor by which a finger may be faster on a square grating of any period, by drive; None
-    where no voltage makes an amplitude."""
-    if not prediction.voltage or prediction.vibration_amplitude == 0:
-        return None
-    tau, held = prediction.envelope_time_constant, prediction.mode.amplitude_per_volt
-    coasting = DrivenEnvelope(tau, tau, held * prediction.voltage)
-    braking = dataclasses.replace(coasting, braking=True)
-    high = _LEVEL * coasting.amplitude_limit
-    # Scaled with the period, the speed leaves the same cycle: a metre stands for all.
-    bare = fastest_compensated_speed(1.0, coasting, 0.0, high, "none", KEPT)
-    alone, braked = (
-        fastest_compensated_speed(1.0, envelope, 0.0, high, "inverse", KEPT)
-        for envelope in (coasting, braking)
-    )
-    return {
-        "no compensation": 1.0,
-        "compensated, no phase inversion": alone / bare,
-        "compensated, phase inversion": braked / bare,
-    }

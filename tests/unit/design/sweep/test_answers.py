@@ -41,10 +41,6 @@ sys.path.append(str(Path(__file__).parents[4] / "tools"))
         ),
         ("followed", [("followed", "frequency_Hz")]),
         ("followed.alone_per_volt", [("followed", "alone_per_volt_m_per_V")]),
-        (
-            "compensation_speed_gain.compensated, no phase inversion",
-            [("analyze", "compensation_speed_gain.compensated, no phase inversion")],
-        ),
     ],
 )
 def test_the_quickest_verb_that_knows_a_name_is_asked(

@@ -1,13 +1,11 @@
-"""Which gratings survive, and gains of speed by drive."""
+"""Which gratings survive."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 import pytest
 
-from squeezefilm.design.textures.gratings_left import speed_gains, what_survives
+from squeezefilm.design.textures.gratings_left import what_survives
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import load_display
 
@@ -16,21 +14,6 @@ from squeezefilm.physics.display import load_display
 def plate() -> Prediction:
     """The paper's plate at 15 V."""
     return predict(load_display("biet2008-plate"))
-
-
-@pytest.mark.parametrize("name", ["biet2008-plate", "biet2008-stator"])
-def test_gains_do_not_depend_on_the_device(name: str) -> None:
-    gains = speed_gains(predict(load_display(name), voltage=10.0))
-    assert gains is not None
-    # To 0.8 of the limit: ln 19 of both edges, ln 10 of a fall, ln(1/0.28) of a rise at full tilt.
-    assert gains == pytest.approx(
-        {
-            "no compensation": 1.0,
-            "compensated, no phase inversion": math.log(19) / math.log(10),
-            "compensated, phase inversion": math.log(19) / math.log(1 / 0.28),
-        },
-        rel=1e-9,
-    )
 
 
 def test_the_papers_periods_by_exploring_speeds(plate: Prediction) -> None:
@@ -49,7 +32,5 @@ def test_the_papers_periods_by_exploring_speeds(plate: Prediction) -> None:
 
 def test_without_a_voltage_or_a_friction_that_changes_nothing_is_said() -> None:
     display = load_display("biet2008-plate")
-    assert speed_gains(predict(display, vibration_amplitude=1e-6)) is None
     still = predict(display, voltage=0.0)
-    assert speed_gains(still) is None
     assert what_survives(still, 1e-3) is None
