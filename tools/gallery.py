@@ -16,7 +16,7 @@ import numpy as np
 from squeezefilm.core import presets
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit import style
-from squeezefilm.design.textures.report.figures import picture
+from squeezefilm.design.report.texture_figures import picture
 from squeezefilm.physics.texture_files.texture_file import load_texture
 
 

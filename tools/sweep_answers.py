@@ -14,7 +14,7 @@ from pathlib import Path
 import squeezefilm.design.sweep
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.design.analysis.analyze import analyze
-from squeezefilm.design.friction.command import analyze_friction
+from squeezefilm.design.friction import analyze_friction
 from squeezefilm.design.plate.command import solve_plate
 from squeezefilm.design.plate.solved import ModeRow
 from squeezefilm.design.sweep.answers import numbers_of

@@ -29,10 +29,10 @@ _NAMES = {
     "predict_grid": "physics.chain.prediction_grid",
     "voltage_for_friction": "physics.chain.wanted_voltage",
     "analyze": "design.analysis.analyze",
-    "analyze_friction": "design.friction.command",
+    "analyze_friction": "design.friction",
     "list_modes": "design.plate.modes",
     "solve_plate": "design.plate.command",
-    "solve_film": "design.film.command",
+    "solve_film": "design.film",
     "sweep": "design.sweep.sweep",
     "search_designs": "design.search.run",
     # Textures, composed

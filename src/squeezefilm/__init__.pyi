@@ -37,8 +37,8 @@ if TYPE_CHECKING:
     from squeezefilm.design.analysis.analysis import Analysis
     from squeezefilm.design.analysis.sensitivities import Effort
     from squeezefilm.design.fabrication.fabricate import Fabrication
-    from squeezefilm.design.film.command import FilmAnswer
-    from squeezefilm.design.friction.command import FrictionAnalysis
+    from squeezefilm.design.film import FilmAnswer
+    from squeezefilm.design.friction import FrictionAnalysis
     from squeezefilm.design.plate.command import PlateAnalysis
     from squeezefilm.design.plate.modes import ModeList
     from squeezefilm.design.plate.ring import RingAnalysis

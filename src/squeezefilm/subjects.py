@@ -20,22 +20,22 @@ from squeezefilm.design.analysis.report.figures import FIGURES
 from squeezefilm.design.analysis.report.page import write_analysis
 from squeezefilm.design.fabrication.fabricate import Fabrication
 from squeezefilm.design.fabrication.report.page import drawing_sheet, write_fabrication
-from squeezefilm.design.film.command import FilmAnswer, FilmMap
-from squeezefilm.design.film.report import film_map
-from squeezefilm.design.friction.command import FrictionAnalysis
-from squeezefilm.design.friction.report import figures as friction
+from squeezefilm.design.film import FilmAnswer, FilmMap
+from squeezefilm.design.friction import FrictionAnalysis
 from squeezefilm.design.plate.command import PlateAnalysis
 from squeezefilm.design.plate.report import page as plate_page
-from squeezefilm.design.plate.report import plate, ring
+from squeezefilm.design.plate.report.figures import PLATE_FIGURES, RING_FIGURES
 from squeezefilm.design.plate.ring import RingAnalysis
+from squeezefilm.design.report import film
+from squeezefilm.design.report import friction as friction
+from squeezefilm.design.report import texture_figures as textures
+from squeezefilm.design.report.texture_page import write_render
 from squeezefilm.design.search.found import DesignSearch
 from squeezefilm.design.search.report.figures import FIGURES as FIGURES_OF_DESIGN
 from squeezefilm.design.search.report.page import write_design
 from squeezefilm.design.sweep.report.figures import sweep_figure
 from squeezefilm.design.sweep.report.page import write_sweep
 from squeezefilm.design.sweep.swept import Sweep
-from squeezefilm.design.textures.report import figures as textures
-from squeezefilm.design.textures.report.page import write_render
 from squeezefilm.instruments.bench.play import PlayResult
 from squeezefilm.instruments.bench.played_session import PlayedSession
 from squeezefilm.instruments.report import page as played
@@ -94,10 +94,10 @@ SUBJECTS: Mapping[type, _Subject] = {
     Prediction: _Subject({"friction": lambda prediction: friction.predictions([prediction])}),
     Analysis: _Subject(_ANALYSIS, write_analysis),
     FrictionAnalysis: _Subject(_by_key(friction.FIGURES), friction.write_friction),
-    FilmAnswer: _Subject({"pressure": film_map.film_pressure}),
-    FilmMap: _Subject({"map": film_map.film_map}, film_map.write_film_map),
-    PlateAnalysis: _Subject(_by_key(plate.FIGURES), plate_page.write_plate),
-    RingAnalysis: _Subject(_by_key(ring.FIGURES), plate_page.write_plate),
+    FilmAnswer: _Subject({"pressure": film.film_pressure}),
+    FilmMap: _Subject({"map": film.film_map}, film.write_film_map),
+    PlateAnalysis: _Subject(_by_key(PLATE_FIGURES), plate_page.write_plate),
+    RingAnalysis: _Subject(_by_key(RING_FIGURES), plate_page.write_plate),
     Sweep: _Subject({"sweep": sweep_figure}, write_sweep),
     DesignSearch: _Subject(_by_key(FIGURES_OF_DESIGN), write_design),
     TextureFile: _Subject({"texture": textures.picture}),

@@ -51,7 +51,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
         "mmap.mmap": "memory shared with its parent",
         "pickle.load": "orders of its parent, by a pipe",
     },
-    "design/sweep/lines.py": {"place.open": WRITES, "open": WRITES},
+    "design/sweep/points.py": {"place.open": WRITES, "open": WRITES},
     "design/sweep/answers.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
     "instruments/twin/plant.py": {"file.open": WRITES},
     "instruments/twin/pty_server.py": {"os.open": "a terminal of its own"},

@@ -26,7 +26,7 @@ from unittest import mock
 import numpy as np
 
 from squeezefilm.core.errors import SqueezefilmError, SqueezefilmWarning
-from squeezefilm.design.friction.command import friction_map
+from squeezefilm.design.friction import friction_map
 from squeezefilm.physics.chain import rendered_texture as render_command
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display

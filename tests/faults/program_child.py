@@ -9,7 +9,7 @@ from tests.e2e.program import run
 import squeezefilm.cli
 
 # What the verbs import when they are asked.
-import squeezefilm.design.friction.command
+import squeezefilm.design.friction
 import squeezefilm.physics.chain.rendered_texture
 import squeezefilm.study.design.plan  # noqa: F401
 

@@ -12,9 +12,9 @@ import pytest
 from scipy.stats import qmc, spearmanr
 
 from squeezefilm.design.search.candidate import Evaluated, design_of, evaluate
-from squeezefilm.design.search.correction import learned
 from squeezefilm.design.search.requirements import load_requirements
 from squeezefilm.design.search.run import search_designs
+from squeezefilm.design.search.worth_solving import learned
 from squeezefilm.design.sweep.tasks import Lost
 from squeezefilm.design.sweep.workers import workers
 

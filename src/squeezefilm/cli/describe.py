@@ -171,7 +171,7 @@ def analyze(asked: AnalyzeOptions) -> None:
     )
     with one_blas_thread(), working(asked.as_json) as step:
         from squeezefilm.design.analysis.analyze import analyze as run
-        from squeezefilm.design.analysis.report import terminal
+        from squeezefilm.design.analysis.report import page
         from squeezefilm.measure.fits.friction.person import with_finger
 
         display = with_finger(display, asked.finger)
@@ -180,15 +180,13 @@ def analyze(asked: AnalyzeOptions) -> None:
         result = run(display, **options, progress=step)
         written = None
         if asked.out is None and not asked.as_json:
-            shown = terminal.SHOWN_WITH_ALL if asked.whole else terminal.SHOWN
+            shown = page.SHOWN_WITH_ALL if asked.whole else page.SHOWN
             if with_shifts and "sensitivities" not in shown:
                 shown = (*shown, "sensitivities")
             result.compute(shown, step)
         if asked.out is not None:
-            from squeezefilm.design.analysis.report.page import write_analysis
-
-            written = write_analysis(result, asked.out, progress=step)
-    show = partial(terminal.show_analysis, whole=asked.whole, sensitivities=with_shifts)
+            written = page.write_analysis(result, asked.out, progress=step)
+    show = partial(page.show_analysis, whole=asked.whole, sensitivities=with_shifts)
     answer(asked.as_json, result, show, report=written)
     if written is None and not asked.as_json:
         typer.echo("add --out DIR to write result.json and a report with figures")
@@ -216,8 +214,8 @@ class FrictionOptions(PointOptions):
 @called_with(FrictionOptions)
 def friction(asked: FrictionOptions) -> None:
     """The friction a finger meets, how the load is shared, and how sure all of it is."""
-    from squeezefilm.design.friction.command import analyze_friction
-    from squeezefilm.design.friction.report.terminal import show_friction
+    from squeezefilm.design.friction import analyze_friction
+    from squeezefilm.design.report.friction import show_friction, write_friction
     from squeezefilm.measure.fits.friction.person import with_finger
 
     display = to_be_solved(
@@ -230,8 +228,6 @@ def friction(asked: FrictionOptions) -> None:
         )
         written = None
         if asked.out is not None:
-            from squeezefilm.design.friction.report.figures import write_friction
-
             written = write_friction(result, asked.out)
     answer(asked.as_json, result, show_friction, figures=written)
 
@@ -275,15 +271,13 @@ class FilmOptions:
 @called_with(FilmOptions)
 def film(asked: FilmOptions) -> None:
     """Solve the periodic gas film of one shape, or map it over squeeze number and excursion."""
-    from squeezefilm.design.film.command import FilmRequest, solve_film, sweep_film
-    from squeezefilm.design.film.report.film_map import show_film
+    from squeezefilm.design.film import FilmRequest, solve_film, sweep_film
+    from squeezefilm.design.report.film import show_film, write_film_map
 
     of_film = given(asked, leave="sweep out as_json")
     squeeze_number, excursion = of_film.pop("squeeze_number"), of_film.pop("excursion")
     with working(asked.as_json) as step:
         if asked.sweep:
-            from squeezefilm.design.film.report.film_map import write_film_map
-
             if asked.out is None:
                 raise InputError("--sweep draws a map into a folder; say which with --out DIR")
             films = sweep_film(FilmRequest(**of_film), progress=step)

@@ -87,8 +87,8 @@ def design(asked: DesignOptions) -> None:
 
     from squeezefilm.core import presets
     from squeezefilm.core.kit.folder import require_folder
+    from squeezefilm.design.search.report.figures import show_design, show_requirements
     from squeezefilm.design.search.report.page import write_design
-    from squeezefilm.design.search.report.terminal import show_design, show_requirements
     from squeezefilm.design.search.requirements import load_requirements
     from squeezefilm.design.search.run import SearchRequest, search_until_stopped
     from squeezefilm.physics.display import load_display

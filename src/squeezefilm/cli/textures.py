@@ -78,7 +78,12 @@ class RenderOptions:
 @called_with(RenderOptions)
 def render(asked: RenderOptions) -> None:
     """A texture on a display under a moving finger: what is asked for and what is rendered."""
-    from squeezefilm.design.textures.report.terminal import show_lost, show_render
+    from squeezefilm.design.report.texture_page import (
+        hjif_export,
+        show_lost,
+        show_render,
+        write_render,
+    )
     from squeezefilm.measure.fits.friction.person import with_finger
     from squeezefilm.physics.chain.rendered_texture import render_texture
     from squeezefilm.physics.display import load_display
@@ -95,8 +100,6 @@ def render(asked: RenderOptions) -> None:
         result = render_texture(where, what, motion, **options, progress=step)
         written = None
         if out is not None:
-            from squeezefilm.design.textures.report.page import hjif_export, write_render
-
             written = write_render(result, out, table=table, drive=drive, hjif=hjif, progress=step)
 
     def show(_: object) -> None:
@@ -111,7 +114,7 @@ def render(asked: RenderOptions) -> None:
 def textures(as_json: AsJson = False) -> None:
     """List the textures that come with the package, for `render`."""
     from squeezefilm.core.presets import texture_names
-    from squeezefilm.design.textures.report.terminal import show_textures
+    from squeezefilm.design.report.texture_page import show_textures
     from squeezefilm.physics.texture_files.texture_file import load_texture
 
     listing = []

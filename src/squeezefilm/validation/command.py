@@ -12,7 +12,7 @@ from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.motor.assembled import Working, assembled
 from squeezefilm.actuators.motor.averaged import averaged, no_load_speed
 from squeezefilm.actuators.skin_stretch.array import SkinStretchArray
-from squeezefilm.actuators.skin_stretch.load_line import loaded_tip
+from squeezefilm.actuators.skin_stretch.bimorph import loaded_tip
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError

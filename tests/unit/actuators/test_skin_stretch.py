@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.actuators.described import load_actuator
-from squeezefilm.actuators.skin_stretch import budget, cradle, load_line
+from squeezefilm.actuators.skin_stretch import bimorph, budget, cradle
 from squeezefilm.actuators.skin_stretch.array import SkinStretchArray, SkinStretchDescription
 from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
@@ -22,12 +22,12 @@ def array() -> SkinStretchArray:
 
 def test_the_preset_has_nearly_the_published_figures(array: SkinStretchArray) -> None:
     bender, voltage = array.bender, array.actuator.largest_voltage
-    assert bender.deflection_per_volt * voltage == pytest.approx(load_line.PUBLISHED_FREE, rel=0.05)
-    assert bender.force_per_volt * voltage == pytest.approx(load_line.PUBLISHED_BLOCKED, rel=0.1)
+    assert bender.deflection_per_volt * voltage == pytest.approx(bimorph.PUBLISHED_FREE, rel=0.05)
+    assert bender.force_per_volt * voltage == pytest.approx(bimorph.PUBLISHED_BLOCKED, rel=0.1)
     skin = array.tissue.under_contactor(*array.cradle.size)
-    assert skin.stiffness == pytest.approx(load_line.IMPLIED_STIFFNESS, rel=0.01)
-    loaded = load_line.loaded_tip(bender, skin, voltage)
-    assert loaded.deflection == pytest.approx(load_line.PUBLISHED_LOADED, rel=0.05)
+    assert skin.stiffness == pytest.approx(bimorph.IMPLIED_STIFFNESS, rel=0.01)
+    loaded = bimorph.loaded_tip(bender, skin, voltage)
+    assert loaded.deflection == pytest.approx(bimorph.PUBLISHED_LOADED, rel=0.05)
     mass, stiffness = bender.effective_mass + skin.mass, bender.stiffness + skin.stiffness
     assert (2 * np.pi * loaded.resonance_frequency) ** 2 == pytest.approx(stiffness / mass)
     rate = 2 * np.pi * loaded.bandwidth
@@ -38,14 +38,14 @@ def test_the_preset_has_nearly_the_published_figures(array: SkinStretchArray) ->
 
 
 def test_the_implied_load_is_what_a_linear_actuator_leaves() -> None:
-    own = load_line.PUBLISHED_BLOCKED / load_line.PUBLISHED_FREE
-    found = load_line.loaded_deflection(load_line.PUBLISHED_FREE, own, load_line.IMPLIED_STIFFNESS)
-    assert found == pytest.approx(load_line.PUBLISHED_LOADED, rel=1e-12)
+    own = bimorph.PUBLISHED_BLOCKED / bimorph.PUBLISHED_FREE
+    found = bimorph.loaded_deflection(bimorph.PUBLISHED_FREE, own, bimorph.IMPLIED_STIFFNESS)
+    assert found == pytest.approx(bimorph.PUBLISHED_LOADED, rel=1e-12)
 
 
 def test_the_load_line_meets_the_skin_where_bisection_finds_it(array: SkinStretchArray) -> None:
     skin, bender = FingerpadDynamics(400.0, 0.5, 1e-5), array.bender
-    found = load_line.loaded_tip(bender, skin, 100.0)
+    found = bimorph.loaded_tip(bender, skin, 100.0)
     low, high = 0.0, bender.deflection_per_volt * 100.0
     for _ in range(80):
         middle = (low + high) / 2
@@ -54,15 +54,15 @@ def test_the_load_line_meets_the_skin_where_bisection_finds_it(array: SkinStretc
     assert found.deflection == pytest.approx(low, rel=1e-12)
     # At the bandwidth the motion has left by 3 dB, and nowhere before.
     f = np.linspace(0.0, found.bandwidth, 400)
-    share = np.abs(load_line.tip_motion(bender, skin, 100.0, f)) ** 2 / found.deflection**2
+    share = np.abs(bimorph.tip_motion(bender, skin, 100.0, f)) ** 2 / found.deflection**2
     assert np.all((share[:-1] < 2) & (share[:-1] > 0.5))
     assert min(abs(share[-1] - 2), abs(share[-1] - 0.5)) < 1e-6
 
 
 def test_a_heavily_damped_tip_falls_by_3_db_before_it_rises(array: SkinStretchArray) -> None:
-    found = load_line.loaded_tip(array.bender, FingerpadDynamics(500.0, 5.0, 1e-6), 100.0)
+    found = bimorph.loaded_tip(array.bender, FingerpadDynamics(500.0, 5.0, 1e-6), 100.0)
     skin = FingerpadDynamics(500.0, 5.0, 1e-6)
-    at = load_line.tip_motion(array.bender, skin, 100.0, np.array([found.bandwidth]))
+    at = bimorph.tip_motion(array.bender, skin, 100.0, np.array([found.bandwidth]))
     assert abs(at[0]) == pytest.approx(found.deflection / np.sqrt(2), rel=1e-9)
 
 
@@ -78,7 +78,7 @@ def test_forces_balance_actuators_and_skin(array: SkinStretchArray) -> None:
     alone = np.zeros(60)
     alone[27] = 100.0
     skin = array.tissue.under_contactor(*array.cradle.size)
-    lone = load_line.loaded_tip(array.bender, skin, 100.0).deflection
+    lone = bimorph.loaded_tip(array.bender, skin, 100.0).deflection
     assert 0.9 * lone < array.answer(alone).displacements[27] < lone
     assert 0 < array.crosstalk < 0.5
 

@@ -111,7 +111,7 @@ def analysis(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
     """What `analyze` calls."""
     return SimpleNamespace(
         asked=stands_in("design.analysis.analyze:analyze", ANSWER),
-        shown=stands_in("design.analysis.report.terminal:show_analysis"),
+        shown=stands_in("design.analysis.report.page:show_analysis"),
         written=stands_in("design.analysis.report.page:write_analysis", tmp_path / "report.html"),
     )
 

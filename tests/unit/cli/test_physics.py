@@ -12,7 +12,7 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.cli.describe import film, friction, modes, plate
-from squeezefilm.design.film.command import FilmRequest
+from squeezefilm.design.film import FilmRequest
 from squeezefilm.physics.display import load_display
 
 PLATE, STATOR = "biet2008-plate", "biet2008-stator"
@@ -27,9 +27,9 @@ def test_the_verbs_are_those_of_the_program() -> None:
 
 
 def test_a_friction_has_the_fields_own_defaults(stands_in: StandsIn, tmp_path: Path) -> None:
-    asked = stands_in("design.friction.command:analyze_friction", ANSWER)
-    shown = stands_in("design.friction.report.terminal:show_friction")
-    written = stands_in("design.friction.report.figures:write_friction", "a/folder")
+    asked = stands_in("design.friction:analyze_friction", ANSWER)
+    shown = stands_in("design.report.friction:show_friction")
+    written = stands_in("design.report.friction:write_friction", "a/folder")
     done = run("friction", PLATE)
     assert done.returncode == 0, done.stderr
     assert asked.given == (load_display(PLATE),)
@@ -74,7 +74,7 @@ def test_a_friction_has_the_fields_own_defaults(stands_in: StandsIn, tmp_path: P
 def test_a_quantity_of_another_kind_is_refused_with_its_option(
     option: str, stands_in: StandsIn
 ) -> None:
-    asked = stands_in("design.friction.command:analyze_friction", ANSWER)
+    asked = stands_in("design.friction:analyze_friction", ANSWER)
     done = run("friction", PLATE, f"--{option}", "3 kg")
     assert done.returncode == 2
     assert f"error: --{option}: " in done.stderr
@@ -82,8 +82,8 @@ def test_a_quantity_of_another_kind_is_refused_with_its_option(
 
 
 def test_a_film_is_an_isothermal_strip_unless_asked(stands_in: StandsIn) -> None:
-    asked = stands_in("design.film.command:solve_film", ANSWER)
-    shown = stands_in("design.film.report.film_map:show_film")
+    asked = stands_in("design.film:solve_film", ANSWER)
+    shown = stands_in("design.report.film:show_film")
     done = run("film", "--squeeze-number", "10", "--excursion", "0.5")
     assert asked.given == (10.0, 0.5)
     assert asked.named == {
@@ -119,9 +119,9 @@ def test_a_film_of_which_too_little_is_said_is_refused(given: tuple[str, ...]) -
 
 
 def test_a_sweep_is_drawn_into_a_folder(stands_in: StandsIn, tmp_path: Path) -> None:
-    asked = stands_in("design.film.command:sweep_film", ANSWER)
-    written = stands_in("design.film.report.film_map:write_film_map", "map.png")
-    solved = stands_in("design.film.command:solve_film", ANSWER)
+    asked = stands_in("design.film:sweep_film", ANSWER)
+    written = stands_in("design.report.film:write_film_map", "map.png")
+    solved = stands_in("design.film:solve_film", ANSWER)
     done = run("film", "--sweep", "--shape", "disc", "--out", tmp_path)
     assert asked.given == (FilmRequest("disc", 1.0, 1.0, 0.0, "first", 1e-3),)
     assert written.given == (ANSWER, tmp_path)

@@ -26,10 +26,10 @@ def rendered(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
     """What `render` calls."""
     return SimpleNamespace(
         asked=stands_in("physics.chain.rendered_texture:render_texture", ANSWER),
-        shown=stands_in("design.textures.report.terminal:show_render"),
-        lost=stands_in("design.textures.report.terminal:show_lost"),
-        written=stands_in("design.textures.report.page:write_render", tmp_path / "index.html"),
-        hjif=stands_in("design.textures.report.page:hjif_export", "the export"),
+        shown=stands_in("design.report.texture_page:show_render"),
+        lost=stands_in("design.report.texture_page:show_lost"),
+        written=stands_in("design.report.texture_page:write_render", tmp_path / "index.html"),
+        hjif=stands_in("design.report.texture_page:hjif_export", "the export"),
     )
 
 

@@ -14,7 +14,7 @@ from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.hard_limits import HardLimit, require_motion, require_within
 from squeezefilm.core.presets import path as preset_path
 from squeezefilm.core.quantities import Unit, checked_numbers
-from squeezefilm.design.film.command import FilmRequest
+from squeezefilm.design.film import FilmRequest
 from squeezefilm.design.plate.command import parse_mode
 from squeezefilm.design.sweep.axes import axis_of
 from squeezefilm.physics.chain.played_texture import FingerMotion

@@ -14,6 +14,7 @@ from squeezefilm.actuators.skin_stretch.array import (
     SkinStretchArray,
     SkinStretchDescription,
 )
+from squeezefilm.actuators.skin_stretch.bimorph import LoadedTip, loaded_tip, tip_motion
 from squeezefilm.actuators.skin_stretch.budget import (
     Lines,
     charging_power,
@@ -28,7 +29,6 @@ from squeezefilm.actuators.skin_stretch.cradle import (
     radii_that_touch_all,
     seat,
 )
-from squeezefilm.actuators.skin_stretch.load_line import LoadedTip, loaded_tip, tip_motion
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import UnreachableError
 from squeezefilm.core.progress import SayProgress

@@ -15,7 +15,7 @@ from squeezefilm.actuators.report.page import (
     with_interval,
     write_page,
 )
-from squeezefilm.actuators.skin_stretch.load_line import (
+from squeezefilm.actuators.skin_stretch.bimorph import (
     PUBLISHED_BLOCKED,
     PUBLISHED_FREE,
     PUBLISHED_LOADED,

@@ -13,10 +13,10 @@ from squeezefilm.core.progress import Deadline, Pace, SayProgress, said_with_tim
 from squeezefilm.design.analysis.analysis import Analysis
 from squeezefilm.design.analysis.area_odds import judged_area
 from squeezefilm.design.analysis.curves import friction_curve
+from squeezefilm.design.analysis.felt import what_survives
 from squeezefilm.design.analysis.sensitivities import Effort
 from squeezefilm.design.analysis.verdict import verdict
 from squeezefilm.design.analysis.wanted import wanted_friction
-from squeezefilm.design.textures.gratings_left import what_survives
 from squeezefilm.physics.chain.friction_models import FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace
 from squeezefilm.physics.chain.prediction import Prediction, predict

@@ -18,8 +18,8 @@ from squeezefilm.design.analysis.curves import (
     as_far_as_it_goes,
 )
 from squeezefilm.design.analysis.ears import AUDIBLE, EarExposure
+from squeezefilm.design.analysis.felt import GratingsLeft
 from squeezefilm.design.plate.mode_doubts import mode_doubts, why_undriven
-from squeezefilm.design.textures.gratings_left import GratingsLeft
 from squeezefilm.physics.chain.active_area import CRITERIA
 from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.physics.chain.prediction import Prediction

@@ -11,11 +11,12 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp, to_json
-from squeezefilm.design.fabrication.bill import BillRow, bill_of
 from squeezefilm.design.fabrication.test_plan import PlanFacts, TestStep, test_plan
 from squeezefilm.design.fabrication.wiring import (
+    BillRow,
     Electrode,
     NodalLines,
+    bill_of,
     electrodes_of,
     nodal_lines_of,
 )

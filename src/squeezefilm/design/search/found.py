@@ -14,12 +14,11 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.design.search.candidate import Design, Evaluated, plates_of, sourced_display_of
-from squeezefilm.design.search.correction import Correction
 from squeezefilm.design.search.criteria import CRITERIA
 from squeezefilm.design.search.reasons import EmptyCorner, LimitReason
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.tolerance import Made
-from squeezefilm.design.search.worth_solving import Seen, objectives_of, worst_corner
+from squeezefilm.design.search.worth_solving import Correction, Seen, objectives_of, worst_corner
 from squeezefilm.design.sweep.tradeoffs import dominates, front_of, hypervolume, knee_of
 from squeezefilm.physics.display import Display
 

@@ -26,7 +26,6 @@ from squeezefilm.design.search.candidate import (
     plates_of,
     reference_of,
 )
-from squeezefilm.design.search.correction import LEAST_PLATES, Correction, learned
 from squeezefilm.design.search.evolution import POPULATION, Proposals
 from squeezefilm.design.search.found import DesignSearch, FrontMember, Glimpse, glimpse_of, unbeaten
 from squeezefilm.design.search.reasons import empty_corners, limit_reasons
@@ -34,7 +33,14 @@ from squeezefilm.design.search.requirements import NamedRequirements
 from squeezefilm.design.search.space import Space
 from squeezefilm.design.search.store import DesignStore, requirements_hash
 from squeezefilm.design.search.tolerance import Made, made_of
-from squeezefilm.design.search.worth_solving import Seen, objectives_of, worth_solving
+from squeezefilm.design.search.worth_solving import (
+    LEAST_PLATES,
+    Correction,
+    Seen,
+    learned,
+    objectives_of,
+    worth_solving,
+)
 from squeezefilm.design.sweep.tasks import Lost, Workers
 from squeezefilm.design.sweep.workers import workers
 

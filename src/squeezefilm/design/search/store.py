@@ -17,7 +17,7 @@ from squeezefilm.design.search.candidate import Design, Evaluated, Level
 from squeezefilm.design.search.criteria import breaches
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.tolerance import DRAWS, Made
-from squeezefilm.design.sweep.lines import Lines
+from squeezefilm.design.sweep.points import Lines
 
 FILE = "designs.jsonl"
 """Name of the file in the folder of a search: a line for every evaluated design."""

@@ -20,9 +20,9 @@ from squeezefilm.design.search.candidate import (
     display_of,
     screened,
 )
-from squeezefilm.design.search.correction import CORRECTED
 from squeezefilm.design.search.criteria import breaches, criterion_of
 from squeezefilm.design.search.requirements import Requirements, Tolerances, toleranced
+from squeezefilm.design.search.worth_solving import CORRECTED
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.physics.plausibility.checks import checked_before

@@ -1,5 +1,5 @@
 """Result of a sweep: a row for each point, with what was varied, what was asked, and the reason
-where there is no answer."""
+where there is no answer; and how much of each answer's variance follows which varied value."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ import collections
 import itertools
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
@@ -149,3 +152,223 @@ class Sweep(Result):
             "answers_kept": self.kept,
             "provenance": dict(self.provenance),
         }
+
+
+# Over a whole grid the shares are exact for its points (analysis of variance: first order, total,
+# pairs). Over samples, or a grid with gaps, the answer is fitted by orthogonal polynomials of the
+# varied values (polynomial chaos: Sudret 2008, doi:10.1016/j.ress.2007.04.002), of the degree that
+# predicts left-out points best; the shares are those of the fit, their errors come from drawing the
+# points again (bootstrap), and what the fit does not explain of points left out is told.
+_DEGREES = range(1, 7)
+_REDRAWN = 100
+_FEWEST = 8
+"""Smallest number of points that tell of shares."""
+
+
+@dataclass(frozen=True, eq=False)
+class Varied:
+    """A value that was varied: its column's name, its unit (None for words), and at each point a
+    number (for words the number of the word)."""
+
+    name: str
+    unit: si.Unit | None
+    values: si.FloatArray
+    words: tuple[str, ...] = ()
+    logarithmic: bool = False
+
+
+@dataclass(frozen=True)
+class Share:
+    """Shares of the variance: by itself, with all interactions, and their standard errors (0 where
+    the shares are exact for the points)."""
+
+    first: si.Dimensionless
+    total: si.Dimensionless
+    first_error: si.Dimensionless
+    total_error: si.Dimensionless
+
+
+@dataclass(frozen=True, eq=False)
+class Effects:
+    """Shares of what decides one answer: a share for each varied value, and for each pair the share
+    that only both together explain, with its error; `explained` is what the fit explains of points
+    left out (None where nothing was fitted: the whole grid)."""
+
+    column: SweptColumn
+    shares: tuple[Share, ...]
+    pairs: dict[tuple[int, int], tuple[si.Dimensionless, si.Dimensionless]]
+    explained: si.Dimensionless | None
+    points: int
+
+
+def varied_values(sweep: Sweep) -> tuple[Varied, ...]:
+    """The values that were varied and take several values."""
+    made = []
+    places = list(itertools.product(*(range(len(axis)) for axis in sweep.axes)))
+    for number, axis in enumerate(sweep.axes):
+        rows = [point[number] for point in places]
+        for k, (name, unit) in enumerate(zip(axis.columns, axis.units, strict=True)):
+            said = [axis.steps[row][k] for row in rows]
+            if len(set(said)) < 2:
+                continue
+            if unit is None:
+                words = tuple(dict.fromkeys(str(word) for word in said))
+                values = np.array([float(words.index(str(word))) for word in said])
+                made.append(Varied(name, None, values, words))
+            else:
+                log = axis.sampled[k] == "log" if axis.sampled else axis.logarithmic
+                made.append(Varied(name, unit, np.array(said, float), (), log))
+    return tuple(made)
+
+
+def effects_of(sweep: Sweep) -> tuple[Effects, ...]:
+    """Effects on each of a sweep's answers that varies; empty where nothing can be said."""
+    varied = varied_values(sweep)
+    out = []
+    for column in sweep.columns:
+        there = np.isfinite(column.values)
+        values = column.values[there]
+        if not varied or len(values) < _FEWEST or np.ptp(values) <= 1e-12 * np.abs(values).max():
+            continue
+        whole = there.all() and len(varied) == sum(len(axis) > 1 for axis in sweep.axes)
+        if whole:
+            shape = tuple(len(axis) for axis in sweep.axes if len(axis) > 1)
+            out.append(_of_grid(column, column.values.reshape(shape)))
+        elif (fitted := _of_points(column, varied, there)) is not None:
+            out.append(fitted)
+    return tuple(out)
+
+
+def _of_grid(column: SweptColumn, grid: si.FloatArray) -> Effects:
+    """The analysis of variance of a whole grid, one point in each cell."""
+    count = grid.ndim
+    variance = float(grid.var())
+
+    def explained(axes: Sequence[int]) -> float:
+        """The share of the variance that the means over all other axes have."""
+        others = tuple(k for k in range(count) if k not in axes)
+        return float(grid.mean(axis=others).var() / variance) if axes else 0.0
+
+    first = [explained([k]) for k in range(count)]
+    total = [1.0 - explained([j for j in range(count) if j != k]) for k in range(count)]
+    pairs = {
+        (i, j): (max(explained([i, j]) - first[i] - first[j], 0.0), 0.0)
+        for i, j in itertools.combinations(range(count), 2)
+    }
+    shares = tuple(Share(f, t, 0.0, 0.0) for f, t in zip(first, total, strict=True))
+    return Effects(column, shares, pairs, None, grid.size)
+
+
+def _of_points(
+    column: SweptColumn, varied: Sequence[Varied], there: NDArray[np.bool_]
+) -> Effects | None:
+    """The shares of a fit by orthogonal polynomials; None where the points are too few."""
+    y = column.values[there]
+    y = (y - y.mean()) / y.std()
+    single = [_functions(value, there) for value in varied]
+    best: tuple[float, si.FloatArray, list[tuple[int, ...]]] | None = None
+    for degree in _DEGREES:
+        most = len(y) // 2
+        counts = [len(functions) for functions in single]
+        terms = list(itertools.islice(_terms(counts, degree, varied), most + 1))
+        if len(terms) > most:
+            break
+        matrix = _matrix(single, terms, len(y))
+        left = _left_out_error(matrix, y)
+        if best is None or left < best[0]:
+            best = left, matrix, terms
+    if best is None:
+        return None
+    left, matrix, terms = best
+    own = _sums(_coefficients(matrix, y), terms, len(varied))
+    random = np.random.default_rng(0)
+    again = []
+    for _ in range(_REDRAWN):
+        rows = random.integers(len(y), size=len(y))
+        again.append(_sums(_coefficients(matrix[rows], y[rows]), terms, len(varied)))
+    errors = [np.std([row[k] for row in again], axis=0) for k in range(3)]
+    shares = tuple(
+        Share(float(f), float(t), float(ef), float(et))
+        for f, t, ef, et in zip(own[0], own[1], errors[0], errors[1], strict=True)
+    )
+    every = list(itertools.combinations(range(len(varied)), 2))
+    pairs = {
+        pair: (float(s), float(e)) for pair, s, e in zip(every, own[2], errors[2], strict=True)
+    }
+    return Effects(column, shares, pairs, max(1.0 - left, 0.0), len(y))
+
+
+def _functions(value: Varied, there: NDArray[np.bool_]) -> list[si.FloatArray]:
+    """Functions of one varied value that are orthonormal over its range: Legendre's polynomials of
+    numbers, contrasts of words; none of a value that is the same at all points."""
+    x = np.log(value.values[there]) if value.logarithmic else value.values[there]
+    if np.ptp(x) == 0:
+        return []
+    if value.words:
+        basis, _ = np.linalg.qr(
+            np.column_stack([np.ones(len(value.words)), np.eye(len(value.words))[:, 1:]])
+        )
+        scaled = basis[:, 1:] * math.sqrt(len(value.words))
+        return [scaled[x.astype(int), k] for k in range(scaled.shape[1])]
+    u = 2 * (x - x.min()) / np.ptp(x) - 1
+    most = min(max(_DEGREES), len(np.unique(x)) - 1)
+    return [
+        math.sqrt(2 * k + 1) * np.polynomial.legendre.legval(u, np.eye(k + 1)[k])
+        for k in range(1, most + 1)
+    ]
+
+
+def _terms(
+    counts: Sequence[int], degree: int, varied: Sequence[Varied]
+) -> Iterator[tuple[int, ...]]:
+    """Terms, each by the function of each value that it multiplies (0: none), of a total degree; a
+    contrast of words counts as degree 1."""
+    if not counts:
+        yield ()
+        return
+    words = bool(varied[0].words)
+    for k in range(min(counts[0], counts[0] if words else degree) + 1):
+        size = min(k, 1) if words else k
+        if size <= degree:
+            for rest in _terms(counts[1:], degree - size, varied[1:]):
+                yield (k, *rest)
+
+
+def _matrix(
+    single: Sequence[Sequence[si.FloatArray]], terms: Sequence[tuple[int, ...]], count: int
+) -> si.FloatArray:
+    columns = []
+    for term in terms:
+        product = np.ones(count)
+        for functions, k in zip(single, term, strict=True):
+            product = product * functions[k - 1] if k else product
+        columns.append(product)
+    return np.column_stack(columns)
+
+
+def _coefficients(matrix: si.FloatArray, y: si.FloatArray) -> si.FloatArray:
+    return np.asarray(np.linalg.lstsq(matrix, y, rcond=None)[0])
+
+
+def _left_out_error(matrix: si.FloatArray, y: si.FloatArray) -> float:
+    """The mean squared error of each point predicted from all others, over the variance."""
+    q, _ = np.linalg.qr(matrix)
+    leverage = np.clip((q**2).sum(axis=1), 0.0, 1.0 - 1e-9)
+    residual = y - q @ (q.T @ y)
+    return float(np.mean((residual / (1.0 - leverage)) ** 2))
+
+
+def _sums(
+    coefficients: si.FloatArray, terms: Sequence[tuple[int, ...]], count: int
+) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
+    """Shares of the fit's variance: of each value alone, with others, of pairs alone."""
+    powers = coefficients**2
+    used = [tuple(k for k, power in enumerate(term) if power) for term in terms]
+    variance = sum(p for p, u in zip(powers, used, strict=True) if u) or 1.0
+    first = [sum(p for p, u in zip(powers, used, strict=True) if u == (k,)) for k in range(count)]
+    total = [sum(p for p, u in zip(powers, used, strict=True) if k in u) for k in range(count)]
+    pairs = [
+        sum(p for p, u in zip(powers, used, strict=True) if u == pair)
+        for pair in itertools.combinations(range(count), 2)
+    ]
+    return tuple(np.array(shares, float) / variance for shares in (first, total, pairs))  # type: ignore[return-value]

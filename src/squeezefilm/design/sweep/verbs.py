@@ -11,7 +11,7 @@ from typing import Any
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.analysis.analyze import analyze
-from squeezefilm.design.friction.command import analyze_friction
+from squeezefilm.design.friction import analyze_friction
 from squeezefilm.design.plate.command import parse_band, solve_plate
 from squeezefilm.design.sweep.followed import modes_to_follow
 from squeezefilm.physics.chain.friction_models import FrictionModel

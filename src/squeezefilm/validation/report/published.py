@@ -26,7 +26,7 @@ from squeezefilm.core.kit.terminal import bullets as printed_bullets
 from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.core.results import stamp, write_whole
 from squeezefilm.design.analysis.published_claims import MEANINGS, missed_by
-from squeezefilm.design.analysis.report.model_rows import cited, missed_directions
+from squeezefilm.design.analysis.report.rows import cited, missed_directions
 from squeezefilm.measure.recordings.kinds import Told
 from squeezefilm.measure.report.fit_figures import comparison_figure, conditions
 from squeezefilm.measure.report.page import MODELS_HEAD, inside_words, model_rows

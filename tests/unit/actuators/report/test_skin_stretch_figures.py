@@ -16,8 +16,8 @@ from squeezefilm.actuators.report.skin_stretch import (
     strain_figure,
 )
 from squeezefilm.actuators.skin_stretch.array import SkinStretchDescription
+from squeezefilm.actuators.skin_stretch.bimorph import loaded_tip, tip_motion
 from squeezefilm.actuators.skin_stretch.cradle import seat
-from squeezefilm.actuators.skin_stretch.load_line import loaded_tip, tip_motion
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from squeezefilm.design.analysis.felt import FeltGratings, felt_gratings
-from squeezefilm.design.textures.gratings_left import EXPLORING_SPEEDS
+from squeezefilm.design.analysis.felt import EXPLORING_SPEEDS, FeltGratings, felt_gratings
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.render.resonator.envelope import finest_period

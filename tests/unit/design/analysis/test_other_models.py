@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.analysis.other_models import measured_beside, other_models
+from squeezefilm.design.analysis.analysis import measured_beside, other_models
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Measured, load_display
 

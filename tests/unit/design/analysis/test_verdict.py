@@ -13,6 +13,7 @@ import pytest
 from squeezefilm.core.config.provenance import UNSTATED, Provenance
 from squeezefilm.design.analysis.area_odds import AreaOdds, JudgedArea
 from squeezefilm.design.analysis.curves import FrictionCurve
+from squeezefilm.design.analysis.felt import GratingsLeft
 from squeezefilm.design.analysis.verdict import (
     Finding,
     friction_verdict,
@@ -20,7 +21,6 @@ from squeezefilm.design.analysis.verdict import (
     rival_frictions,
     verdict,
 )
-from squeezefilm.design.textures.gratings_left import GratingsLeft
 from squeezefilm.physics.chain.active_area import ActiveArea
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import load_display

@@ -8,8 +8,7 @@ import math
 import pytest
 
 import squeezefilm as sf
-from squeezefilm.design.fabrication.bill import BillRow, bill_of
-from squeezefilm.design.fabrication.wiring import electrodes_of
+from squeezefilm.design.fabrication.wiring import BillRow, bill_of, electrodes_of
 from squeezefilm.physics.plate.layout import Actuator, RectangularPlate
 from squeezefilm.physics.plate.parts import assembly_mass, parts_of
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.unit.design.search.made_up import formula, random_designs, requirements
 
-from squeezefilm.design.search.correction import LEAST_PLATES, learned
+from squeezefilm.design.search.worth_solving import LEAST_PLATES, learned
 
 
 def test_a_smooth_factor_is_learned_and_its_error_is_told() -> None:

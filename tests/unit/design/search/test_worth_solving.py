@@ -6,9 +6,9 @@ import numpy as np
 from tests.unit.design.search.made_up import formula, random_designs, requirements
 
 from squeezefilm.design.search.candidate import Design, Evaluated, Level
-from squeezefilm.design.search.correction import learned
 from squeezefilm.design.search.worth_solving import (
     _adding_most,
+    learned,
     objectives_of,
     worth_solving,
 )

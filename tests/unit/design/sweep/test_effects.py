@@ -10,8 +10,7 @@ import pytest
 
 from squeezefilm.core import quantities as si
 from squeezefilm.design.sweep.axes import Axis
-from squeezefilm.design.sweep.effects import effects_of, varied_values
-from squeezefilm.design.sweep.swept import Sweep, SweptColumn
+from squeezefilm.design.sweep.swept import Sweep, SweptColumn, effects_of, varied_values
 
 
 def swept(axes: tuple[Axis, ...], values: Any) -> Sweep:

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from squeezefilm.core.errors import InputError, SqueezefilmWarning
-from squeezefilm.design.sweep.lines import Lines
+from squeezefilm.design.sweep.points import Lines
 
 
 def read(file: Path) -> list[Any]:

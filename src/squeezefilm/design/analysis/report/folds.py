@@ -7,27 +7,25 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from squeezefilm.core.kit.numbers import Row
-from squeezefilm.design.analysis.report.decisions import (
-    interval_rows,
-    sensitivity_rows,
-    wanted_rows,
-)
 from squeezefilm.design.analysis.report.first_screen import doubted, first_screen
-from squeezefilm.design.analysis.report.model_rows import (
-    MISSED_HEADING,
-    group_words,
-    influence_rows,
-    missed_directions,
-    models,
-    theory_rows,
-    weight_rows,
-)
 from squeezefilm.design.analysis.report.point_rows import (
     display_values,
     electronics_rows,
     place_rows,
 )
-from squeezefilm.design.plate.report.heat_and_sound import heat_rows
+from squeezefilm.design.analysis.report.rows import (
+    MISSED_HEADING,
+    group_words,
+    influence_rows,
+    interval_rows,
+    missed_directions,
+    models,
+    sensitivity_rows,
+    theory_rows,
+    wanted_rows,
+    weight_rows,
+)
+from squeezefilm.design.plate.report.terminal import heat_rows
 
 if TYPE_CHECKING:
     from squeezefilm.design.analysis.analysis import Analysis
@@ -48,14 +46,13 @@ from squeezefilm.core.kit.numbers import (
     shown,
     span,
 )
-from squeezefilm.design.analysis.report.decisions import felt_rows
 from squeezefilm.design.analysis.report.point_rows import reduction_row
+from squeezefilm.design.analysis.report.rows import felt_rows
 from squeezefilm.physics.chain.pad_place import place_words
 
 if TYPE_CHECKING:
-    from squeezefilm.design.analysis.analysis import Analysis
+    from squeezefilm.design.analysis.analysis import Analysis, MeasuredBeside
     from squeezefilm.design.analysis.ears import EarExposure
-    from squeezefilm.design.analysis.other_models import MeasuredBeside
     from squeezefilm.physics.chain.prediction import Prediction
     from squeezefilm.physics.plate.working_mode import WorkingMode
 

@@ -1,4 +1,6 @@
-"""`write_analysis`: result.json and report.html, one file that needs nothing from anywhere."""
+"""An analysis in the terminal, and as result.json and report.html, which needs no other file.
+
+Both begin with the first screen; the rest follows by question."""
 
 from __future__ import annotations
 
@@ -7,7 +9,9 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from squeezefilm.core.kit import terminal
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
+from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.kit.page_style import (
     as_html,
     bullets,
@@ -21,12 +25,18 @@ from squeezefilm.core.kit.page_style import (
 from squeezefilm.design.analysis.report.figures import FIGURES, drawing
 from squeezefilm.design.analysis.report.first_screen import HEAD, first_screen
 from squeezefilm.design.analysis.report.folds import Fold, folds
+from squeezefilm.design.analysis.report.rows import sensitivity_rows, wanted_rows
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from squeezefilm.design.analysis.analysis import Analysis
 
 # What stands beside an analysis for comparison, each computed by itself.
 _BESIDE = ("ears", "band", "friction_curves", "response", "felt")
+SHOWN = ("ears",)
+SHOWN_WITH_ALL = ("ears", "sensitivities", "other_models", "felt")
+"""Parts of an analysis that are computed for the terminal."""
 
 
 def write_analysis(
@@ -125,3 +135,51 @@ def _fold(fold: Fold, drawn: Mapping[str, str]) -> str:
 def _figure(key: str, drawn: Mapping[str, str]) -> str:
     item = next(figure for figure in FIGURES if figure.key == key)
     return figure_section(item, item.heading, drawn[key])
+
+
+def show_analysis(analysis: Analysis, *, whole: bool = False, sensitivities: bool = False) -> None:
+    """Print an analysis: its first screen; with `sensitivities` what each value does; `whole`: all
+    of it, by question."""
+    display, console, screen = analysis.display, terminal.plain_console(), first_screen(analysis)
+    terminal.heading(console, f"{display.title} [{display.name}]")
+    console.print(printable(screen.sentence))
+    terminal.table(console, HEAD, screen.numbers, fixed=(0, 1))
+    terminal.heading(console, "What could make it wrong")
+    terminal.bullets(console, [("!", text, "yellow") for text in screen.doubts])
+    terminal.heading(console, f"Next: {screen.next_step}")
+    if analysis.wanted is not None:
+        terminal.heading(console, "The friction that was asked for")
+        terminal.table(console, ("", "", ""), wanted_rows(analysis.wanted), fixed=(0,))
+    if whole:
+        _show_folds(console, analysis)
+        return
+    if sensitivities:
+        _show_sensitivities(console, analysis)
+    console.print("\n--all prints everything else, by question")
+
+
+def _show_folds(console: Console, analysis: Analysis) -> None:
+    """Print every question with its tables and sentences."""
+    for fold in folds(analysis):
+        terminal.heading(console, fold.question)
+        for each in fold.tables:
+            if each.rows:
+                console.print(printable(each.caption))
+                head = ("", "", "") if each.head[0] == "Quantity" else each.head
+                terminal.table(console, head, each.rows, fixed=(0,))
+        terminal.bullets(console, [("–", text, "") for text in fold.said])
+
+
+def _show_sensitivities(console: Console, analysis: Analysis) -> None:
+    """Print what each value does to frequency, amplitude and friction."""
+    shifts = analysis.sensitivities
+    terminal.heading(console, "What each value does, from the 5 % to the 95 % end of its range")
+    if shifts is None:
+        console.print("Nothing vibrates here, so that no value changes anything.")
+        return
+    head = ("value", "from, to", "frequency", "amplitude", "µ′/µ", "range")
+    terminal.table(console, head, sensitivity_rows(shifts), fixed=(0,))
+    console.print(
+        f"A plate with one value changed is computed by {shifts.plate_model}; the drive follows "
+        f"the resonance. --json has all {len(shifts.rows)} values."
+    )

@@ -17,9 +17,9 @@ from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.physics.plate.layout import RectangularPlate
 
 if TYPE_CHECKING:
-    from squeezefilm.design.fabrication.bill import BillRow
     from squeezefilm.design.fabrication.fabricate import Fabrication
     from squeezefilm.design.fabrication.test_plan import Check
+    from squeezefilm.design.fabrication.wiring import BillRow
 
 BILL = ("Item", "What", "Count", "Material", "Size", "Made", "Mass", "Remark")
 STEP = ("Read", "As described", "Expected", "Measured", "Inside", "Remark")

@@ -25,7 +25,7 @@ from squeezefilm.core.kit.page_style import (
 )
 from squeezefilm.core.results import write_whole
 from squeezefilm.design.plate.command import PlateAnalysis
-from squeezefilm.design.plate.report import plate, ring
+from squeezefilm.design.plate.report.figures import PLATE_FIGURES, RING_FIGURES
 from squeezefilm.design.plate.report.terminal import (
     drive_rows,
     fit_sentences,
@@ -95,7 +95,7 @@ def write_plate(result: SolvedBody, folder: Path) -> Path:
 
     Everything is made before anything is written.
     """
-    kinds = ring.FIGURES if isinstance(result, RingAnalysis) else plate.FIGURES
+    kinds = RING_FIGURES if isinstance(result, RingAnalysis) else PLATE_FIGURES
     figures = drawn_figures(kinds, result)
     files = picture_files(figures)
     files["plate.json"] = json_text(result.summary())

@@ -10,8 +10,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.design.sweep.answers import without_units
-from squeezefilm.design.sweep.effects import Varied, varied_values
-from squeezefilm.design.sweep.report.words import (
+from squeezefilm.design.sweep.report.terminal import (
     labelled,
     mode_of,
     name_of,
@@ -19,7 +18,7 @@ from squeezefilm.design.sweep.report.words import (
     scaled,
     step_words,
 )
-from squeezefilm.design.sweep.swept import Sweep, SweptColumn
+from squeezefilm.design.sweep.swept import Sweep, SweptColumn, Varied, varied_values
 from squeezefilm.design.sweep.tradeoffs import non_dominated
 
 if TYPE_CHECKING:

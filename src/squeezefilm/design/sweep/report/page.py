@@ -26,15 +26,21 @@ from squeezefilm.core.kit.page_style import (
     text_table,
 )
 from squeezefilm.design.sweep.answers import FOLLOWED
-from squeezefilm.design.sweep.effects import Effects, Varied, effects_of, varied_values
 from squeezefilm.design.sweep.report.figures import (
     effects_figure,
     sweep_figure,
     tradeoffs_figure,
     varied_name,
 )
-from squeezefilm.design.sweep.report.words import labelled, name_of, scaled
-from squeezefilm.design.sweep.swept import Sweep, counted
+from squeezefilm.design.sweep.report.terminal import labelled, name_of, scaled
+from squeezefilm.design.sweep.swept import (
+    Effects,
+    Sweep,
+    Varied,
+    counted,
+    effects_of,
+    varied_values,
+)
 from squeezefilm.design.sweep.tradeoffs import non_dominated
 
 if TYPE_CHECKING:

@@ -1,6 +1,6 @@
 """Rendered against wanted friction, in numbers: error, contrast by spatial frequency, lag.
 
-`design.textures.gratings_left` asks what a steady grating keeps in closed form; this measures
+`design.analysis.felt` asks what a steady grating keeps in closed form; this measures
 whatever was rendered.
 """
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.design.analysis.felt import FeltAt, FeltGratings
-from squeezefilm.design.analysis.report.decisions import (
+from squeezefilm.design.analysis.report.rows import (
     felt_rows,
     interval_rows,
     sensitivity_rows,

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 
 from squeezefilm.core.kit.terminal import plain_console
-from squeezefilm.design.analysis.report.model_rows import (
+from squeezefilm.design.analysis.report.rows import (
     cited,
     missed_directions,
     show_missed,

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from tests.unit.made_results import WARM
 
-from squeezefilm.design.analysis.other_models import MeasuredBeside
+from squeezefilm.design.analysis.analysis import MeasuredBeside
 from squeezefilm.design.analysis.report.folds import (
     more_rows,
     rival_rows,
@@ -20,7 +20,7 @@ from squeezefilm.design.analysis.report.folds import (
     with_measured,
     working_point,
 )
-from squeezefilm.design.plate.report.heat_and_sound import heat_rows
+from squeezefilm.design.plate.report.terminal import heat_rows
 
 
 def point(**changes: Any) -> Any:

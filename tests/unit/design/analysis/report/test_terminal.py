@@ -10,14 +10,14 @@ import pytest
 
 from squeezefilm.core.kit.numbers import printable
 from squeezefilm.design.analysis.analysis import Analysis
-from squeezefilm.design.analysis.report import terminal
-from squeezefilm.design.analysis.report.decisions import sensitivity_rows
+from squeezefilm.design.analysis.report import page
 from squeezefilm.design.analysis.report.first_screen import (
     MOST_DOUBTS,
     first_screen,
     first_statement,
 )
 from squeezefilm.design.analysis.report.folds import folds
+from squeezefilm.design.analysis.report.rows import sensitivity_rows
 
 LINES, WORDS, NUMBERS = 30, 120, 6
 
@@ -40,7 +40,7 @@ def test_what_one_decides_from_is_one_screen(
     assert 0 < screen.words <= WORDS
     assert len(screen.numbers) <= NUMBERS
     assert len(screen.doubts) <= MOST_DOUBTS
-    terminal.show_analysis(analysis)
+    page.show_analysis(analysis)
     text = printed()
     assert len(text.splitlines()) < LINES
     words = " ".join(text.split())
@@ -66,7 +66,7 @@ def test_all_of_it_is_printed_where_it_is_asked_for(
     analysis_of: Callable[[str], Analysis], printed: Callable[[], str]
 ) -> None:
     analysis = dataclasses.replace(analysis_of("biet2008-plate"), whole=True)
-    terminal.show_analysis(analysis, whole=True)
+    page.show_analysis(analysis, whole=True)
     words = " ".join(printed().split())
     for finding in analysis.findings:
         assert " ".join(printable(finding.text).split()) in words
@@ -78,7 +78,7 @@ def test_all_of_it_is_printed_where_it_is_asked_for(
 def test_what_each_value_does_is_printed_where_only_that_is_asked_for(
     plate_analysis: Analysis, printed: Callable[[], str]
 ) -> None:
-    terminal.show_analysis(plate_analysis, sensitivities=True)
+    page.show_analysis(plate_analysis, sensitivities=True)
     words = " ".join(printed().split())
     table = words[words.index("What each value does") :]
     shifts = plate_analysis.sensitivities
@@ -99,14 +99,14 @@ def test_a_statement_ends_where_the_next_begins() -> None:
 def test_hostile_names_are_printed_and_not_obeyed(
     hostile_analysis: Analysis, printed: Callable[[], str]
 ) -> None:
-    terminal.show_analysis(hostile_analysis)
+    page.show_analysis(hostile_analysis)
     text = printed()
     assert "[bold]" in text
     assert "\u202e" not in text
 
 
 def test_a_display_without_texture(analysis_of: Any, printed: Callable[[], str]) -> None:
-    terminal.show_analysis(analysis_of("no-voltage"), whole=True)
+    page.show_analysis(analysis_of("no-voltage"), whole=True)
     text = printed()
     assert "Finest grating" not in text
     assert "Sound" not in text

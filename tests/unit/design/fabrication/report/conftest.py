@@ -10,9 +10,8 @@ from unittest import mock
 import pytest
 
 import squeezefilm as sf
-from squeezefilm.design.fabrication.bill import bill_of
 from squeezefilm.design.fabrication.fabricate import Fabrication, fabricate
-from squeezefilm.design.fabrication.wiring import electrodes_of
+from squeezefilm.design.fabrication.wiring import bill_of, electrodes_of
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import Actuator, RectangularPlate

@@ -16,15 +16,16 @@ from tests.unit.made_results import made_result
 
 from squeezefilm.core.kit import style
 from squeezefilm.design.plate.command import PlateAnalysis
-from squeezefilm.design.plate.report import page, plate
-from squeezefilm.design.plate.report.page import write_mode, write_plate
-from squeezefilm.design.plate.report.plate import (
+from squeezefilm.design.plate.report import page
+from squeezefilm.design.plate.report.figures import (
+    PLATE_FIGURES,
     admittance,
     driven_shape,
     frequency_response,
     line_scan,
     plan_view,
 )
+from squeezefilm.design.plate.report.page import write_mode, write_plate
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 
@@ -236,9 +237,9 @@ def test_numbers_volume_and_pictures_are_written_each_under_its_name(
 
     named = [
         dataclasses.replace(one, draw=lambda _, name=one.draw.__name__: name)
-        for one in plate.FIGURES
+        for one in PLATE_FIGURES
     ]
-    monkeypatch.setattr(plate, "FIGURES", named)
+    monkeypatch.setattr(page, "PLATE_FIGURES", named)
     monkeypatch.setattr(style, "png", lambda figure: f"PNG {figure}".encode())
     monkeypatch.setattr(page, "write_mode", lambda _, file: written.append(file))
     monkeypatch.setattr(page, "plate_page", text)

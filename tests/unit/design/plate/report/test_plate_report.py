@@ -11,13 +11,13 @@ from squeezefilm import subjects
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.plate.command import PlateAnalysis, analyze_plate
 from squeezefilm.design.plate.report import page
-from squeezefilm.design.plate.report.page import plate_page
-from squeezefilm.design.plate.report.plate import (
+from squeezefilm.design.plate.report.figures import (
     admittance,
     frequency_response,
     line_scan,
     plan_view,
 )
+from squeezefilm.design.plate.report.page import plate_page
 from squeezefilm.physics.display import load_display
 
 

@@ -18,8 +18,8 @@ from tests.unit.made_results import WARM, made_result
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.style import BLUE, MINUS, MUTED, PLUS
 from squeezefilm.design.plate.report import page
+from squeezefilm.design.plate.report.figures import response, scan, shape
 from squeezefilm.design.plate.report.page import write_plate
-from squeezefilm.design.plate.report.ring import response, scan, shape
 from squeezefilm.design.plate.ring import RingAnalysis
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.ring.response import RingResponse

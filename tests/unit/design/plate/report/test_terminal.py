@@ -9,11 +9,11 @@ import numpy as np
 from tests.unit.made_results import WARM, WARM_LINES, made_result
 from tests.unit.printed import printed
 
-from squeezefilm.design.film.command import FilmAnswer, FilmRequest
-from squeezefilm.design.film.report.film_map import show_film
+from squeezefilm.design.film import FilmAnswer, FilmRequest
 from squeezefilm.design.plate.command import PlateAnalysis
 from squeezefilm.design.plate.report.terminal import show_plate
 from squeezefilm.design.plate.solved import ModeRow
+from squeezefilm.design.report.film import show_film
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 
 FILM = FilmAnswer(

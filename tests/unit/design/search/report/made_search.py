@@ -12,13 +12,13 @@ import numpy as np
 
 from squeezefilm.core.results import stamp
 from squeezefilm.design.search.candidate import Design, Evaluated, Level, design_of
-from squeezefilm.design.search.correction import learned
 from squeezefilm.design.search.criteria import breaches
 from squeezefilm.design.search.found import DesignSearch, FrontMember
 from squeezefilm.design.search.reasons import empty_corners, limit_reasons
 from squeezefilm.design.search.requirements import Requirements, load_requirements
 from squeezefilm.design.search.shapes import EdgeStrips
 from squeezefilm.design.search.tolerance import Made
+from squeezefilm.design.search.worth_solving import learned
 from squeezefilm.design.sweep.tradeoffs import front_of
 
 NAME = "biet2008-plate"

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 from tests.unit.design.search.report.made_search import made_search
 
-from squeezefilm.design.search.report.terminal import show_design, show_requirements
+from squeezefilm.design.search.report.figures import show_design, show_requirements
 
 Printed = Callable[[], str]  # `printed` itself holds that no line is longer than 80 columns
 

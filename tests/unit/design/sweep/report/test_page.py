@@ -8,10 +8,9 @@ import pytest
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.sweep.axes import Axis
-from squeezefilm.design.sweep.effects import varied_values
 from squeezefilm.design.sweep.report.figures import drawn_columns, means
 from squeezefilm.design.sweep.report.page import sweep_page, wishes
-from squeezefilm.design.sweep.swept import Sweep, SweptColumn
+from squeezefilm.design.sweep.swept import Sweep, SweptColumn, varied_values
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 

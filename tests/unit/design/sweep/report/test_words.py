@@ -18,11 +18,12 @@ from squeezefilm.design.sweep.report.figures import sweep_figure
 from squeezefilm.design.sweep.report.page import require_kind, sweep_csv, write_sweep
 from squeezefilm.design.sweep.report.terminal import (
     in_lines,
+    name_of,
+    scaled,
     show_answers,
     show_sweep,
     sweep_columns,
 )
-from squeezefilm.design.sweep.report.words import name_of, scaled
 from squeezefilm.design.sweep.swept import NOT_YET, Sweep, SweptColumn
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from tests.unit.printed import printed
 
-from squeezefilm.design.textures.report.terminal import (
+from squeezefilm.design.report.texture_page import (
     render_rows,
     show_lost,
     show_render,

@@ -15,7 +15,7 @@ from squeezefilm.physics.film.planar.film import FilmPlanar
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from squeezefilm.design.film.command import FilmAnswer, FilmMap
+    from squeezefilm.design.film import FilmAnswer, FilmMap
 
 
 @style.drawn

@@ -18,8 +18,8 @@ from squeezefilm.core.kit import style
 from squeezefilm.core.kit.style import BLUE, GREEN, ORANGE
 from squeezefilm.core.quantities import Unit
 from squeezefilm.design.analysis.curves import ModelCurve
-from squeezefilm.design.friction.command import FrictionMap
-from squeezefilm.design.friction.report.figures import (
+from squeezefilm.design.friction import FrictionMap
+from squeezefilm.design.report.friction import (
     friction_map,
     models,
     predictions,

@@ -16,8 +16,8 @@ from squeezefilm.core.quantities import Unit
 from squeezefilm.design.analysis.curves import ModelCurve
 from squeezefilm.design.analysis.published_claims import missed_by
 from squeezefilm.design.analysis.verdict import Finding
-from squeezefilm.design.friction.command import Wanted
-from squeezefilm.design.friction.report.terminal import show_friction
+from squeezefilm.design.friction import Wanted
+from squeezefilm.design.report.friction import show_friction
 from squeezefilm.physics.chain.touch import Touch
 from squeezefilm.physics.uncertainty.draws import Refusals
 from squeezefilm.physics.uncertainty.intervals import GroupInfluence, Influence

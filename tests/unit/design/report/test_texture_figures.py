@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from tests.unit.drawn import words
 
-from squeezefilm.design.textures.report.figures import drive, friction, ripple, way
+from squeezefilm.design.report.texture_figures import drive, friction, ripple, way
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")

@@ -11,10 +11,10 @@ import pytest
 
 from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.core.progress import NO_HURRY
+from squeezefilm.design import friction
 from squeezefilm.design.analysis.curves import ModelCurve
 from squeezefilm.design.analysis.verdict import Finding
-from squeezefilm.design.friction import command
-from squeezefilm.design.friction.command import (
+from squeezefilm.design.friction import (
     FrictionAnalysis,
     Wanted,
     analyze_friction,
@@ -111,11 +111,11 @@ def test_a_map_is_by_a_model_that_balances_loads(stator: Display, model: str, ma
 
 def test_the_ripple_is_of_the_standing_wave_under_the_finger() -> None:
     law = SimpleNamespace(ripple=lambda amplitude: ("ripple", amplitude), place=None)
-    assert command._ripple(prediction(law=law)) == ("ripple", 2e-6)
+    assert friction._ripple(prediction(law=law)) == ("ripple", 2e-6)
     # A model that holds the gap has no balance that could ripple.
-    assert command._ripple(prediction(law=law, touch=SimpleNamespace(law=None))) is None
+    assert friction._ripple(prediction(law=law, touch=SimpleNamespace(law=None))) is None
     # At a place of the face that was asked for the wave is no even one.
-    assert command._ripple(prediction(law=law, place_was_asked=True)) is None
+    assert friction._ripple(prediction(law=law, place_was_asked=True)) is None
 
 
 @pytest.fixture
@@ -128,7 +128,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
             asked.append((name, given, named))
             return answer
 
-        monkeypatch.setattr(command, name, asked_for)
+        monkeypatch.setattr(friction, name, asked_for)
 
     stand_in("predict", PREDICTION)
     stand_in("wanted_friction", "the wanted")
@@ -137,7 +137,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         stand_in(name, f"the {name}")
     stand_in("interval_or_reason", ("the interval", "a reason"))
     stand_in("friction_verdict", (Finding("doubt", "the verdict"),))
-    monkeypatch.setattr(command, "why_not_good", lambda display, p: None)
+    monkeypatch.setattr(friction, "why_not_good", lambda display, p: None)
     return asked
 
 
@@ -252,7 +252,7 @@ def test_a_summary_says_none_where_there_is_nothing(stator: Display) -> None:
 def test_a_verdict_on_a_mode_that_is_not_driven_is_not_good(
     parts: list[Any], stator: Display, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(command, "friction_verdict", lambda *about: (Finding("good", "Fine."),))
-    monkeypatch.setattr(command, "why_not_good", lambda display, p: "It is not driven.")
+    monkeypatch.setattr(friction, "friction_verdict", lambda *about: (Finding("good", "Fine."),))
+    monkeypatch.setattr(friction, "why_not_good", lambda display, p: "It is not driven.")
     found = analyze_friction(stator, samples=0)
     assert found.verdict == (Finding("limit", "Fine. It is not driven."),)

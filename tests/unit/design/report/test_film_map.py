@@ -14,8 +14,8 @@ from tests.unit.drawn import words
 
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.style import BLUE
-from squeezefilm.design.film.command import FilmMap, FilmRequest
-from squeezefilm.design.film.report.film_map import film_map, film_pressure, write_film_map
+from squeezefilm.design.film import FilmMap, FilmRequest
+from squeezefilm.design.report.film import film_map, film_pressure, write_film_map
 from squeezefilm.physics.film.planar.film import FilmPlanar
 from squeezefilm.physics.film.planar.gap import PlanarGap
 

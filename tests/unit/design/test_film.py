@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.film.command import FilmRequest, solve_film, sweep_film
+from squeezefilm.design.film import FilmRequest, solve_film, sweep_film
 from squeezefilm.physics.film.periodic import batch
 
 

@@ -16,8 +16,8 @@ from tests.unit.core.formats.read_sound import read_sound
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.formats.traces import csv_text, table_from_csv
 from squeezefilm.core.kit import style
-from squeezefilm.design.textures.report import page
-from squeezefilm.design.textures.report.page import (
+from squeezefilm.design.report import texture_page
+from squeezefilm.design.report.texture_page import (
     drive_waveform,
     envelope_waveform,
     hjif_export,
@@ -234,7 +234,7 @@ def test_what_cannot_be_written_is_refused_before_anything_is(
 def test_a_failure_half_way_leaves_the_folder_as_it_was(
     felt: RenderAnalysis, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(page, "render_figures", lambda _: {})
+    monkeypatch.setattr(texture_page, "render_figures", lambda _: {})
     (tmp_path / "trace.csv").write_text("old")
     # The last file cannot be put in a folder's place.
     (tmp_path / "index.html").mkdir()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.design.textures.gratings_left import what_survives
+from squeezefilm.design.analysis.felt import what_survives
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import load_display
 

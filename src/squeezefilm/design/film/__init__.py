@@ -1,1 +1,0 @@
-"""Questions about gas films: one film, a map of films, models side by side."""

@@ -1,1 +1,0 @@
-"""Output of `film`: a map over squeeze number and excursion."""

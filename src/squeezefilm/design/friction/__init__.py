@@ -1,1 +1,0 @@
-"""Questions about friction: how much, how sure, by which model."""

@@ -1,1 +1,0 @@
-"""Output of `friction`: its figures and its terminal output."""

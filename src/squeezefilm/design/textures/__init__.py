@@ -1,1 +1,0 @@
-"""Results of a display with textures: what is left of gratings, and their pages."""

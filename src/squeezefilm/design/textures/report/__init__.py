@@ -1,1 +1,0 @@
-"""Output of `render`: page, figures, tables."""
