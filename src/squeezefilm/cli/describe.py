@@ -355,11 +355,6 @@ class ModesOptions:
         str | None,
         typer.Option(help='Range to look in, like "20 kHz..60 kHz"; 15 to 60 kHz if not given.'),
     ] = None
-    split: Annotated[
-        str | None,
-        In("Hz"),
-        typer.Option(help="Rings only: measured difference of a mode's two frequencies."),
-    ] = None
     out: Annotated[Path | None, written_to("Folder for modes.json and figures.")] = None
     as_json: AsJson = False
 
@@ -376,8 +371,7 @@ def modes(asked: ModesOptions) -> None:
     display = load_display(asked.target)
     band = DEFAULT_BAND if asked.band is None else parse_band(asked.band)
     with working(asked.as_json) as step:
-        options = given(asked, leave="target band out as_json")
-        result = list_modes(display, band, **options, progress=step)
+        result = list_modes(display, band, progress=step)
         written = None
         if asked.out is not None:
             from squeezefilm.design.plate.report.modes import write_modes

@@ -202,14 +202,13 @@ def test_modes_are_listed_in_a_band_and_shown(stands_in: StandsIn, tmp_path: Pat
     done = run("modes", PLATE)
     assert done.returncode == 0, done.stderr
     assert asked.given == (load_display(PLATE), (15e3, 60e3))
-    assert asked.named == {"split": None}
+    assert asked.named == {}
     assert shown.given == (ANSWER,)
     assert written.calls == []
 
-    done = run("modes", STATOR, "--band", "20 kHz..50 kHz", "--split", "20 Hz", "--out", tmp_path)
+    done = run("modes", STATOR, "--band", "20 kHz..50 kHz", "--out", tmp_path)
     assert done.returncode == 0, done.stderr
     assert asked.calls[-1][0][1] == (20e3, 50e3)
-    assert asked.calls[-1][1] == {"split": 20.0}
     assert written.given == (ANSWER, tmp_path)
     assert done.stdout == "figures: a/folder\n"
 

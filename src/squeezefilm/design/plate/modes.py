@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
-from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.design.plate.listed_modes import (
@@ -128,25 +128,19 @@ def list_modes(
     display: NamedDisplay,
     band: tuple[si.Hertz, si.Hertz] = DEFAULT_BAND,
     *,
-    split: si.Hertz | None = None,
     progress: SayProgress | None = None,
 ) -> ModeList:
     """The modes of a display's plate, disc or stator in a band (Hz) that its drive can move.
 
-    `split` (Hz) is by how much a ring's pair was measured to be apart, of rings only. A plate's
-    modes are screened (see `screened_modes` for range and error), but for the one that the display
-    works in, which is solved as every other verb has it. Raises `InputError` for a band
+    A plate's modes are screened (see `screened_modes` for range and error), but for the one that
+    the display works in, which is solved as every other verb has it. Raises `InputError` for a band
     that is none or has no driven mode, and what the solvers raise.
     """
     tell = progress or (lambda _: None)
     if isinstance(display.actuator, RectangularPlate):
-        if split is not None:
-            raise InputError(
-                "split is of the two orientations of a ring's mode; a rectangular plate has none"
-            )
         tell("driven modes on a light mesh")
         return _of_plate(display, display.actuator, band, tell)
-    return _of_ring(display, band, split, tell)
+    return _of_ring(display, band, tell)
 
 
 def _of_plate(
@@ -216,7 +210,6 @@ def _rules(plate: RectangularPlate) -> tuple[str, ...]:
 def _of_ring(
     display: Display,
     band: tuple[si.Hertz, si.Hertz],
-    split: si.Hertz | None,
     tell: SayProgress,
 ) -> ModeList:
     tell("section")
@@ -261,5 +254,5 @@ def _of_ring(
         else Suggestion(None, "A stator works in the mode that was measured of it."),
         model=working.model + (", fitted stator" if body.fit is not None else ""),
         frequency_error=max(row.frequency_error / row.frequency for row in rows),
-        pair=ring_pair(display, body, working, split) if working.harmonic else None,
+        pair=ring_pair(display, body, working) if working.harmonic else None,
     )

@@ -100,12 +100,12 @@ _SPLITS = (0.1, 0.5, 2.0)
 @dataclass(frozen=True)
 class PairAtSplit:
     """The worst that a pair does which is `split` (Hz) apart, `half_bandwidths` of f/2Q: the
-    smallest standing-wave ratio (None: it stands), the share of the amplitude that travels, and how
-    fast the surface moves along the ring at its crests."""
+    smallest standing-wave ratio, the share of the amplitude that travels, and how fast the surface
+    moves along the ring at its crests."""
 
     split: si.Hertz
     half_bandwidths: si.Dimensionless
-    standing_wave_ratio: si.Dimensionless | None
+    standing_wave_ratio: si.Dimensionless
     travelling: si.Dimensionless
     crest_speed: si.MetrePerSecond
 
@@ -117,7 +117,7 @@ class RingPair:
     `amplitude` (m) is that at resonance without a finger. `two_channels` is the speed of the
     surface at the crests of the travelling wave that two channels in quadrature would make of the
     same amplitude. `electrode_split` (Hz) parts the pair at most if the electrodes outside the
-    channel are left open. `splits` lists what imperfections would do; `measured` is the one given.
+    channel are left open. `splits` lists what imperfections would do.
     """
 
     label: str
@@ -127,7 +127,6 @@ class RingPair:
     two_channels: si.MetrePerSecond
     electrode_split: si.Hertz
     splits: tuple[PairAtSplit, ...]
-    measured: PairAtSplit | None
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -136,7 +135,7 @@ class RingPair:
         open_in_halves = self.electrode_split / half
         amplitude = f"{self.amplitude * 1e6:.3g} µm"
         two = si.format_quantity(self.two_channels, _SPEED, 2)
-        said = [
+        return (
             f"{self.label} is a pair: the same wave in two places around the ring, a quarter of a "
             "wave apart, at one frequency on a perfect ring. The one channel drives the one whose "
             "antinodes lie on its sectors and not the other, so that the wave stands: its crests "
@@ -150,37 +149,12 @@ class RingPair:
             "What is uneven around the ring (mass, glue, teeth, how it is held) parts the pair "
             "too, along axes of its own. By how much, its description does not say; the table has "
             "the worst over all axes and drive frequencies.",
-        ]
-        if self.measured is not None:
-            m = self.measured
-            said.append(
-                f"Measured: {si.format_quantity(m.split, _HZ, 3)} apart, "
-                f"{m.half_bandwidths:.2g} half-bandwidths. At worst the standing-wave ratio is "
-                f"{_ratio(m)} and crests move along the ring at "
-                f"{si.format_quantity(m.crest_speed, _SPEED, 2)}"
-                + (
-                    ": a finger is not noticeably carried along."
-                    if m.crest_speed < 0.1 * self.two_channels
-                    else ": a part of the wave travels, and may carry a finger along. Even the "
-                    "ring out (a small mass at an antinode), or drive nearer to one of the two."
-                )
-            )
-        return tuple(said)
+        )
 
 
-def _ratio(at: PairAtSplit) -> str:
-    return "infinite" if at.standing_wave_ratio is None else f"{at.standing_wave_ratio:.2g}"
-
-
-def ring_pair(
-    display: Display, body: RingBody, mode: AnnularMode, split: si.Hertz | None = None
-) -> RingPair:
-    """The pair of a mode with nodal diameters at the display's voltage; `split` (Hz) as measured.
-
-    Raises `InputError` for a split that is negative, or a mode without nodal diameters.
-    """
-    if split is not None:
-        si.require("split", split, _HZ, at_least=0)
+def ring_pair(display: Display, body: RingBody, mode: AnnularMode) -> RingPair:
+    """The pair of a mode with nodal diameters at the display's voltage. Raises `InputError` for a
+    mode without nodal diameters."""
     actuator, volts = display.actuator, display.drive.voltage
     if isinstance(actuator, AnnularStator):
         amplitude = volts * actuator.reference_amplitude / actuator.reference_voltage
@@ -188,14 +162,12 @@ def ring_pair(
         amplitude = volts * mode.amplitude_per_volt(body.drive)
     half = mode.frequency / (2 * mode.quality_factor)
 
-    def at(hertz: si.Hertz) -> PairAtSplit:
-        apart = hertz / half
-        ratio = least_standing_wave_ratio(apart) if apart > 0 else math.inf
-        share = most_travelling(apart) if apart > 0 else 0.0
+    def at(apart: si.Dimensionless) -> PairAtSplit:
+        share = most_travelling(apart)
         return PairAtSplit(
-            hertz,
+            apart * half,
             apart,
-            ratio if math.isfinite(ratio) else None,
+            least_standing_wave_ratio(apart),
             share,
             crest_speed(mode, share * amplitude),
         )
@@ -207,6 +179,5 @@ def ring_pair(
         amplitude=amplitude,
         two_channels=crest_speed(mode, amplitude),
         electrode_split=mode.frequency * electrode_split(body.section, mode, body.drive),
-        splits=tuple(at(n * half) for n in _SPLITS),
-        measured=None if split is None else at(split),
+        splits=tuple(at(apart) for apart in _SPLITS),
     )

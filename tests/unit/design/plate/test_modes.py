@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.core.errors import InputError
 from squeezefilm.design.plate.listed_modes import (
     CROWDED,
     DRIVEN_SHARE,
@@ -20,10 +19,8 @@ from squeezefilm.design.plate.listed_modes import (
     with_neighbours,
 )
 from squeezefilm.design.plate.modes import ModeList, list_modes
-from squeezefilm.design.plate.ring_pair import ring_pair
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
-from squeezefilm.physics.plate.ring.body import ring_body
 
 PAPER = load_display("biet2008-plate")
 
@@ -159,11 +156,6 @@ def test_a_mode_that_symmetry_forbids_is_named_and_not_listed() -> None:
     assert list_modes(five_strips(6), (18e3, 40e3)).forbidden is None
 
 
-def test_a_split_is_of_rings() -> None:
-    with pytest.raises(InputError, match="two orientations"):
-        list_modes(PAPER, split=10.0)
-
-
 def with_diameters() -> Display:
     """The T-PaD's disc in B(0,3), driven by two of its six sectors."""
     display = load_display("winfield2007-tpad")
@@ -181,24 +173,12 @@ def test_a_disc_without_diameters_has_no_pair() -> None:
 
 
 @pytest.mark.slow
-def test_one_channel_carries_no_finger_and_a_split_does_a_little() -> None:
-    found = list_modes(with_diameters(), (30e3, 36e3), split=10.0)
+def test_one_channel_carries_no_finger_and_an_uneven_ring_may() -> None:
+    found = list_modes(with_diameters(), (30e3, 36e3))
     pair = found.pair
     assert pair is not None
     assert pair.label == found.working == "B(0,3)"
-    half = pair.frequency / (2 * pair.quality_factor)
     assert [at.half_bandwidths for at in pair.splits] == pytest.approx([0.1, 0.5, 2.0])
     assert pair.splits[-1].crest_speed == pytest.approx(pair.two_channels / 2)
     assert pair.splits[-1].standing_wave_ratio == pytest.approx(1.0)
-    assert pair.measured is not None
-    assert pair.measured.half_bandwidths == pytest.approx(10.0 / half)
-    assert pair.measured.crest_speed < 0.1 * pair.two_channels
-    text = " ".join(pair.sentences)
-    assert "carry no finger along" in text
-    assert "not noticeably carried" in text
-    body = ring_body(with_diameters().actuator)  # type: ignore[arg-type]
-    wide = ring_pair(with_diameters(), body, body.mode(), 2 * half)
-    assert "Even the ring out" in wide.sentences[-1]
-    assert len(ring_pair(with_diameters(), body, body.mode()).sentences) == 3
-    with pytest.raises(InputError, match="split"):
-        ring_pair(with_diameters(), body, body.mode(), -1.0)
+    assert "carry no finger along" in " ".join(pair.sentences)

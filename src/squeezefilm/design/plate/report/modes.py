@@ -141,11 +141,11 @@ def pair_rows(pair: RingPair) -> list[tuple[str, str, str, str]]:
     return [
         (
             f"{shown(at.split, HZ, 3)} ({at.half_bandwidths:.3g} half-bandwidths)",
-            "stands" if at.standing_wave_ratio is None else f"{at.standing_wave_ratio:.3g}",
+            f"{at.standing_wave_ratio:.3g}",
             f"{100 * at.travelling:.2g} %",
             shown(at.crest_speed, _SPEED, 2),
         )
-        for at in (*pair.splits, *(() if pair.measured is None else (pair.measured,)))
+        for at in pair.splits
     ]
 
 

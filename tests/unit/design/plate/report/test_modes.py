@@ -66,11 +66,9 @@ def test_what_is_wrong_with_the_displays_mode_is_said(paper: ModeList) -> None:
 
 def test_a_pair_has_its_table(paper: ModeList) -> None:
     at = PairAtSplit(20.0, 0.2, 10.0, 0.099, 0.04)
-    none = PairAtSplit(0.0, 0.0, None, 0.0, 0.0)
-    pair = RingPair("B(0,9)", 40.5e3, 200.0, 2e-6, 0.4, 300.0, (at,), none)
+    pair = RingPair("B(0,9)", 40.5e3, 200.0, 2e-6, 0.4, 300.0, (at,))
     assert pair_rows(pair) == [
         ("20 Hz (0.2 half-bandwidths)", "10", "9.9 %", "40 mm/s"),
-        ("0 Hz (0 half-bandwidths)", "stands", "0 %", "0 m/s"),
     ]
     lines = printed(lambda: show_mode_list(dataclasses.replace(paper, pair=pair)))
     assert "One channel on the pair B(0,9)" in lines
