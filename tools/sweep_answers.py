@@ -17,8 +17,7 @@ from squeezefilm.design.analysis.analyze import analyze
 from squeezefilm.design.friction import analyze_friction
 from squeezefilm.design.plate.command import solve_plate
 from squeezefilm.design.plate.solved import ModeRow
-from squeezefilm.design.sweep.answers import numbers_of
-from squeezefilm.design.sweep.verbs import VERBS
+from squeezefilm.design.sweep.answers import VERBS, numbers_of
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.chain.rendered_texture import render_texture
 from squeezefilm.physics.display import load_display

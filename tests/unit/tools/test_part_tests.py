@@ -19,7 +19,7 @@ def test_a_room_has_the_tests_below_it_and_those_of_its_physics_elsewhere() -> N
     others = set(files) - below
     assert "tests/verification/test_film_closed_forms.py" in others
     inside = {file for file in others if file.startswith(("tests/unit", "tests/architecture"))}
-    assert all(file.startswith("tests/unit/design/film/") for file in inside)
+    assert inside == {"tests/unit/design/test_film.py"}
 
 
 @pytest.mark.parametrize(

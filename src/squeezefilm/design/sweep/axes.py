@@ -20,7 +20,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.formats.traces import csv_rows, text_of_file
 from squeezefilm.core.hard_limits import SWEEP_STEPS, require_within
-from squeezefilm.design.sweep.verbs import OPTIONS, VerbOption
+from squeezefilm.design.sweep.answers import OPTIONS, VerbOption
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.parameters import number_paths, unit_at
 

@@ -25,7 +25,14 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import SWEEP_POINTS, require_within
-from squeezefilm.design.sweep.answers import FOLLOWED, AskedNumber, asked_for
+from squeezefilm.design.sweep.answers import (
+    FOLLOWED,
+    OPTIONS,
+    VERBS,
+    AskedNumber,
+    VerbOption,
+    asked_for,
+)
 from squeezefilm.design.sweep.axes import (
     DISPLAY,
     Axis,
@@ -35,7 +42,6 @@ from squeezefilm.design.sweep.axes import (
     what_is_varied,
 )
 from squeezefilm.design.sweep.points import Point
-from squeezefilm.design.sweep.verbs import OPTIONS, VERBS, VerbOption
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.uncertainty.parameters import value_at, with_values
 from squeezefilm.physics.uncertainty.uncertainty import SAMPLES

@@ -22,9 +22,8 @@ from squeezefilm.core.kept.computed_by import computed_by
 from squeezefilm.core.kept.store import in_passing
 from squeezefilm.core.regular_file import parsed_json, read_regular, require_regular
 from squeezefilm.core.results import config_hash, to_json
-from squeezefilm.design.sweep.answers import numbers_of
+from squeezefilm.design.sweep.answers import OPTIONS, VERBS, numbers_of
 from squeezefilm.design.sweep.tasks import Lost, Workers
-from squeezefilm.design.sweep.verbs import OPTIONS, VERBS
 from squeezefilm.physics.display import Display
 
 SET_ASIDE = ".damaged"

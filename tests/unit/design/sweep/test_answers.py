@@ -8,13 +8,13 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.sweep.answers import (
+    VERBS,
     AskedNumber,
     asked_for,
     catalogue,
     numbers_of,
     without_units,
 )
-from squeezefilm.design.sweep.verbs import VERBS
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
 

@@ -7,8 +7,8 @@ import pytest
 
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.quantities import Unit
+from squeezefilm.design.sweep.answers import OPTIONS
 from squeezefilm.design.sweep.axes import Axis, axes_of, axis_of, axis_of_file, axis_of_text
-from squeezefilm.design.sweep.verbs import OPTIONS
 from squeezefilm.physics.display import load_display
 
 PLATE = load_display("biet2008-plate")

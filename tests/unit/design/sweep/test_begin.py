@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.design.sweep import plan
+from squeezefilm.design.sweep.answers import OPTIONS
 from squeezefilm.design.sweep.plan import Plan
-from squeezefilm.design.sweep.verbs import OPTIONS
 
 
 def axis(name: str, *numbers: float) -> Any:

@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 
+from squeezefilm.design.sweep.answers import VERBS
 from squeezefilm.design.sweep.points import Answer, Point, answer_of, answered
 from squeezefilm.design.sweep.tasks import ThisProcess
-from squeezefilm.design.sweep.verbs import VERBS
 from squeezefilm.design.sweep.workers import Processes
 from squeezefilm.physics.display import load_display
 
