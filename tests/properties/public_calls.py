@@ -178,8 +178,8 @@ NOT_CALLED = {
     physics.contact.sharing.film_panels.Panel.octave_solved
     physics.contact.sharing.film_panels.Panel.solved
     physics.plate.solid.volume.PlateVolume.displacement
-    physics.plate.solid.volume.harmonic_motion physics.plate.solid.volume.mode_motion
-    physics.plate.solid.volume.plate_volume
+    physics.plate.solid.volume.PlateVolume.potential physics.plate.solid.volume.harmonic_fields
+    physics.plate.solid.volume.mode_fields physics.plate.solid.volume.plate_volume
     physics.render.texture.coordinate.Coordinate.at physics.render.texture.coordinate.FromPoint.at
     physics.render.fidelity.report.fidelity_report physics.render.fidelity.report.strongest_lines
     physics.render.fidelity.rendered_stroke.friction_of

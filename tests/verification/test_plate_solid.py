@@ -226,7 +226,7 @@ def test_reciprocity_of_volts_and_newtons() -> None:
         reduced_class(plate, parity, (14e3, 20e3), 12, [(x, y, np.ones((1, 1)))], COARSE)
         for parity in all_classes(plate)
     ]
-    q, _ = harmonic_solution(parts, omega)
+    q, _, _ = harmonic_solution(parts, omega)
     w = surface_values(parts, x, y, plate.thickness)[:, 0, 0]
     metre_per_volt = q @ w
     K, L, M = (

@@ -1,4 +1,4 @@
-"""The .vtu of a solved plate, read back: geometry, materials and shapes."""
+"""The .vtu of a solved plate, read back: geometry, materials, shapes and potentials."""
 
 import dataclasses
 from pathlib import Path
@@ -16,6 +16,7 @@ from squeezefilm.physics.plate.layout import CeramicPatch, GlueLayer, Rectangula
 from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.solid.volume import harmonic_fields, mode_fields, plate_volume
 
 Solved = tuple[PlateModes, HarmonicResponse]
 
@@ -96,6 +97,67 @@ def test_surface_moves_as_the_solver_says(read_back: meshio.Mesh, paper: Solved)
         assert read_back.point_data["displacement_imaginary_m"][n, 2] == pytest.approx(
             w.imag, rel=1e-9
         )
+
+
+@pytest.mark.slow
+def test_electrodes_have_the_drives_potential(read_back: meshio.Mesh) -> None:
+    potential = read_back.point_data["potential_real_V"]
+    imaginary = read_back.point_data["potential_imaginary_V"]
+    x, z = read_back.points[:, 0], read_back.points[:, 2]
+    assert np.all(potential[z > -1e-9] == 0)
+    for patch in _paper().patches:
+        face = np.isclose(z, -1e-3) & (x > patch.x - 1e-9) & (x < patch.x + patch.length + 1e-9)
+        assert potential[face] == pytest.approx(15.0 * patch.polarity, abs=1e-9)
+        assert imaginary[face] == pytest.approx(0.0, abs=1e-9)
+        shape = read_back.point_data["mode_potential_V"]
+        assert shape[face] == pytest.approx(0.0, abs=1e-12 * np.abs(shape).max() + 1e-12)
+
+
+@pytest.mark.slow
+def test_a_slow_voltage_falls_evenly_through_the_ceramic() -> None:
+    plate = _small()
+    modes = solve_modes(plate)
+    response = harmonic_response(plate, np.array([500.0, 1000.0]))
+    volume = plate_volume(modes, 0)
+    _, potential = harmonic_fields(volume, response, 0)
+    x, y, z = volume.points.T
+    # Away from its rim, and but for its free ends' strain, a plate capacitor.
+    inside = (np.abs(y - 10e-3) < 6e-3) & (z < 1e-12) & (np.abs(x - 13e-3) < 3e-3)
+    assert inside.sum() > 20
+    assert potential[inside].real == pytest.approx(-z[inside] / 1e-3, abs=0.08)
+    # The other ceramic is poled the other way and has the same polarity: the same potential.
+    other = (np.abs(x - 21e-3) < 2e-3) & np.isclose(z, -1e-3)
+    assert potential[other].real == pytest.approx(1.0)
+
+
+@pytest.mark.slow
+def test_touching_ceramics_keep_their_own_potential() -> None:
+    patches = tuple(
+        dataclasses.replace(p, polarity=s, poling=1)
+        for p, s in zip(_small().patches, (1, -1), strict=True)
+    )
+    plate = _small(patches=patches)
+    volume = plate_volume(solve_modes(plate), 0)
+    response = harmonic_response(plate, np.array([500.0, 1000.0]))
+    _, potential = harmonic_fields(volume, response, 0)
+    at_face = np.isclose(volume.points[:, 0], 18e-3) & np.isclose(volume.points[:, 2], -1e-3)
+    assert set(np.round(potential[at_face].real, 9)) == {1.0, -1.0}
+
+
+def test_open_electrode_carries_one_potential_and_no_charge() -> None:
+    """The open electrode's potential is the one at which the mode is a mode: with it the reciprocal
+    theorem makes the drive-open frequency of the shorted plate that of the open one."""
+    opened = tuple(dataclasses.replace(p, electrode="open") for p in _small().patches)
+    modes = solve_modes(_small(patches=opened))
+    volume = plate_volume(modes, 0)
+    _, potential = mode_fields(volume, modes, 0)
+    x, _, z = volume.points.T
+    for patch in opened:
+        inside = (x > patch.x + 1e-9) & (x < patch.x + patch.length - 1e-9)
+        face = potential[np.isclose(z, -1e-3) & inside]
+        assert np.ptp(face) < 1e-9 * np.abs(face).max()
+        # The mean field through the ceramic is that of the electrode: not all in the dielectric.
+        assert abs(face[0]) > 0.01 * np.abs(potential).max()
 
 
 @pytest.mark.slow

@@ -1,5 +1,5 @@
 """Files that `squeezefilm plate --out` writes: a page with numbers and figures, and the volume as a
-.vtu file for ParaView: shape and response."""
+.vtu file for ParaView: shape, response and potential."""
 
 from __future__ import annotations
 
@@ -131,30 +131,36 @@ def write_vtu(
 
     The response is that at its frequency number `at`, without one where it moves most.
 
-    Point data: ``mode_displacement_m`` (real, the largest scaled to 1 µm), with a `response` also
-    ``displacement_real_m`` and ``displacement_imaginary_m`` at `voltage`. Cell data: ``material``.
-    Field data: ``mode_scale_m_sqrt_kg`` (what the mode of unit modal mass was multiplied by),
+    Point data: ``mode_displacement_m`` and ``mode_potential_V`` (real, the largest displacement
+    scaled to 1 µm), with a `response` also ``displacement_real_m``, ``displacement_imaginary_m``,
+    ``potential_real_V`` and ``potential_imaginary_V`` at `voltage`. Cell data: ``material``. Field
+    data: ``mode_scale_m_sqrt_kg`` (what the mode of unit modal mass was multiplied by),
     frequencies, voltage and the number of every material. The file is written whole or not at
     all. Raises `InputError` for a name that does not end in .vtu.
     """
-    from squeezefilm.physics.plate.solid.volume import harmonic_motion, mode_motion, plate_volume
+    from squeezefilm.physics.plate.solid.volume import harmonic_fields, mode_fields, plate_volume
 
     if path.suffix != ".vtu":
         raise InputError(f"{path} does not end in .vtu; ParaView tells the format by the ending")
     volume = plate_volume(modes, mode)
-    moved = mode_motion(volume, modes, mode)
+    moved, charged = mode_fields(volume, modes, mode)
     scale = LARGEST_DISPLACEMENT / float(np.max(np.linalg.norm(moved, axis=1)))
-    points: dict[str, FloatArray] = {"mode_displacement_m": scale * moved}
+    points: dict[str, FloatArray] = {
+        "mode_displacement_m": scale * moved,
+        "mode_potential_V": scale * charged,
+    }
     notes = {
         "mode_frequency_Hz": float(modes.frequencies[mode]),
         "mode_scale_m_sqrt_kg": scale,
     }
     if response is not None:
         at = response.resonance if at is None else at
-        u = voltage * harmonic_motion(volume, response, at)
+        u, potential = (voltage * part for part in harmonic_fields(volume, response, at))
         points |= {
             "displacement_real_m": u.real,
             "displacement_imaginary_m": u.imag,
+            "potential_real_V": potential.real,
+            "potential_imaginary_V": potential.imag,
         }
         notes |= {"drive_frequency_Hz": float(response.frequencies[at]), "drive_voltage_V": voltage}
     notes |= {f"material_{name}": float(number) for number, name in enumerate(volume.materials)}

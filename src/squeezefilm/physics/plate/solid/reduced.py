@@ -169,24 +169,34 @@ def surface_values(
 
 def harmonic_solution(
     parts: list[ReducedClass], omega: si.FloatArray
-) -> tuple[si.ComplexArray, si.ComplexArray]:
-    """Coordinates (frequencies × coordinates of all classes) and the charge at the drive's
-    terminals, per volt at angular frequencies `omega`."""
-    coordinates, charge = [], np.zeros(omega.size, dtype=complex)
-    for part in parts:
+) -> tuple[si.ComplexArray, list[si.ComplexArray], si.ComplexArray]:
+    """Coordinates (frequencies × coordinates), electrode potentials of each class (frequencies ×
+    electrodes) and the charge at the drive's terminals, per volt at angular frequencies `omega`."""
+    places = class_slices(parts)
+    total, extra = places[-1].stop, sum(len(reduced.opened) for reduced in parts)
+    A = np.zeros((omega.size, total + extra, total + extra), dtype=complex)
+    b = np.zeros((omega.size, total + extra), dtype=complex)
+    row, w2 = total, (omega**2)[:, None, None]
+    for reduced, at in zip(parts, places, strict=True):
+        A[:, at, at] = reduced.stiffness + 1j * reduced.loss - w2 * reduced.mass
+        b[:, at] = -(reduced.coupling @ reduced.drive)
         # Charge = −(Gᵀx + C V), of which an open electrode has none.
-        opened, held = list(part.opened), part.capacitance @ part.drive
-        n = part.mass.shape[0]
-        A = np.zeros((omega.size, n + len(opened), n + len(opened)), dtype=complex)
-        A[:, :n, :n] = part.stiffness + 1j * part.loss - omega[:, None, None] ** 2 * part.mass
-        A[:, :n, n:], A[:, n:, :n] = part.coupling[:, opened], part.coupling[:, opened].T
-        A[:, n:, n:] = part.capacitance[np.ix_(opened, opened)]
-        b = -np.concatenate([part.coupling @ part.drive, held[opened]])
-        # Rows of charge are in farads, the others in newtons: bring them to one size.
-        scale = np.max(np.abs(A), axis=2)
-        solution = np.linalg.solve(A / scale[:, :, None], (b / scale)[:, :, None])[:, :, 0]
-        V = np.tile(part.drive.astype(complex), (omega.size, 1))
-        V[:, opened] = solution[:, n:]
-        charge -= (solution[:, :n] @ part.coupling + V @ part.capacitance) @ part.drive
-        coordinates.append(solution[:, :n])
-    return np.concatenate(coordinates, axis=1), charge
+        opened, held = list(reduced.opened), reduced.capacitance @ reduced.drive
+        rows = slice(row, row + len(opened))
+        A[:, at, rows], A[:, rows, at] = reduced.coupling[:, opened], reduced.coupling[:, opened].T
+        A[:, rows, rows] = reduced.capacitance[np.ix_(opened, opened)]
+        b[:, rows] = -held[opened]
+        row = rows.stop
+    # Rows of charge are in farads, the others in newtons: bring them to one size.
+    scale_rows = np.max(np.abs(A), axis=2, keepdims=True)
+    solution = np.linalg.solve(A / scale_rows, (b / scale_rows[:, :, 0])[:, :, None])[:, :, 0]
+    potentials, charge = [], np.zeros(omega.size, dtype=complex)
+    row = total
+    for reduced, at in zip(parts, places, strict=True):
+        V = np.broadcast_to(reduced.drive, (omega.size, reduced.drive.size)).astype(complex)
+        rows = slice(row, row + len(reduced.opened))
+        V[:, list(reduced.opened)] = solution[:, rows]
+        row = rows.stop
+        charge -= (solution[:, at] @ reduced.coupling + V @ reduced.capacitance) @ reduced.drive
+        potentials.append(V)
+    return solution[:, :total], potentials, charge

@@ -62,8 +62,9 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
     model: str
     _parts: list[ReducedClass] = field(repr=False)
     _coordinates: si.ComplexArray = field(repr=False)
+    _potentials: list[si.ComplexArray] = field(repr=False)
     _again: Callable[[], HarmonicResponse] | None = field(repr=False, default=None)
-    _bulk: ClassVar[tuple[str, ...]] = ("_parts", "_coordinates")
+    _bulk: ClassVar[tuple[str, ...]] = ("_parts", "_coordinates", "_potentials")
 
     @si.checked_numbers
     def displacement(self, x: si.MetreArray, y: si.MetreArray) -> si.ComplexArray:
@@ -98,12 +99,13 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
         si.require("frequencies", f, si.Unit("Hz"), at_least=first, at_most=last, axes=1)
         omega, parts = 2 * np.pi * f, self._parts
         with one_blas_thread():
-            q, charge = harmonic_solution(parts, omega)
+            q, potentials, charge = harmonic_solution(parts, omega)
         return dataclasses.replace(
             self,
             frequencies=f,
             admittance=1j * omega * charge,
             _coordinates=q,
+            _potentials=potentials,
             _again=functools.partial(self.at, f),
         )
 
@@ -201,7 +203,7 @@ def harmonic_response(
     with one_blas_thread():
         parts = _reduced(plate, band, steps, resolution, extrapolate, progress, solved)
         omega = 2 * np.pi * f
-        q, charge = harmonic_solution(parts, omega)
+        q, potentials, charge = harmonic_solution(parts, omega)
         admittance = 1j * omega * charge
         error = _truncation(parts, omega, admittance)
     return HarmonicResponse(
@@ -213,6 +215,7 @@ def harmonic_response(
         MODEL,
         parts,
         q,
+        potentials,
         functools.partial(
             harmonic_response,
             plate,
@@ -269,7 +272,7 @@ def _truncation(
 ) -> float:
     """Change of the admittance when each space loses its last quarter."""
     pick = np.arange(0, omega.size, max(1, omega.size // 12))
-    _, charge = harmonic_solution([_shortened(part) for part in parts], omega[pick])
+    _, _, charge = harmonic_solution([_shortened(part) for part in parts], omega[pick])
     change = np.abs(1j * omega[pick] * charge - admittance[pick])
     return float(np.max(change / np.max(np.abs(admittance))))
 

@@ -36,19 +36,17 @@ def test_forces_balance_and_no_charge_flows_from_an_open_electrode() -> None:
         reduced(rng, 3, (1, 2), [1.0, 0.0, 0.0]),
         reduced(rng, 2, (0,), [0.0, -1.0]),
     ]
-    moved, charge = harmonic_solution(parts, OMEGA)
+    moved, potentials, charge = harmonic_solution(parts, OMEGA)
     for i, omega in enumerate(OMEGA):
+        left = np.zeros(5, dtype=complex)
         flown = 0.0
-        for part, own in zip(parts, class_slices(parts), strict=True):
-            x, opened = moved[i, own], list(part.opened)
-            volts = part.drive.astype(complex)
-            # What an open electrode must have to hold no charge.
-            volts[opened] = 0.0
-            drawn = part.coupling.T @ x + part.capacitance @ volts
-            volts[opened] = -np.linalg.solve(
-                part.capacitance[np.ix_(opened, opened)], drawn[opened]
-            )
-            dynamic = part.stiffness + 1j * part.loss - omega**2 * part.mass
-            assert dynamic @ x + part.coupling @ volts == pytest.approx(0.0, abs=1e-11)
-            flown -= part.drive @ (part.coupling.T @ x + part.capacitance @ volts)
+        for one, own, volts in zip(parts, class_slices(parts), potentials, strict=True):
+            dynamic = one.stiffness + 1j * one.loss - omega**2 * one.mass
+            left[own] += dynamic @ moved[i, own] + one.coupling @ volts[i]
+            drawn = -(one.coupling.T @ moved[i, own] + one.capacitance @ volts[i])
+            flown += one.drive @ drawn
+            for number in set(range(one.drive.size)) - set(one.opened):
+                assert volts[i, number] == pytest.approx(one.drive[number])
+            assert drawn[list(one.opened)] == pytest.approx(0.0, abs=1e-12)
+        assert left == pytest.approx(np.zeros(5), abs=1e-11)
         assert charge[i] == pytest.approx(flown)

@@ -43,7 +43,7 @@ def answered(
     frequencies: np.ndarray, admittance: np.ndarray, parts: list[Any] | None = None, **more: Any
 ) -> HarmonicResponse:
     given: dict[str, Any] = {
-        "_coordinates": np.zeros((frequencies.size, 0)), **more,
+        "_coordinates": np.zeros((frequencies.size, 0)), "_potentials": [], **more,
     }  # fmt: skip
     return HarmonicResponse(
         plate(), frequencies, admittance, "made by hand", 0.0, "none", parts or [], **given
