@@ -95,7 +95,7 @@ def with_constant(line: str) -> str:
         (GLASS.replace('x = "87 mm"', 'x = "5 mm"'), "overlap by 1 mm"),
         (GLASS.replace('x = "6 mm"', 'x = "5 mm"'), "foam under a ceramic"),
         (GLASS.replace("[[actuator.patches]]", "[[actuator.patch]]"), "unknown key 'patch'"),
-        (GLASS.replace("polarity = 1", 'polarity = 1\nelectrode = "shunted"'), "'open'"),
+        (GLASS.replace("polarity = 1", 'polarity = 1\nelectrode = "shunted"'), "shunt_resistance"),
         (GLASS.replace('thickness = "0.5 mm"', 'thickness = "0.5 um"'), "actuator.glue.thickness"),
         (with_constant("free_permittivity_33 = 3000"), "which give 1703"),
         (with_constant('compliance_66 = "54.3e-12 m2/N"'), "2 (s11 - s12)"),

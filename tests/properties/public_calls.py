@@ -132,6 +132,7 @@ NOT_CALLED = {
     physics.plate.elements.cross_section.CrossSection
     physics.plate.elements.cross_section.cross_section
     physics.plate.solid.coarse_modes.open_values
+    physics.plate.solid.coarse_modes.shunted_frequencies
     physics.plate.solid.refined_modes.extrapolated_class physics.plate.elements.krylov.modes_below
     physics.plate.elements.krylov.modes_near physics.plate.elements.krylov.prolonged
     physics.plate.elements.krylov.with_open_electrodes physics.plate.elements.lobatto.LineMesh

@@ -1,4 +1,4 @@
-"""Electrodes of the paper's plate and of small ones: open, tied, bare; ceramics of several
+"""Electrodes of the paper's plate and of small ones: open, tied, bare, shunted; ceramics of several
 thicknesses; foam of several losses. Against scikit-fem where it can be asked, and limits."""
 
 import dataclasses
@@ -8,7 +8,7 @@ import pytest
 from tests.lost_power import lost_power
 
 from squeezefilm.core.errors import OutOfRangeError
-from squeezefilm.physics.plate.layout import CeramicPatch, FoamSupport
+from squeezefilm.physics.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
 from squeezefilm.physics.plate.solid.layers import Resolution
 from squeezefilm.physics.plate.solid.mesh import plate_model
 from squeezefilm.physics.plate.solid.response import harmonic_response
@@ -54,6 +54,59 @@ def test_how_far_open_electrodes_raise_the_paper_s_mode_by_scikit_fem() -> None:
     assert rise(EACH, 36126.0) == pytest.approx(0.0386, abs=1e-4)
     assert rise(ALTERNATING, 36113.0) == pytest.approx(0.0382, abs=1e-4)
     assert rise("bare", 36391.0) == pytest.approx(0.0462, abs=1e-4)
+
+
+def shunted(resistance: float | None, quality: float = 1e4) -> RectangularPlate:
+    electrode = "open" if resistance is None else "shunted"
+    sensing = CeramicPatch(
+        14e-3, 0, 8e-3, 14e-3, 0.5e-3, electrode=electrode,  # type: ignore[arg-type]
+        shunt_resistance=resistance,
+    )  # fmt: skip
+    return small(
+        patches=(CeramicPatch(2e-3, 0, 8e-3, 14e-3, 0.5e-3), sensing), quality_factor=quality
+    )
+
+
+@pytest.mark.slow
+def test_shunts_reach_from_short_to_open_and_damp_in_between() -> None:
+    def solved(plate: RectangularPlate) -> tuple[float, float]:
+        modes = solve_modes(plate, near=19e3, count=1, driven_only=True)
+        return float(modes.frequencies[0]), float(modes.quality_factors[0])
+
+    patches = shunted(1.0).patches
+    short = solved(
+        dataclasses.replace(
+            shunted(1.0),
+            patches=(
+                patches[0],
+                dataclasses.replace(patches[1], electrode="shorted", shunt_resistance=None),
+            ),
+        )
+    )
+    opened = solved(shunted(None))
+    low, high = solved(shunted(1e-6)), solved(shunted(1e12))
+    assert low == pytest.approx(short, rel=1e-6)
+    assert opened[0] > 1.002 * short[0]
+    # The open plate was solved with its own shapes, extrapolated on its own.
+    assert high[0] / short[0] - 1 == pytest.approx(opened[0] / short[0] - 1, rel=0.03)
+    assert high[1] == pytest.approx(1e4, rel=1e-3)
+    middle = [solved(shunted(R)) for R in (300.0, 3e3, 30e3)]
+    assert min(q for _, q in middle) < 500
+    assert all(short[0] < f < opened[0] for f, _ in middle)
+    assert [f for f, _ in middle] == sorted(f for f, _ in middle)
+
+
+@pytest.mark.slow
+def test_a_shunted_mode_is_the_peak_of_the_harmonic_response() -> None:
+    plate = shunted(3e3)
+    modes = solve_modes(plate, near=19e3, count=1, driven_only=True)
+    f0, q = modes.frequencies[0], modes.quality_factors[0]
+    f = f0 * (1 + np.linspace(-1.5, 1.5, 301) / q)
+    response = harmonic_response(plate, f)
+    conductance = response.admittance.real
+    half = f[conductance > conductance.max() / 2]
+    assert f[np.argmax(conductance)] == pytest.approx(f0, rel=5e-4)
+    assert f0 / (half[-1] - half[0]) == pytest.approx(q, rel=0.03)
 
 
 @pytest.mark.slow

@@ -52,6 +52,8 @@ def carrier(ratio: float = 1.0) -> int:
         {},
         {"thermal_resistance": 60.0},
         {"temperature_coefficient": -4e-4},
+        {"quality_temperature_coefficient": -3e-3, "charge_temperature_coefficient": 2e-3},
+        {"rayleigh_softening": 5e-3, "rayleigh_charge": 5e-6},
     ],
 )
 @pytest.mark.parametrize("volts", [5.0, 20.0])

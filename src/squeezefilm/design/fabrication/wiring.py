@@ -22,9 +22,9 @@ IN_PHASE, ANTIPHASE, GROUND, OPEN = "A", "B", "ground", "open"
 class Electrode:
     """The outer electrode of a ceramic, or of a sector of it; it covers all of its footprint.
 
-    `connection` is "A" (driven in phase), "B" (driven in antiphase), "ground" or "open". `poling`
-    is +1 where the ceramic is poled away from the plate. The bonded side of every ceramic is
-    ground.
+    `connection` is "A" (driven in phase), "B" (driven in antiphase), "ground", "open" or "shunt n"
+    with its own `shunt_resistance` to ground. `poling` is +1 where the ceramic is poled away from
+    the plate. The bonded side of every ceramic is ground.
     """
 
     name: str
@@ -34,6 +34,7 @@ class Electrode:
     connection: str
     poling: int
     thickness: si.Metre
+    shunt_resistance: si.Ohm | None = None
 
 
 def electrodes_of(actuator: Actuator, parts: Sequence[Part] | None = None) -> tuple[Electrode, ...]:
@@ -63,10 +64,13 @@ def electrodes_of(actuator: Actuator, parts: Sequence[Part] | None = None) -> tu
 
 
 def _of_plate(plate: RectangularPlate) -> tuple[Electrode, ...]:
-    electrodes = []
+    electrodes, shunts = [], 0
     for number, patch in enumerate(plate.patches, 1):
         connection = IN_PHASE if patch.polarity > 0 else ANTIPHASE
-        if patch.electrode != "driven":
+        if patch.electrode == "shunted":
+            shunts += 1
+            connection = f"shunt {shunts}"
+        elif patch.electrode != "driven":
             connection = {"shorted": GROUND, "open": OPEN}[patch.electrode]
         where = Rectangle(patch.x, patch.y, patch.length, patch.width)
         electrodes.append(
@@ -78,6 +82,7 @@ def _of_plate(plate: RectangularPlate) -> tuple[Electrode, ...]:
                 connection,
                 patch.poling,
                 patch.thickness,
+                patch.shunt_resistance,
             )
         )
     return tuple(electrodes)
@@ -103,7 +108,13 @@ def leads_of(electrodes: Sequence[Electrode]) -> tuple[Lead, ...]:
         ANTIPHASE: "amplifier output B, −V: the same voltage, its sign reversed",
         GROUND: "ground",
     }
-    leads = [Lead(name, tuple(names), ends[name]) for name, names in sorted(by.items())]
+    shunts = {
+        electrode.connection: "ground through "
+        + si.format_quantity(electrode.shunt_resistance or 0.0, si.Unit("ohm"))
+        for electrode in electrodes
+        if electrode.shunt_resistance is not None
+    }
+    leads = [Lead(name, tuple(names), (ends | shunts)[name]) for name, names in sorted(by.items())]
     return (
         *leads,
         Lead("bonded sides", tuple(electrode.name for electrode in electrodes), "ground"),
@@ -222,6 +233,12 @@ def bill_of(
         if len(lead.electrodes) > 8:
             joined = f"{len(lead.electrodes)} electrodes to {lead.to}"
         rows.append(BillRow(f"Lead {lead.name}", 1, "wire", "", "", None, False, joined))
+    for electrode in electrodes:
+        if electrode.shunt_resistance is not None:
+            size = si.format_quantity(electrode.shunt_resistance, si.Unit("ohm"))
+            rows.append(
+                BillRow("Shunt resistor", 1, "", size, "", None, False, f"at {electrode.name}")
+            )
     return tuple(rows)
 
 

@@ -26,7 +26,7 @@ from squeezefilm.instruments.twin.working_point import WorkingPoint
 from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
 from squeezefilm.physics.contact.sliding.march import substeps
 from squeezefilm.physics.plate.heat_states import cooling_of, heat_capacity
-from squeezefilm.physics.plate.thermal import thermal_body
+from squeezefilm.physics.plate.thermal import driven_thickness, thermal_body
 
 _PICKUP_RE, _PICKUP_IM = 11, 12  # streams of noise
 _BUFFER = 2000  # rows between two visits to Python
@@ -130,7 +130,7 @@ def heard(plant: k.PlantState, ear: Hearing) -> complex:
     z = complex(s[k.Z_RE], s[k.Z_IM])
     frequency = n[k.CARRIER] * 1e-3 if n[k.CARRIER] > 0 else s[k.RESONANCE]
     leak = complex(0.0, ear.feedthrough * c[k.C_C0] * s[k.VOLTAGE])
-    current = 2.0 * math.pi * frequency * (c[k.C_FACTOR] * z + leak)
+    current = 2.0 * math.pi * frequency * (c[k.C_FACTOR] * s[k.CHARGE] * z + leak)
     seed, now = int(c[k.C_SEED]), n[k.NOW]
     noise = complex(k.gaussian(seed, _PICKUP_RE, now), k.gaussian(seed, _PICKUP_IM, now))
     return complex(ear.per_metre * z + ear.shunt * current + ear.noise * noise)
@@ -159,6 +159,7 @@ class Plant:
         self._s[k.X] = self._s[k.SKIN_X] = self._places[0, 0]
         self._s[k.Y] = self._places[1, 0]
         self._s[k.RELATIVE] = math.nan
+        self._s[k.CHARGE] = 1.0
         self._s[k.RESONANCE] = k.resonance(0, 0.0, self._c)
         sensor = settings.sensor
         waiting = math.ceil((sensor.latency + 10 * sensor.jitter) * sensor.rate) + 16
@@ -309,6 +310,7 @@ def _constants(
     force = 0.0 if hand is None else hand.normal_force
     ratio = drift.quality_factor_ratio
     thermal, body = drift.on(display.thermal), thermal_body(display.actuator)
+    thickness = driven_thickness(display.actuator)
     c = np.full(k.CONSTANTS, math.nan)
     c[k.C_STEP] = step
     c[k.C_ROW] = round(settings.truth_period * 1e6)
@@ -324,6 +326,11 @@ def _constants(
     c[k.C_PERIOD] = round(drift.ambient_period * 1e6)
     c[k.C_COOLING : k.C_ROOM + 1] = cooling_of(thermal, body)
     c[k.C_CAPACITY] = heat_capacity(thermal, body)
+    c[k.C_QUALITY_DRIFT] = thermal.quality_temperature_coefficient
+    c[k.C_CHARGE_DRIFT] = thermal.charge_temperature_coefficient
+    c[k.C_SOFTENING] = thermal.rayleigh_softening
+    # Of a stator no ceramic is described, and so no field.
+    c[k.C_FIELD_DRIFT] = 0.0 if thickness is None else thermal.rayleigh_charge / thickness
     c[k.C_GAIN] = amplifier.gain
     c[k.C_RAIL] = amplifier.highest_voltage
     c[k.C_CURRENT] = amplifier.highest_current

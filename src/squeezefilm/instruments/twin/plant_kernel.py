@@ -46,7 +46,7 @@ from squeezefilm.instruments.twin.hand import wanted
 from squeezefilm.physics.contact.sliding.kernel import Track, slide_march
 from squeezefilm.physics.contact.sliding.pieces import BoneDrive, Rows
 from squeezefilm.physics.contact.sliding.skin_motion import Forces, LumpedSkin, slide_by, transition
-from squeezefilm.physics.plate.heat_states import warmed
+from squeezefilm.physics.plate.heat_states import Drifts, changed, warmed
 from squeezefilm.physics.plate.thermal import Cooling
 
 # The state, float64: plate; finger; skin and friction; output; what the sensor shows.
@@ -54,22 +54,24 @@ Z_RE, Z_IM, WARMTH, RESONANCE, LOST = range(5)
 X, VX, Y, VY = range(5, 9)
 SKIN_X, SKIN_V, PULL, PULL_BEFORE, BEFORE, FRICTION, FORCE = range(9, 16)
 VOLTAGE, CURRENT_A, RELATIVE, SEEN_X, SEEN_Y = range(16, 21)
-FELT = 21  # the amplitude that friction has followed (m)
-STATE = 22
+CHARGE = 21  # the charge coefficient over the cold one
+FELT = 22  # the amplitude that friction has followed (m)
+STATE = 23
 # The counts, int64; times in µs.
 NOW, SEEN_TAKEN, SEEN_TOUCHING, SAMPLE, HEAD, TAIL, ARRIVED, ROWS = range(8)
 BEYOND, FAILED, LOST_SAMPLES, CARRIER = range(8, 12)
 COUNTS = 12
 # The constants, float64: steps; plate; its drift; amplifier; arm and skin; friction; sensor.
 C_STEP, C_ROW, C_SEED, C_F0, C_Q, C_PER_VOLT, C_FACTOR = range(7)
-C_OFFSET, C_AGEING, C_COEFFICIENT, C_SWING, C_PERIOD, C_CAPACITY = range(7, 13)
-C_COOLING, C_FACE, C_FACE_LENGTH, C_EMISSIVITY, C_ROOM = range(13, 18)  # fields of `Cooling`
-C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS = range(18, 24)
-C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS = range(24, 30)
-C_SUBSTEPS, C_STATIC, C_EXPONENT, C_REFERENCE, C_FORCE = range(30, 35)
-C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(35, 41)
-C_LAG = 41  # s
-CONSTANTS = 42
+C_OFFSET, C_AGEING, C_COEFFICIENT, C_SWING, C_PERIOD = range(7, 12)
+C_QUALITY_DRIFT, C_CHARGE_DRIFT, C_SOFTENING, C_FIELD_DRIFT, C_CAPACITY = range(12, 17)
+C_COOLING, C_FACE, C_FACE_LENGTH, C_EMISSIVITY, C_ROOM = range(17, 22)  # fields of `Cooling`
+C_GAIN, C_RAIL, C_CURRENT, C_SLEW, C_C0, C_LOSS = range(22, 28)
+C_MASS, C_STIFFNESS, C_DAMPING, C_PAD_MASS, C_PAD_DAMPING, C_PAD_STIFFNESS = range(28, 34)
+C_SUBSTEPS, C_STATIC, C_EXPONENT, C_REFERENCE, C_FORCE = range(34, 39)
+C_RATE, C_LATENCY, C_JITTER, C_NOISE, C_QUANTUM, C_SHARE_LOST = range(39, 45)
+C_LAG = 45  # s
+CONSTANTS = 46
 COLUMNS = (
     "time_s",
     "x_m",
@@ -294,8 +296,8 @@ def advance(
     s, n, c, rows = plant.state, plant.counts, plant.constants, plant.contact.rows
     places, plan = path
     step, row = np.int64(c[C_STEP]), np.int64(c[C_ROW])
+    drifts = Drifts(0.0, c[C_QUALITY_DRIFT], c[C_CHARGE_DRIFT], c[C_SOFTENING], c[C_FIELD_DRIFT])
     cooling = Cooling(c[C_COOLING], c[C_FACE], c[C_FACE_LENGTH], c[C_EMISSIVITY], c[C_ROOM])
-    plate = Electrical(c[C_C0], c[C_LOSS], c[C_FACTOR])
     limits = EnvelopeLimits(c[C_RAIL], c[C_CURRENT], c[C_SLEW])
     if carrier > 0:
         n[CARRIER] = carrier
@@ -311,20 +313,23 @@ def advance(
         z = complex(s[Z_RE], s[Z_IM])
         before, began = abs(z), s[FORCE]
         force = c[C_FORCE] * there[2]
-        f0 = s[RESONANCE]
+        speed = 2.0 * math.pi * s[RESONANCE] * before
+        quality, s[CHARGE], soft = changed(c[C_Q], s[WARMTH], speed, s[VOLTAGE], drifts)
+        f0 = s[RESONANCE] * soft
+        plate = Electrical(c[C_C0], c[C_LOSS], c[C_FACTOR] * s[CHARGE])
         frequency = n[CARRIER] * 1e-3 if n[CARRIER] > 0 else f0
         if level > 0 or before > 0.0:
             omega = 2.0 * math.pi * frequency
             asked = level * 1e-6 * c[C_GAIN]
             s[VOLTAGE] = voltage_given(asked, z, omega, plate, limits)
-            swing = Resonance(frequency / f0, c[C_Q], c[C_Q] / (math.pi * f0))
-            held = c[C_PER_VOLT] * s[VOLTAGE]
+            swing = Resonance(frequency / f0, quality, quality / (math.pi * f0))
+            held = c[C_PER_VOLT] * s[CHARGE] * quality / c[C_Q] * s[VOLTAGE]
             z = envelope_step(z, held, h, swing, 0.5 * (began + force), fingers)
             s[Z_RE], s[Z_IM] = z.real, z.imag
             drawn = drawn_current(s[VOLTAGE], z, omega, plate)
             s[CURRENT_A] = abs(drawn)
             # In the material and in the capacitance; what the finger takes warms the finger.
-            inside = c[C_FACTOR] / c[C_PER_VOLT] * abs(z) ** 2
+            inside = c[C_FACTOR] * c[C_Q] / (c[C_PER_VOLT] * quality) * abs(z) ** 2
             s[LOST] += 0.5 * omega * h * (inside + c[C_C0] * c[C_LOSS] * s[VOLTAGE] ** 2)
         else:
             s[VOLTAGE], s[CURRENT_A] = 0.0, 0.0

@@ -11,7 +11,12 @@ Heat leaves both faces of a horizontal plate in still air. With Ra on area over 
 - radiation ε σ (T⁴ − T_room⁴) from both.
 
 Properties of air are those at the film's temperature, by power laws through 300 K (handbooks).
-Warmth moves the resonance, in proportion, and changes nothing else of the mode.
+
+Warmth, speed and field change the mode as `changed` says. By the Rayleigh law a ceramic's
+coefficient rises in proportion to the amplitude, and its loop's area with the cube (Damjanovic and
+Demartin 1996, J. Phys. D 29(7), 2057-2060; Hall 2001, 10.1023/A:1017959111402). For the compliance
+one coefficient so gives softening and loss: tan δ = (4/3π) Δs/s and Δf/f = −Δs/2s, hence
+Δ(1/Q) = (8/3π) |Δf|/f.
 """
 
 from __future__ import annotations
@@ -32,18 +37,32 @@ _STEFAN_BOLTZMANN = 5.670374e-8
 # Of air at 300 K and 1 atm: conductivity (W/(m K)), kinematic viscosity, diffusivity (m²/s).
 _CONDUCTIVITY, _VISCOSITY, _DIFFUSIVITY = 0.0263, 15.89e-6, 22.5e-6
 _REST = 2.0 / math.pi
-_LEAST = 0.05  # of the resonance frequency, that a coefficient leaves however warm
+_LOSS_PER_SOFTENING = 8.0 / (3.0 * math.pi)
+_LEAST = 0.05  # of what a coefficient may leave of a quantity, so that none turns its sign
+_STEPS = 400
 
 
 class Driven(NamedTuple):
     """A cold mode at a voltage: resonance frequency (Hz), quality factor, amplitude (m) and
-    mechanical power (W) at that resonance, dielectric power (W)."""
+    mechanical power (W) at that resonance, dielectric power (W) and the ceramic's field (V/m)."""
 
     frequency: float
     quality: float
     amplitude: float
     mechanical: float
     dielectric: float
+    field: float
+
+
+class Drifts(NamedTuple):
+    """Relative changes: of frequency, quality factor and charge coefficient per kelvin; softening
+    per peak speed (s/m); rise of the charge coefficient per field (m/V)."""
+
+    frequency: float
+    quality: float
+    charge: float
+    softening: float
+    field: float
 
 
 @compiled()
@@ -77,32 +96,83 @@ def warmed(rise: float, power: float, duration: float, capacity: float, cooling:
 
 
 @compiled()
-def resonance(rise: float, driven: Driven, coefficient: float) -> float:
-    """The resonance frequency (Hz) of a plate that is warmer by `rise` (K), which moves it by a
-    `coefficient` (1/K)."""
-    return float(driven.frequency * max(1.0 + coefficient * rise, _LEAST))
+def changed(quality: float, rise: float, speed: float, field: float, drifts: Drifts) -> Any:
+    """A mode of a cold quality factor under warmth (K), peak speed (m/s) and field (V/m): its
+    quality factor, force per volt over the cold one, and frequency over that without speed."""
+    soft = min(drifts.softening * speed, 1.0 - _LEAST)
+    warm = quality * max(1.0 + drifts.quality * rise, _LEAST)
+    now = 1.0 / (1.0 / warm + _LOSS_PER_SOFTENING * soft)
+    gain = max(1.0 + drifts.charge * rise, _LEAST) * (1.0 + drifts.field * field)
+    return now, gain, 1.0 - soft
 
 
 @compiled()
-def lost(frequency: float, rise: float, driven: Driven, coefficient: float) -> Any:
-    """Amplitude (m) and the power lost in the plate (W) at a frequency (Hz; 0 follows the
-    resonance) and a warmth (K): of its material, which goes with A², and dielectric."""
-    f0 = resonance(rise, driven, coefficient)
-    pace = (frequency if frequency > 0.0 else f0) / driven.frequency
-    off = driven.quality * ((frequency / f0) ** 2 - 1.0) if frequency > 0.0 else 0.0
-    share = 1.0 / (1.0 + off * off)
-    power = pace * (driven.mechanical * share + driven.dielectric)
-    return driven.amplitude * math.sqrt(share), power
+def resonance(rise: float, driven: Driven, drifts: Drifts) -> float:
+    """The resonance frequency (Hz) of a plate that is warmer by `rise` (K), at a low amplitude."""
+    return float(driven.frequency * max(1.0 + drifts.frequency * rise, _LEAST))
+
+
+@compiled()
+def response(frequency: float, rise: float, moved: float, driven: Driven, drifts: Drifts) -> float:
+    """The amplitude (m) that a mode takes at a frequency (Hz; 0 follows the resonance) if its
+    changes are those of an amplitude `moved` (m)."""
+    f0 = resonance(rise, driven, drifts)
+    speed = 2.0 * math.pi * f0 * moved
+    quality, gain, soft = changed(driven.quality, rise, speed, driven.field, drifts)
+    peak = driven.amplitude * gain * quality / driven.quality
+    if frequency <= 0.0:
+        return float(peak)
+    off = quality * ((frequency / (f0 * soft)) ** 2 - 1.0)
+    return float(peak / math.sqrt(1.0 + off * off))
+
+
+@compiled()
+def amplitude(frequency: float, rise: float, driven: Driven, drifts: Drifts) -> float:
+    """The amplitude (m) at a frequency (Hz; 0 follows the resonance) and a warmth (K): the least
+    that agrees with the softening it makes, which is where a plate at rest arrives."""
+    if drifts.softening == 0.0:
+        return float(response(frequency, rise, 0.0, driven, drifts))
+    warm = max(1.0 + drifts.quality * rise, _LEAST)
+    _, gain, _ = changed(driven.quality, rise, 0.0, driven.field, drifts)
+    top = 1.001 * driven.amplitude * gain * warm
+    low, high = 0.0, top
+    for number in range(1, _STEPS + 1):
+        high = top * number / _STEPS
+        if response(frequency, rise, high, driven, drifts) < high:
+            break
+        low = high
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        if response(frequency, rise, middle, driven, drifts) < middle:
+            high = middle
+        else:
+            low = middle
+    return float(0.5 * (low + high))
+
+
+@compiled()
+def lost(frequency: float, rise: float, driven: Driven, drifts: Drifts) -> Any:
+    """Amplitude (m) and the power lost in the plate (W) at a frequency (0: at resonance) and a
+    warmth: of its material, which goes with A²/Q at a constant modal stiffness, and dielectric."""
+    moved = amplitude(frequency, rise, driven, drifts)
+    f0 = resonance(rise, driven, drifts)
+    speed = 2.0 * math.pi * f0 * moved
+    quality, _, soft = changed(driven.quality, rise, speed, driven.field, drifts)
+    pace = (frequency if frequency > 0.0 else f0 * soft) / driven.frequency
+    part = 0.0
+    if driven.amplitude > 0.0:
+        part = driven.mechanical * (moved / driven.amplitude) ** 2 * driven.quality / quality
+    return moved, pace * (part + driven.dielectric)
 
 
 @compiled()
 def surpluses(
-    rises: si.Array, frequency: float, driven: Driven, coefficient: float, cooling: Cooling
+    rises: si.Array, frequency: float, driven: Driven, drifts: Drifts, cooling: Cooling
 ) -> si.Array:
     """Power lost in the plate less what it gives away (W), at every warmth of `rises` (K)."""
     out = rises.copy()
     for i in range(rises.size):
-        _, power = lost(frequency, rises[i], driven, coefficient)
+        _, power = lost(frequency, rises[i], driven, drifts)
         out[i] = power - conductance(rises[i], cooling) * rises[i]
     return out
 
@@ -110,12 +180,12 @@ def surpluses(
 @compiled()
 def time_until(wanted: float, step: float, most: int, warm: Any) -> float:
     """Time until the amplitude has fallen to `wanted` (m), from cold (s), in steps `step` (s); −1
-    if not within `most` of them. `warm` is frequency, `Driven`, the resonance's coefficient,
-    capacity and `Cooling`."""
-    frequency, driven, coefficient, capacity, cooling = warm
+    if not within `most` of them. `warm` is frequency, `Driven`, `Drifts`, capacity and
+    `Cooling`."""
+    frequency, driven, drifts, capacity, cooling = warm
     rise, before = 0.0, -1.0
     for number in range(most):
-        moved, power = lost(frequency, rise, driven, coefficient)
+        moved, power = lost(frequency, rise, driven, drifts)
         if moved <= wanted:
             share = 0.0 if number == 0 else (before - wanted) / (before - moved)
             return step * (number - 1.0 + share) if number > 0 else 0.0
@@ -197,19 +267,32 @@ def heat_capacity(thermal: Thermal, body: ThermalBody) -> si.JoulePerKelvin:
     return thermal.thermal_time * given if math.isfinite(given) else body.heat_capacity
 
 
+def drifts_of(thermal: Thermal) -> Drifts:
+    """The coefficients as compiled code takes them."""
+    return Drifts(
+        thermal.temperature_coefficient,
+        thermal.quality_temperature_coefficient,
+        thermal.charge_temperature_coefficient,
+        thermal.rayleigh_softening,
+        thermal.rayleigh_charge,
+    )
+
+
 class WarmCase:
     """A plate at one voltage, as compiled code takes it."""
 
-    def __init__(self, source: HeatSource, thermal: Thermal, body: ThermalBody) -> None:
+    def __init__(
+        self, source: HeatSource, thermal: Thermal, body: ThermalBody, drifts: Drifts
+    ) -> None:
         self.driven = Driven(
             float(source.frequency),
             float(source.quality_factor),
             float(source.amplitude),
             float(source.mechanical_power),
             float(source.dielectric_power),
+            float(source.field or 0.0),
         )
-        self.coefficient = float(thermal.temperature_coefficient)
-        self.cooling = Cooling(*map(float, cooling_of(thermal, body)))
+        self.drifts, self.cooling = drifts, Cooling(*map(float, cooling_of(thermal, body)))
         self.capacity = float(heat_capacity(thermal, body))
 
     def states(self, frequency: float) -> tuple[WarmState, ...]:
@@ -223,7 +306,7 @@ class WarmCase:
         while top < HOTTEST and self._surplus(0.0, top) > 0:
             top = min(1.5 * top, HOTTEST)
         grid = top * np.linspace(0, 1, _GRID) ** 2
-        left = surpluses(grid, frequency, self.driven, self.coefficient, self.cooling)
+        left = surpluses(grid, frequency, self.driven, self.drifts, self.cooling)
         stable = np.flatnonzero((left[:-1] > 0) & (left[1:] <= 0))
         if left[0] <= 0:
             return (self._state(frequency, 0.0),)
@@ -239,19 +322,18 @@ class WarmCase:
         """Time at which a tenth of the cold amplitude is gone (s)."""
         if not (cold > 0 and time > 0):
             return None
-        warm = (float(frequency), self.driven, self.coefficient, self.capacity, self.cooling)
+        warm = (float(frequency), self.driven, self.drifts, self.capacity, self.cooling)
         steps = 20 * _STEPS_OF_A_TIME_CONSTANT
         time_taken = time_until(_FALLEN * cold, time / _STEPS_OF_A_TIME_CONSTANT, steps, warm)
         return None if time_taken < 0 else float(time_taken)
 
     def _surplus(self, frequency: float, rise: float) -> float:
         rises = np.array([rise])
-        left = surpluses(rises, frequency, self.driven, self.coefficient, self.cooling)
-        return float(left[0])
+        return float(surpluses(rises, frequency, self.driven, self.drifts, self.cooling)[0])
 
     def _state(self, frequency: float, rise: si.Kelvin) -> WarmState:
-        moved, power = lost(frequency, rise, self.driven, self.coefficient)
-        drift = resonance(rise, self.driven, self.coefficient) - self.driven.frequency
+        moved, power = lost(frequency, rise, self.driven, self.drifts)
+        drift = resonance(rise, self.driven, self.drifts) - self.driven.frequency
         return WarmState(rise, drift, moved, power)
 
 
@@ -261,12 +343,12 @@ def warmth_ranges(
     """The least and the most that the tracked state is warm and has drifted over assumed ranges;
     no range of the warmth with a measured resistance or a known emissivity."""
     is_known = thermal.thermal_resistance is not None or thermal.emissivity is not None
-    states = []
+    nominal, states = drifts_of(thermal), []
     for emissivity in (thermal.emissivity,) if is_known else EMISSIVITIES:
+        changed = replace(thermal, emissivity=emissivity)
         for share in COEFFICIENT_SHARES:
-            case = WarmCase(source, replace(thermal, emissivity=emissivity), body)
-            case.coefficient *= share
-            states.append(case.states(0.0)[0])
+            shifted = nominal._replace(frequency=share * nominal.frequency)
+            states.append(WarmCase(source, changed, body, shifted).states(0.0)[0])
     rises, drifts = (
         sorted(getattr(state, name) for state in states)
         for name in ("temperature_rise", "resonance_drift")

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, TypeVar
 
 from squeezefilm.core import hard_limits as hard
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import GeometryError
+from squeezefilm.core.errors import GeometryError, InputError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.physics.plate.round_layout import AnnularStator, DiscPlate, GlueLayer
 
@@ -30,7 +30,7 @@ _M = si.Unit("m")
 
 
 Face = Literal["bottom", "top"]
-Electrode = Literal["driven", "shorted", "open"]
+Electrode = Literal["driven", "shorted", "open", "shunted"]
 Edge = Literal["left", "right", "front", "back"]
 
 
@@ -41,8 +41,8 @@ class CeramicPatch:
 
     `x` and `y` are the distances of its near edges from the plate's corner. The bonded side is
     grounded; `electrode` says what happens to the outer side: driven (with `polarity` as sign),
-    shorted to ground, or open. `poling` is +1 where the ceramic is poled away from the plate; like
-    polarity it turns the sign of the response.
+    shorted to ground, open, or shunted to ground by `shunt_resistance`. `poling` is +1 where the
+    ceramic is poled away from the plate; like polarity it turns the sign of the response.
     """
 
     x: Annotated[si.Metre, hard.PLACE]
@@ -54,6 +54,15 @@ class CeramicPatch:
     face: Face = "bottom"
     electrode: Electrode = "driven"
     poling: Literal[1, -1] = 1
+    shunt_resistance: Annotated[si.Ohm, hard.RESISTANCE] | None = None
+
+    def __post_init__(self) -> None:
+        if (self.electrode == "shunted") != (self.shunt_resistance is not None):
+            raise InputError(
+                f"electrode = '{self.electrode}' and shunt_resistance do not go together; a "
+                "shunted electrode needs one, the others have none",
+                quantity="shunt_resistance",
+            )
 
     @property
     def drive_sign(self) -> int:

@@ -22,7 +22,7 @@ STATOR_THICKNESS: si.Metre = 4e-3
 @si.checked_numbers
 @dataclass(frozen=True)
 class Thermal:
-    """Thermal description of a plate: how it warms and what warmth does to it.
+    """Thermal description of a plate: how it warms and what warmth, speed and field do to it.
 
     Args:
         thermal_resistance: warmth per power lost in the plate (K/W), where it was measured; None
@@ -33,7 +33,16 @@ class Thermal:
             0.1. Used where the resistance is computed; None is not known, and 0.5 is assumed.
         ambient_temperature: of the room (K).
         temperature_coefficient: of the resonance frequency, relative (1/K).
+        charge_temperature_coefficient: of the ceramic's charge coefficient, relative (1/K); 0 is
+            "not known".
+        quality_temperature_coefficient: of the quality factor, relative (1/K); 0 is "not known".
+        rayleigh_softening: relative fall of the resonance frequency per peak speed of the surface
+            (s/m), by the Rayleigh law; its loss follows. 0, not measured, is off.
+        rayleigh_charge: relative rise of the charge coefficient per peak field (m/V), by the
+            Rayleigh law. 0, not measured, is off.
         coercive_field: of the ceramic (V/m); a third of it is warned of.
+        highest_speed: of the surface, r.m.s. (m/s), that is warned of; None takes 0.3 m/s of a hard
+            ceramic (Q of 200 and more) and 0.1 m/s of a soft one.
 
     Raises:
         InputError: a value outside its range.
@@ -44,7 +53,12 @@ class Thermal:
     emissivity: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] | None = None
     ambient_temperature: Annotated[si.AbsoluteKelvin, si.AtLeast(230.0), si.AtMost(350.0)] = 293.15
     temperature_coefficient: Annotated[si.PerKelvin, si.Above(-1e-2), si.Below(1e-2)] = -1e-4
+    charge_temperature_coefficient: Annotated[si.PerKelvin, si.Above(-1e-1), si.Below(1e-1)] = 0.0
+    quality_temperature_coefficient: Annotated[si.PerKelvin, si.Above(-1e-1), si.Below(1e-1)] = 0.0
+    rayleigh_softening: Annotated[si.SecondPerMetre, si.AtLeast(0.0), si.AtMost(1.0)] = 0.0
+    rayleigh_charge: Annotated[si.MetrePerVolt, si.AtLeast(0.0), si.AtMost(1e-3)] = 0.0
     coercive_field: Annotated[si.VoltPerMetre, si.Above(0.0), si.AtMost(1e9)] = 1e6
+    highest_speed: Annotated[si.MetrePerSecond, si.Above(0.0), si.AtMost(1e3)] | None = None
 
 
 class Cooling(NamedTuple):

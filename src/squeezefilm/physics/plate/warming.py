@@ -20,6 +20,7 @@ from squeezefilm.physics.plate.heat_states import (
     WarmCase,
     WarmState,
     conductance,
+    drifts_of,
     lost,
     warmth_ranges,
 )
@@ -127,13 +128,13 @@ def warming(
     """
     thermal = Thermal() if thermal is None else thermal
     body, fixed = thermal_body(actuator), source.frequency if frequency is None else frequency
-    case = WarmCase(source, thermal, body)
+    case = WarmCase(source, thermal, body, drifts_of(thermal))
     tracked = case.states(0.0)[0]
     states = case.states(fixed)
     given = conductance(tracked.temperature_rise, case.cooling)
     resistance = 1 / given
     time = case.capacity * resistance if resistance else 0.0
-    cold, power = lost(fixed, 0.0, case.driven, case.coefficient)
+    cold, power = lost(fixed, 0.0, case.driven, case.drifts)
     warming = Warming(
         frequency=fixed,
         half_bandwidth=source.frequency / (2 * source.quality_factor),
@@ -196,8 +197,10 @@ def _assumed(thermal: Thermal, body: ThermalBody) -> tuple[str, ...]:
     if thermal.thermal_time is None:
         said += body.assumed
     said.append(f"a temperature coefficient of {thermal.temperature_coefficient:g} per K")
-    said.append("charge coefficient and quality factor that do not depend on temperature")
-    said.append("a ceramic that is linear (not measured)")
+    if thermal.charge_temperature_coefficient == thermal.quality_temperature_coefficient == 0:
+        said.append("charge coefficient and quality factor that do not depend on temperature")
+    if thermal.rayleigh_softening == thermal.rayleigh_charge == 0:
+        said.append("a ceramic that is linear (not measured)")
     return tuple(said)
 
 
@@ -241,8 +244,8 @@ def _doubts(warm: Warming, source: HeatSource, thermal: Thermal) -> list[str]:
     if (sentence := too_hot(warm)) is not None:
         said.append(sentence)
     hard = source.quality_of_ceramic is None or source.quality_of_ceramic >= HARD_QUALITY
-    most = HARD_SPEED if hard else SOFT_SPEED
-    if warm.speed > most:
+    most = thermal.highest_speed or (HARD_SPEED if hard else SOFT_SPEED)
+    if warm.speed > most and thermal.rayleigh_softening == 0:
         said.append(
             f"the surface moves at {warm.speed:.2g} m/s (r.m.s.), more than the {most:g} m/s at "
             f"which {'hard' if hard else 'soft'} ceramics begin to lose more and level off; the "

@@ -53,6 +53,7 @@ FILES: tuple[type[Any], ...] = (
 
 # Where values depend on one another, and no file that comes with the package has them.
 TOGETHER: dict[str, dict[str, Any]] = {
+    "CeramicPatch": {"electrode": "shunted", "shunt_resistance": 1e3},
     "Measured": {"voltage": 15.0},
     "CeramicBar": {"length": 25e-3, "width": 3e-3, "thickness": 1e-3},
     "Image": {"values": ((0.25, 1.0), (0.0, 0.5))},

@@ -42,7 +42,7 @@ def test_ceramics_of_one_size_are_one_row() -> None:
     ]
 
 
-def test_foam_and_glue_are_on_it() -> None:
+def test_foam_glue_and_resistors_are_on_it() -> None:
     plate = sf.load_display("touchpad-glass").actuator
     assert isinstance(plate, RectangularPlate)
     rows = {(one.what, one.size): one for one in bill(plate)}
@@ -50,6 +50,9 @@ def test_foam_and_glue_are_on_it() -> None:
     assert rows["Support", "1 × 58 × 0.5 mm"].count == 2
     (glue,) = (one for one in rows.values() if one.what == "Glue")
     assert glue.size == "1000 mm² × 0.02 mm"
+    shunted = dataclasses.replace(plate.patches[1], electrode="shunted", shunt_resistance=470.0)
+    with_one = dataclasses.replace(plate, patches=(plate.patches[0], shunted))
+    assert [one.size for one in bill(with_one) if one.what == "Shunt resistor"] == ["470 ohm"]
 
 
 def test_what_holds_an_edge_is_on_it() -> None:

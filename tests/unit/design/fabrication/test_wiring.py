@@ -30,16 +30,18 @@ def test_polarity_is_the_group() -> None:
 
 def test_electrodes_that_are_not_driven_have_their_own_way() -> None:
     whole = plate()
-    changes = ({"electrode": "shorted"}, {"electrode": "open"}, {"poling": 1}, {"poling": -1})
+    changes = ({"electrode": "shorted"}, {"electrode": "open"},
+               {"electrode": "shunted", "shunt_resistance": 1e3}, {"poling": -1})  # fmt: skip
     patches = [
         dataclasses.replace(one, **change)
         for one, change in zip(whole.patches[:4], changes, strict=True)
     ]
     found = electrodes_of(dataclasses.replace(whole, patches=(*patches, *whole.patches[4:])))
-    assert [one.connection for one in found[:4]] == ["ground", "open", "A", "B"]
+    assert [one.connection for one in found[:4]] == ["ground", "open", "shunt 1", "B"]
     assert found[3].poling == -1
     ends = {one.name: one.to for one in leads_of(found)}
     assert "open" not in ends
+    assert ends["shunt 1"] == "ground through 1000 ohm"
     assert "Open electrodes are joined to nothing." in wiring_said(found)
 
 

@@ -59,7 +59,8 @@ def bench(
     named: dict[str, float] = {
         "STEP": STEP, "ROW": 100, "SEED": 9, "F0": 40e3, "Q": 60.0, "PER_VOLT": 2e-8,
         "FACTOR": 0.3, "OFFSET": 0.0, "AGEING": 0.0, "COEFFICIENT": 0.0, "SWING": 0.0,
-        "PERIOD": 80_000_000, "CAPACITY": 1.0, "COOLING": math.inf, "FACE": 4e-3,
+        "PERIOD": 80_000_000, "QUALITY_DRIFT": 0.0, "CHARGE_DRIFT": 0.0, "SOFTENING": 0.0,
+        "FIELD_DRIFT": 0.0, "CAPACITY": 1.0, "COOLING": math.inf, "FACE": 4e-3,
         "FACE_LENGTH": 15e-3, "EMISSIVITY": 0.5, "ROOM": 293.15, "GAIN": 1.0, "RAIL": 100.0,
         "CURRENT": 10.0, "SLEW": 1e9, "C0": 20e-9, "LOSS": 0.02, "MASS": 0.05,
         "STIFFNESS": 800.0, "DAMPING": 6.0, "PAD_MASS": 0.2e-3, "PAD_DAMPING": 1.0,

@@ -39,7 +39,7 @@ def test_bodies_are_drawn_from_their_sizes() -> None:
     assert found == {"kind": "plate", **sizes}
     strip = {
         "x_m": 0.0, "length_m": 0.1, "width_m": 5e-3, "thickness_m": 0.5e-3, "face": "bottom",
-        "electrode": "driven", "poling": 1,
+        "electrode": "driven", "poling": 1, "shunt_resistance_ohm": None,
     }  # fmt: skip
     assert patches == [
         {**strip, "y_m": 0.0, "polarity": 1}, {**strip, "y_m": 0.055, "polarity": -1},

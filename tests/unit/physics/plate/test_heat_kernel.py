@@ -10,7 +10,8 @@ from scipy.integrate import solve_ivp
 from squeezefilm.physics.plate import heat_states as k
 from squeezefilm.physics.plate.thermal import Cooling
 
-DRIVEN = k.Driven(30e3, 60.0, 2e-6, 5.0, 0.1)
+LINEAR = k.Drifts(0.0, 0.0, 0.0, 0.0, 0.0)
+DRIVEN = k.Driven(30e3, 60.0, 2e-6, 5.0, 0.1, 1e4)
 
 
 def plate(emissivity: float = 0.0, length: float = 15e-3) -> Cooling:
@@ -74,23 +75,64 @@ def test_warming_with_a_computed_conductance_converges_to_scipy_in_first_order()
     assert order == pytest.approx(1.0, abs=0.1)
 
 
+def test_the_rayleigh_law_ties_loss_to_softening() -> None:
+    # Strain over a loop of stress X0: (s0 + a X0) X ± a/2 (X0² − X²), + on the way down.
+    s0, a, top = 1.0, 0.05, 1.0
+    x = np.linspace(-top, top, 20_001)
+    up = (s0 + a * top) * x - a / 2 * (top**2 - x**2)
+    down = (s0 + a * top) * x + a / 2 * (top**2 - x**2)
+    area = np.trapezoid(down - up, x)
+    stored = 0.5 * s0 * top**2
+    loss = area / (2 * math.pi * stored)  # per softening, to first order
+    softening = 0.5 * a * top / s0
+    drifts = LINEAR._replace(softening=1e-3)
+    quality, gain, soft = k.changed(60.0, 0.0, 2.0, 0.0, drifts)
+    assert soft == pytest.approx(1 - 2e-3)
+    assert 1 / quality - 1 / 60 == pytest.approx(loss / softening * 2e-3, rel=1e-6)
+    assert gain == 1
+
+
+def test_coefficients_of_warmth_and_field_change_what_they_say() -> None:
+    drifts = k.Drifts(-1e-4, 2e-3, -1e-3, 0.0, 1e-6)
+    quality, gain, soft = k.changed(60.0, 50.0, 1.0, 2e4, drifts)
+    assert (quality, soft) == (pytest.approx(66.0), 1.0)
+    assert gain == pytest.approx(0.95 * 1.02)
+    # None turns a sign, however hot.
+    quality, gain, _ = k.changed(60.0, 1e4, 1.0, 0.0, k.Drifts(0, -1e-2, -1e-2, 0, 0))
+    assert quality > 0
+    assert gain > 0
+
+
 def test_power_goes_with_the_square_of_the_amplitude_over_q() -> None:
-    at_rest = k.lost(0.0, 0.0, DRIVEN, 0.0)
+    at_rest = k.lost(0.0, 0.0, DRIVEN, LINEAR)
     assert at_rest == (2e-6, pytest.approx(5.1))
     detuned = 30e3 * (1 + 1 / 120)
-    moved, power = k.lost(detuned, 0.0, DRIVEN, 0.0)
+    moved, power = k.lost(detuned, 0.0, DRIVEN, LINEAR)
     off = 60 * ((detuned / 30e3) ** 2 - 1)
     assert moved == pytest.approx(2e-6 / math.sqrt(1 + off**2), rel=1e-12)
     pace = detuned / 30e3
     assert power == pytest.approx(pace * (5.0 / (1 + off**2) + 0.1), rel=1e-12)
+    # A warmer plate with a lower Q: amplitude goes with Q, power at resonance too.
+    moved, power = k.lost(0.0, 10.0, DRIVEN, LINEAR._replace(quality=-1e-2))
+    assert (moved, power) == (pytest.approx(1.8e-6), pytest.approx(4.6))
+
+
+def test_a_softening_mode_settles_where_amplitude_and_resonance_agree() -> None:
+    soft = LINEAR._replace(softening=0.05)
+    for frequency in (0.0, 29e3, 29.8e3, 30e3):
+        moved = k.amplitude(frequency, 0.0, DRIVEN, soft)
+        again = k.response(frequency, 0.0, moved, DRIVEN, soft)
+        assert again == pytest.approx(moved, rel=1e-3)
+        assert moved <= 2e-6
+    assert k.amplitude(0.0, 0.0, DRIVEN, soft) < k.amplitude(0.0, 0.0, DRIVEN, LINEAR)
 
 
 def test_the_time_to_fall_is_the_linear_one_where_power_hardly_changes() -> None:
     # A plate whose dielectric loss alone warms it: θ = P R (1 − exp(−t/τ)).
     driven = DRIVEN._replace(mechanical=0.0, dielectric=5.0)
-    fixed = plate()._replace(fixed=0.1)
+    drifts, fixed = LINEAR._replace(frequency=-1e-4), plate()._replace(fixed=0.1)
     resistance, tau = 10.0, 400.0
-    warm: Any = (30e3, driven, -1e-4, 40.0, fixed)
+    warm: Any = (30e3, driven, drifts, 40.0, fixed)
     found = k.time_until(0.9 * 2e-6, 0.2, 40_000, warm)
     off = math.sqrt(1 / 0.81 - 1) / 60
     rise = (1 - 1 / math.sqrt(1 + off)) / 1e-4
@@ -102,6 +144,6 @@ def test_the_time_to_fall_is_the_linear_one_where_power_hardly_changes() -> None
 def test_surpluses_are_power_less_what_is_given_away() -> None:
     cooling = plate(0.5)
     rises = np.array([0.0, 20.0, 80.0])
-    found = k.surpluses(rises, 30e3, DRIVEN, 0.0, cooling)
+    found = k.surpluses(rises, 30e3, DRIVEN, LINEAR, cooling)
     given = [k.conductance(float(one), cooling) * one for one in rises]
     np.testing.assert_allclose(found, 5.1 - np.array(given), rtol=1e-12)

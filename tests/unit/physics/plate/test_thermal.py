@@ -60,6 +60,7 @@ def test_a_disc_and_a_stator_have_theirs() -> None:
         {"thermal_time": 0.0},
         {"emissivity": 1.1},
         {"temperature_coefficient": -0.1},
+        {"rayleigh_softening": -1e-3},
         {"coercive_field": 0.0},
     ],
 )

@@ -14,6 +14,7 @@ from squeezefilm.physics.plate.heat_states import (
     HeatSource,
     conductance,
     cooling_of,
+    drifts_of,
     heat_capacity,
 )
 from squeezefilm.physics.plate.layout import RectangularPlate
@@ -133,13 +134,26 @@ def test_what_is_doubtful_is_said_and_only_that() -> None:
     assert "m/s" not in said  # 0.25 m/s is little for a hard ceramic
     mild = dataclasses.replace(SOURCE, mechanical_power=0.1, amplitude=0.2e-6)
     assert warming(mild, PLATE).doubts == ()
+    # Whoever measured what strong vibration does is not warned of it.
+    known = dataclasses.replace(MEASURED, rayleigh_softening=1e-3)
+    assert "soft ceramics" not in " ".join(warming(SOURCE, PLATE, known).doubts)
+    # Nor is whoever states a limit that it keeps.
+    fast = dataclasses.replace(MEASURED, highest_speed=2.0)
+    assert "m/s" not in " ".join(warming(SOURCE, PLATE, fast).doubts)
+    slow = dataclasses.replace(MEASURED, highest_speed=0.2)
+    assert "0.2 m/s" in " ".join(warming(SOURCE, PLATE, slow).doubts)
 
 
 def test_what_is_assumed_is_said() -> None:
     said = " ".join(warming(SOURCE, PLATE).assumed)
     for words in ("still air", "emissivity of 0.5", "-0.0001 per K", "linear"):
         assert words in said
-    assert "temperature coefficient" in warming(SOURCE, PLATE, MEASURED).assumed[0]
+    measured = dataclasses.replace(
+        MEASURED, charge_temperature_coefficient=1e-3, rayleigh_softening=1e-3
+    )
+    (only,) = warming(SOURCE, PLATE, measured).assumed
+    assert "temperature coefficient" in only
+    assert drifts_of(measured) == (-1e-4, 0.0, 1e-3, 1e-3, 0.0)
 
 
 def test_a_time_constant_alone_sets_the_capacity_of_a_plate_20_k_warm() -> None:
@@ -178,9 +192,12 @@ def test_a_source_knows_the_ceramics_field_and_capacitance() -> None:
 def test_a_plate_that_would_drift_to_no_frequency_at_all_keeps_some() -> None:
     """A coefficient stands for some tens of kelvin: beyond, it leaves a twentieth."""
     steep = dataclasses.replace(MEASURED, thermal_resistance=1e3, temperature_coefficient=-9e-3)
-    found = warming(SOURCE, PLATE, steep)
-    assert found.tracked.resonance_drift >= -0.95 * SOURCE.frequency * (1 + 1e-12)
-    assert found.tracked.temperature_rise > 0
+    for gain in (0.0, 5e-2):
+        found = warming(
+            SOURCE, PLATE, dataclasses.replace(steep, quality_temperature_coefficient=gain)
+        )
+        assert found.tracked.resonance_drift >= -0.95 * SOURCE.frequency * (1 + 1e-12)
+        assert found.tracked.temperature_rise > 0
 
 
 def test_the_ranges_are_those_of_the_assumed_emissivity_and_coefficient() -> None:

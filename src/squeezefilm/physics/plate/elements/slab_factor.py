@@ -121,7 +121,7 @@ class SlabFactor:
             places = self._ends(e)
             places = np.where(places < here.stop, places - here.start, places - after.start + n)
             size = n + after.stop - after.start
-            S = np.zeros((size, size))
+            S = np.zeros((size, size), dtype=left[e].dtype)
             S[np.ix_(places, places)] = left[e]
             held = np.flatnonzero(np.concatenate([slabs.held[here], slabs.held[after]]))
             S[held, :] = S[:, held] = 0

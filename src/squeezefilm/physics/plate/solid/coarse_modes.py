@@ -1,7 +1,7 @@
 """The first of two meshes: it finds the modes near a frequency or in a band and names them.
 
-Open electrodes and open terminals are a few bordered solves with the factorisation that has them
-shorted.
+Open electrodes, open terminals and resistors at electrodes are a few bordered solves with the
+factorisation that has them shorted.
 """
 
 from __future__ import annotations
@@ -10,9 +10,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import eig
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError
+from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.core.hard_limits import BAND_MODES, require_within
 from squeezefilm.physics.plate.elements.krylov import modes_below, modes_near, with_open_electrodes
 from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
@@ -20,6 +21,7 @@ from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.layers import COARSE
 from squeezefilm.physics.plate.solid.mesh import plate_model
 from squeezefilm.physics.plate.solid.modes import Label, label_of, surface_shapes
+from squeezefilm.physics.plate.solid.reduced import plate_circuit
 from squeezefilm.physics.plate.solid.symmetry import PlateModel, Symmetry, drive_signs
 
 _HARDLY = 1e-9
@@ -89,6 +91,64 @@ def open_values(
     )
     out[moved] = np.maximum(pairs.values, values[moved])
     return out
+
+
+def shunted_frequencies(
+    solved: PlateModel, factor: SlabFactor, values: si.FloatArray, vectors: si.FloatArray
+) -> si.ComplexArray:
+    """Complex ω (rad/s, time factor e^{iωt}) of modes with their electrodes' resistors at work.
+
+    `values` and `vectors` (unit modal mass of the model) are those with shunts short. A resistor R
+    at an electrode of charge q and capacitance C adds iωR/(1 + iωRC) times the square of the
+    electrode's force to the stiffness: nothing for R → 0, that of an open electrode for R → ∞. The
+    eigenproblem, nonlinear in ω, is solved by iteration on the space of these modes and of the
+    static answers to the electrodes. Raises `ConvergenceError` where that does not settle.
+    """
+    omega = np.sqrt(values).astype(complex)
+    circuit = [resistor for resistor in plate_circuit(solved) if np.isfinite(resistor[1])]
+    if not circuit or values.size == 0:
+        return omega
+    slabs = solved.slabs
+    number = [resistor[0] for resistor in circuit]
+    weight = np.array([resistance * share for _, resistance, share in circuit])
+    G, C = slabs.electrode_columns
+    G, C = G[:, number], C[np.ix_(number, number)]
+    opened = _floating(solved)
+    solve = inverse_with_open(solved, factor)
+    answer = solve(G / np.max(np.abs(G)))
+    more = solve(slabs.mass_times(answer))
+    X = np.concatenate([vectors, answer, more, solve(slabs.mass_times(more))], axis=1)
+    X = X / np.sqrt(np.maximum(np.sum(X * slabs.mass_times(X), axis=0), 1e-300))
+    M = X.T @ slabs.mass_times(X)
+    size, turn = np.linalg.eigh((M + M.T) / 2)
+    X = X @ (turn[:, size > 1e-10] / np.sqrt(size[size > 1e-10]))
+    K = X.T @ slabs.stiffness_times(X)
+    if opened.size:
+        Go, Co = slabs.electrode_columns
+        force = X.T @ (Go @ opened)
+        K = K - force @ np.linalg.solve(opened.T @ Co @ opened, force.T)
+    force, start = X.T @ G, X.T @ slabs.mass_times(vectors)
+    for mode in range(values.size):
+        shape = start[:, mode].astype(complex)
+        for _ in range(60):
+            scale = 1j * omega[mode] * weight
+            stiffer = np.linalg.solve(
+                np.eye(weight.size) - scale[:, None] * C, scale[:, None] * force.T
+            )
+            squares, shapes = eig(K + force @ stiffer)
+            likeness = np.abs(shape.conj() @ shapes) / np.linalg.norm(shapes, axis=0)
+            best = int(np.argmax(likeness))
+            before, omega[mode] = omega[mode], np.sqrt(squares[best])
+            shape = shapes[:, best]
+            if abs(omega[mode] - before) <= 1e-10 * abs(before):
+                break
+        else:
+            raise ConvergenceError(
+                "the frequency of a mode with shunted electrodes did not settle; its mode passes "
+                "into another one, ask with the electrodes open or shorted",
+                iterations=60,
+            )
+    return omega
 
 
 @dataclass(frozen=True, eq=False)

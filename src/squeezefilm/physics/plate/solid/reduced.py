@@ -2,7 +2,7 @@
 
 The coordinates of a class of symmetry are a Krylov space of (K − σM)⁻¹ started from the forces at
 work: the modes near the band, and what the modes left out add quasi-statically, in one. Losses and
-open electrodes are projected on it.
+circuits are projected on it.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ class ReducedClass:
     """A class of symmetry, reduced: `basis` (unknowns × coordinates), mass, stiffness, loss
     (mechanical and of supports) and electrode matrices, of the whole plate.
 
-    `drive` is the potential of each model electrode per volt of the drive, `opened` the numbers of
-    those that are open.
+    `drive` is the potential of each model electrode per volt of the drive; `circuit` lists the
+    electrodes (number, Ω, share) that are open (infinite) or shunted.
     """
 
     solved: PlateModel
@@ -40,7 +40,7 @@ class ReducedClass:
     coupling: si.FloatArray
     capacitance: si.FloatArray
     drive: si.FloatArray
-    opened: tuple[int, ...]
+    circuit: tuple[tuple[int, float, float], ...]
 
 
 def class_drive(solved: PlateModel) -> si.FloatArray:
@@ -59,14 +59,17 @@ def resolved_frequency(band: tuple[si.Hertz, si.Hertz]) -> si.Hertz:
     return max(band[1], 1.15 * sum(band) / 2)
 
 
-def open_electrodes(solved: PlateModel) -> tuple[int, ...]:
-    """The model electrodes of a class that are open."""
-    numbers = [
-        solved.electrode_of[i]
-        for i, patch in enumerate(solved.plate.patches)
-        if patch.electrode == "open" and solved.share_of[i] != 0
-    ]
-    return tuple(dict.fromkeys(numbers))
+def plate_circuit(solved: PlateModel) -> tuple[tuple[int, float, float], ...]:
+    """Open and shunted electrodes of a class: model electrode, resistance (Ω, infinite if open) and
+    how many times the model's part of the ceramic makes a whole one."""
+    out: dict[int, tuple[int, float, float]] = {}
+    for i, patch in enumerate(solved.plate.patches):
+        share = solved.share_of[i]
+        if patch.electrode not in ("open", "shunted") or share == 0:
+            continue
+        resistance = np.inf if patch.shunt_resistance is None else patch.shunt_resistance
+        out[solved.electrode_of[i]] = (solved.electrode_of[i], resistance, share)
+    return tuple(out.values())
 
 
 def reduced_class(
@@ -100,9 +103,9 @@ def reduced_model(
     put into the space first: the steps are then left to the others."""
     slabs, plate = solved.slabs, solved.plate
     G, C = slabs.electrode_columns
-    drive, opened = class_drive(solved), open_electrodes(solved)
+    drive, circuit = class_drive(solved), plate_circuit(solved)
     columns = [G @ drive] if np.any(drive) else []
-    columns += [G[:, number] for number in opened]
+    columns += [G[:, number] for number, _, _ in circuit]
     columns += [solved.force(x, y, plate.thickness, w) for x, y, w in loads]
     basis = _krylov_space(slabs, factor, np.stack(columns, axis=1), steps, modes)
     sections = slabs.weighted_sections(lambda m: (m.loss or 0.0, 0.0), slabs.model.spring_losses)
@@ -118,7 +121,7 @@ def reduced_model(
         n * basis.T @ G,
         n * C,
         drive,
-        opened,
+        circuit,
     )
 
 
@@ -172,31 +175,31 @@ def harmonic_solution(
 ) -> tuple[si.ComplexArray, list[si.ComplexArray], si.ComplexArray]:
     """Coordinates (frequencies × coordinates), electrode potentials of each class (frequencies ×
     electrodes) and the charge at the drive's terminals, per volt at angular frequencies `omega`."""
-    places = class_slices(parts)
-    total, extra = places[-1].stop, sum(len(reduced.opened) for reduced in parts)
-    A = np.zeros((omega.size, total + extra, total + extra), dtype=complex)
-    b = np.zeros((omega.size, total + extra), dtype=complex)
-    row, w2 = total, (omega**2)[:, None, None]
-    for reduced, at in zip(parts, places, strict=True):
-        A[:, at, at] = reduced.stiffness + 1j * reduced.loss - w2 * reduced.mass
-        b[:, at] = -(reduced.coupling @ reduced.drive)
-        # Charge = −(Gᵀx + C V), of which an open electrode has none.
-        opened, held = list(reduced.opened), reduced.capacitance @ reduced.drive
-        rows = slice(row, row + len(opened))
-        A[:, at, rows], A[:, rows, at] = reduced.coupling[:, opened], reduced.coupling[:, opened].T
-        A[:, rows, rows] = reduced.capacitance[np.ix_(opened, opened)]
-        b[:, rows] = -held[opened]
-        row = rows.stop
-    # Rows of charge are in farads, the others in newtons: bring them to one size.
-    scale_rows = np.max(np.abs(A), axis=2, keepdims=True)
-    solution = np.linalg.solve(A / scale_rows, (b / scale_rows[:, :, 0])[:, :, None])[:, :, 0]
-    potentials, charge = [], np.zeros(omega.size, dtype=complex)
-    row = total
-    for reduced, at in zip(parts, places, strict=True):
-        V = np.broadcast_to(reduced.drive, (omega.size, reduced.drive.size)).astype(complex)
-        rows = slice(row, row + len(reduced.opened))
-        V[:, list(reduced.opened)] = solution[:, rows]
-        row = rows.stop
-        charge -= (solution[:, at] @ reduced.coupling + V @ reduced.capacitance) @ reduced.drive
+    coordinates, potentials, charge = [], [], np.zeros(omega.size, dtype=complex)
+    for part in parts:
+        numbers = [number for number, _, _ in part.circuit]
+        resistance = np.array([resistor for _, resistor, _ in part.circuit])
+        is_open, held = np.isinf(resistance), part.capacitance @ part.drive
+        # Charge = −(Gᵀx + C V); a shunt draws V = −iωR · charge, an open electrode none. Matrices
+        # are of the whole plate; one patch carries a part of them.
+        shares = np.array([share for _, _, share in part.circuit]) / part.solved.copies
+        per_charge = 1j * np.outer(omega, np.where(is_open, 0.0, resistance) * shares)
+        per_charge[:, is_open] = 1.0
+        n = part.mass.shape[0]
+        A = np.zeros((omega.size, n + len(numbers), n + len(numbers)), dtype=complex)
+        A[:, :n, :n] = part.stiffness + 1j * part.loss - omega[:, None, None] ** 2 * part.mass
+        A[:, :n, n:] = part.coupling[:, numbers]
+        A[:, n:, :n] = per_charge[:, :, None] * part.coupling[:, numbers].T
+        A[:, n:, n:] = per_charge[:, :, None] * part.capacitance[np.ix_(numbers, numbers)]
+        A[:, n:, n:] -= np.diag(np.where(is_open, 0.0, 1.0))
+        b = np.empty((omega.size, n + len(numbers)), dtype=complex)
+        b[:, :n], b[:, n:] = -(part.coupling @ part.drive), -per_charge * held[numbers]
+        # Circuit rows are in farads, the others in newtons: bring them to one size.
+        scale = np.max(np.abs(A), axis=2)
+        solution = np.linalg.solve(A / scale[:, :, None], (b / scale)[:, :, None])[:, :, 0]
+        V = np.tile(part.drive.astype(complex), (omega.size, 1))
+        V[:, numbers] = solution[:, n:]
+        charge -= (solution[:, :n] @ part.coupling + V @ part.capacitance) @ part.drive
+        coordinates.append(solution[:, :n])
         potentials.append(V)
-    return solution[:, :total], potentials, charge
+    return np.concatenate(coordinates, axis=1), potentials, charge

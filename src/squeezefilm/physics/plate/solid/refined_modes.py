@@ -18,6 +18,7 @@ from squeezefilm.physics.plate.solid.coarse_modes import (
     CoarseModes,
     inverse_with_open,
     open_values,
+    shunted_frequencies,
 )
 from squeezefilm.physics.plate.solid.forecast import expected_seconds
 from squeezefilm.physics.plate.solid.layers import COARSE, FINE, NORMAL, Resolution
@@ -52,8 +53,8 @@ _SAME = 1e-5
 @dataclass(frozen=True, eq=False)
 class RefinedModes:
     """The refined modes of one class: ω² on the finer mesh and on the one before it, with the
-    drive's terminals short (`values`) and open (`open_values`). The `factor` of the mesh is kept
-    for those who go on with it only."""
+    drive's terminals short (`values`) and open (`open_values`); `shunted` is the complex ω with
+    resistors at work. The `factor` of the mesh is kept for those who go on with it only."""
 
     found: CoarseModes
     index: si.IntArray
@@ -65,6 +66,7 @@ class RefinedModes:
     vectors: si.FloatArray
     level: int
     factor: SlabFactor | None
+    shunted: si.ComplexArray
 
 
 def refined_modes(
@@ -97,6 +99,7 @@ def refined_modes(
         vectors=vectors,
         level=UNREFINED,
         factor=coarse.factor,
+        shunted=np.sqrt(values).astype(complex),
     )
     for level, resolution in enumerate(LEVELS):
         try:
@@ -114,7 +117,9 @@ def refined_modes(
         worst = np.max(error / (np.sqrt(piece.values) / (2 * np.pi)))
         if worst <= tolerance:
             break
-    return piece if keep_factor else dataclasses.replace(piece, factor=None)
+    assert piece.factor is not None
+    shunted = shunted_frequencies(piece.solved, piece.factor, piece.values, piece.vectors)
+    return dataclasses.replace(piece, factor=piece.factor if keep_factor else None, shunted=shunted)
 
 
 def _finer(piece: RefinedModes, finer: PlateModel, level: int, tolerance: float) -> RefinedModes:
@@ -159,6 +164,7 @@ def with_label(piece: RefinedModes, label: Label) -> RefinedModes:
         coarse_open_values=piece.coarse_open_values[keep],
         open_values=piece.open_values[keep],
         vectors=piece.vectors[:, keep],
+        shunted=piece.shunted[keep],
     )
 
 

@@ -113,11 +113,13 @@ def strongest_neighbour(own: Moving, others: Iterable[Moving]) -> Neighbour | No
 def driven_modes(part: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> list[DrivenMode]:
     """The modes of a reduced class in a band (Hz), ascending.
 
-    Electrodes that are driven count as shorted. Amplitudes are Q F φ/ω² with Q from the materials'
-    losses; valid where the reduced space has converged, which is about the band it was made for.
+    Electrodes that are driven or shorted count as shorted, open ones as open, shunted ones as
+    shorted. Amplitudes are Q F φ/ω² with Q from the materials' losses; valid where the reduced
+    space has converged, which is about the band it was made for.
     """
     with one_blas_thread():
-        opened, stiffness = list(part.opened), part.stiffness
+        opened = [number for number, resistance, _ in part.circuit if np.isinf(resistance)]
+        stiffness = part.stiffness
         if opened:
             pull = part.coupling[:, opened]
             held = part.capacitance[np.ix_(opened, opened)]

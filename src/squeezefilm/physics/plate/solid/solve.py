@@ -190,6 +190,10 @@ def _table(piece: RefinedModes, signs: si.FloatArray) -> _Columns:
     # Ratios need few digits: they are taken from the coarse mesh.
     rough, some = piece.found, piece.found.vectors[:, piece.index]
     shares, losses = energy_shares_of(rough.solved.slabs, some)
+    omega = piece.shunted
+    shunted = omega.real / np.sqrt(piece.values)
+    frequency, error = frequency * shunted, error * shunted
+    losses = losses + 2 * omega.imag / omega.real
     coupling, coupling_error = effective_coupling(piece)
     opened, open_error = extrapolated(piece.coarse_open_values, piece.open_values, piece.level)
     # A product for each mode, as results were recorded: `forces @ signs` may differ in the last
@@ -252,8 +256,10 @@ def solve_modes(
     enough. `progress` is called with a text and a fraction. A mesh that would end after the
     `deadline` is not begun: the modes are those of the last one then, with its larger error.
 
-    Electrodes are shorted or driven (the same for free vibration) unless a patch says open. Valid
-    for linear, small vibration in vacuum. Interrupted, it leaves nothing behind.
+    Electrodes are shorted or driven (the same for free vibration) unless a patch says open or
+    shunted: a resistor's stiffening counts in `frequencies`, its loss in `quality_factors`; shapes
+    and couplings are those with it short. Valid for linear, small vibration in vacuum. Interrupted,
+    it leaves nothing behind.
 
     Raises `InputError` for a band without modes or a label that is not found, `OutOfRangeError` for
     plates too thin for solid elements.

@@ -51,7 +51,8 @@ def mirror_map(plate: RectangularPlate, axis: int) -> list[int] | None:
             i
             for i, other in enumerate(plate.patches)
             if alike(place(other, False), want)
-            and (other.face, other.electrode) == (patch.face, patch.electrode)
+            and (other.face, other.electrode, other.shunt_resistance)
+            == (patch.face, patch.electrode, patch.shunt_resistance)
         ]
         if not found:
             return None
@@ -81,7 +82,7 @@ def only_stretches(plate: RectangularPlate) -> bool:
     def kind(part: CeramicPatch | FoamSupport) -> tuple[object, ...]:
         if isinstance(part, FoamSupport):
             return (part.stiffness_per_area, part.quality_factor)
-        return (part.drive_sign, part.electrode)
+        return (part.drive_sign, part.electrode, part.shunt_resistance)
 
     def mirrored(part: CeramicPatch | FoamSupport, other: CeramicPatch | FoamSupport) -> bool:
         near = all(abs(a - b) <= 1 for a, b in zip(place(part), place(other), strict=True))

@@ -66,7 +66,7 @@ def test_a_mirror_takes_patches_to_patches() -> None:
     "changes",
     [
         {"thickness": 0.6e-3}, {"face": "top"}, {"electrode": "open"}, {"x": 19.1e-3},
-        {"length": 4.1e-3},
+        {"electrode": "shunted", "shunt_resistance": 10.0}, {"length": 4.1e-3},
     ],
 )  # fmt: skip
 def test_patches_that_differ_are_no_mirror_images(changes: dict[str, Any]) -> None:
