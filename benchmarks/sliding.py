@@ -21,10 +21,10 @@ from typing import Any
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.contact.sliding import kernel as sliding_kernel
 from squeezefilm.physics.contact.sliding import march as sliding
-from squeezefilm.physics.contact.sliding.dry_friction import SpeedFriction
+from squeezefilm.physics.contact.sliding.march import SpeedFriction
 
 PAD = FingerpadDynamics(damping=0.1)
 DURATION = 0.2

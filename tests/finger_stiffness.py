@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from squeezefilm.core.materials import Gas
 from squeezefilm.physics.contact.finger.fingertip import Skin
-from squeezefilm.physics.contact.finger.load import compiled_finger
-from squeezefilm.physics.contact.finger.load_kernel import between
+from squeezefilm.physics.contact.finger.load import between, compiled_finger
 from squeezefilm.physics.contact.rough_contact import ContactLaw
 
 

@@ -32,7 +32,7 @@ from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.folder import markdown_table
 from squeezefilm.measure.recordings.kinds import FrictionCurve
-from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.film.closed import relative_stiffness
 from squeezefilm.physics.film.periodic.film import solve_uniform

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.contact.sharing.film_panels import (
+from squeezefilm.physics.contact.sharing.gas_table import (
     SHIPPED,
     SHIPPED_OCTAVES,
     SHIPPED_PANELS,

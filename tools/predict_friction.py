@@ -28,7 +28,7 @@ from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.measure.fits.friction.person import with_decay_length
 from squeezefilm.physics.chain.friction import FrictionLaw
-from squeezefilm.physics.chain.friction_models import FrictionModel
+from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.contact.finger.fingertip import (
     CONTACT_DECAY_LENGTH,
     DECAY_SPEED_EXPONENT,

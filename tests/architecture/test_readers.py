@@ -34,7 +34,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
         "pickle.load": "requests of the process that started it, by a pipe of its own",
     },
     "core/kept/store.py": {"json.loads": "what `read_regular` read; any error counts as not there"},
-    "physics/contact/sharing/film_panels.py": {"np.load": PACKAGE},
+    "physics/contact/sharing/gas_table.py": {"np.load": PACKAGE},
     "core/kept/computed_by.py": {"os.open": "the package's source"},
     "measure/recordings/files/scipy_files.py": {"loadmat": CHILD},
     "measure/recordings/files/universal.py": {"pyuff.UFF": CHILD},

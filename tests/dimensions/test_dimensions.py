@@ -66,7 +66,7 @@ MINIMUM = {
         "physics.film.validity.knudsen_number",
         "physics.film.validity.crest_squeeze_number",
         "physics.contact.asperities.exponential_pressure",
-        "physics.contact.finger.fingerpad.skin_displacement_per_friction",
+        "physics.contact.finger.fingertip.skin_displacement_per_friction",
         "physics.plate.beam_modes.euler_bernoulli_frequency",
     )
 }

@@ -18,7 +18,7 @@ from squeezefilm.actuators.motor.force_law import ForceLaw
 from squeezefilm.core.quantities import unit_of
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
 from squeezefilm.physics.contact.sharing.pad import PadPoints
-from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.film.planar.grid import PlanarGap
 from squeezefilm.physics.plate.parts import Sector
 from squeezefilm.physics.plate.solid.modes import PlateModes
 from squeezefilm.physics.plate.sound import RadiatingSurface
@@ -153,11 +153,11 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "actuators.motor.force_law.ForceLaw": Later(lambda: fields_of(made(ForceLaw))),
     "physics.plate.electronics.amplifier_check": {"slew_rate": 1e6, "current": 0.01},
     "physics.contact.finger.load.finger_impedance": {"stiffness_per_area": 1e10 + 1e9j},
-    "physics.contact.sliding.dry_friction.SpeedFriction": {
+    "physics.contact.sliding.march.SpeedFriction": {
         "speed": np.array([0.0, 0.1]),
         "coefficient": np.array([0.2, 0.5]),
     },
-    "physics.contact.sharing.paper.least_amplitude": {
+    "physics.contact.sharing.levitation.least_amplitude": {
         "friction": falling_friction,
         "model": "by hand",
         "highest": 5e-5,
@@ -167,7 +167,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "gap": PlanarGap(0.5),
         "squeeze_number": 10.0,
     },
-    "physics.film.planar.gap.PlanarGap.__call__": {"X": _GRID, "T": _GRID},
+    "physics.film.planar.grid.PlanarGap.__call__": {"X": _GRID, "T": _GRID},
     "physics.texture_files.hjif.friction_along": {"document": Later(hjif_document)},
     "physics.texture_files.hjif.hjif_of": {"texture": Later(lambda: made(RelativeFriction))},
     "core.formats.drawing.Layer": {"colour": 7},
@@ -351,7 +351,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "core.calibration_record.JointSpread": {"paths": ("a",), "draws": ((0.2,), (0.5,), (0.9,))},
     "core.calibration_record.JointSpread.picked": {"paths": ("a",), "points": np.full((3, 1), 0.5)},
     "core.calibration_record.JointSpread.moved": {"paths": ("a",), "points": np.full((3, 1), 0.5)},
-    "physics.render.motion.finger_path.FingerPath": {"time": _GRID, "x": WAYS, "y": WAYS},
+    "physics.render.motion.stroke.FingerPath": {"time": _GRID, "x": WAYS, "y": WAYS},
     "physics.render.program.inverse.FrictionInverse.from_function": _FALL,
     "physics.render.program.inverse.FrictionInverse.over_speeds": {
         "law": falling_over_speeds,
@@ -360,7 +360,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "nominal_speed": 0.1,
         "known": falling_over_speeds(1e-6 * np.arange(4), np.array([0.01, 0.1, 1.0])),
     },
-    "physics.render.program.made_for.MadeForSpeed.of": {"law": falling_friction},
+    "physics.render.program.renderer.MadeForSpeed.of": {"law": falling_friction},
     "physics.render.texture.levels.Amplitude.constant": {"value": 1e-6},
     "physics.render.texture.levels.RelativeFriction": {"low": 0.4, "high": 0.8},
     "physics.render.texture.levels.FrictionReduction": {"low": 0.4, "high": 0.8},

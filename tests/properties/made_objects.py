@@ -28,23 +28,23 @@ from squeezefilm.physics.chain.friction import (
     FrictionLaw,
     LiftedLaw,
 )
-from squeezefilm.physics.chain.friction_models import FrictionModel
+from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.chain.pad_place import PadPlace
 from squeezefilm.physics.contact.asperities import AsperityLaw
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.physics.contact.finger.fingertip import Finger, Skin
+from squeezefilm.physics.contact.finger.fingertip import Finger, FingerpadDynamics, Skin
 from squeezefilm.physics.contact.sharing.balance import LoadSharing, share_load
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
 from squeezefilm.physics.contact.sharing.pad import FrictionRipple
-from squeezefilm.physics.contact.sliding.dry_friction import (
+from squeezefilm.physics.contact.sliding.march import (
     DryFriction,
+    Sliding,
     SpeedFriction,
+    slide,
 )
-from squeezefilm.physics.contact.sliding.march import Sliding, slide
 from squeezefilm.physics.display import Display, Surface, load_display
 from squeezefilm.physics.film.gap import PaperGap
 from squeezefilm.physics.film.periodic.profile import GapProfile, flexural_profile
-from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.film.planar.grid import PlanarGap
 from squeezefilm.physics.plate.beam_modes import BeamMode
 from squeezefilm.physics.plate.beam_response import BeamResponse, beam_response
 from squeezefilm.physics.plate.circuit import DrivenResponse, EquivalentCircuit
@@ -83,18 +83,22 @@ from squeezefilm.physics.plate.surface_shape import (
 from squeezefilm.physics.plate.thermal import Thermal
 from squeezefilm.physics.plate.working_mode import WorkingMode, working_mode
 from squeezefilm.physics.render.motion.estimator import MotionEstimator, MotionModel
-from squeezefilm.physics.render.motion.finger_path import FingerPath, OverPath
 from squeezefilm.physics.render.motion.sensor import (
     LVDT_10_KHZ,
     SensorModel,
     SensorStream,
     sensor_stream,
 )
-from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke, Trajectory
+from squeezefilm.physics.render.motion.stroke import (
+    FingerPath,
+    MinimumJerkStroke,
+    OverPath,
+    Stroke,
+    Trajectory,
+)
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, lower
-from squeezefilm.physics.render.program.made_for import MadeForSpeed
-from squeezefilm.physics.render.program.renderer import Renderer
+from squeezefilm.physics.render.program.renderer import MadeForSpeed, Renderer
 from squeezefilm.physics.render.program.wave import WaveCompensation
 from squeezefilm.physics.render.resonator.compensation import (
     CompensatedDrive,
@@ -262,7 +266,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     Texture: lambda: Amplitude(SquareWave(2e-3), 0.0, 1e-6),
     Trajectory: lambda: Stroke(0.1, 0.02),
     MinimumJerkStroke: lambda: MinimumJerkStroke(0.02, 0.1),
-    WaveCompensation: lambda: WaveCompensation.over_contact(8e-3, 2e-3, count=32),
+    WaveCompensation: lambda: WaveCompensation(8e-3, (1.0, 0.9, 0.5, 0.9)),
     Path: lambda: Path("missing"),
     PlateModes: lambda: solve_modes(PLATE, near=60e3, count=1),
     SolidMode: lambda: solid_mode(PLATE),

@@ -106,7 +106,7 @@ NOT_CALLED = {
     physics.film.planar.balance.Balancer.solve physics.film.planar.balance.Film
     physics.film.planar.balance.derivative physics.film.planar.balance.resampled
     physics.film.planar.balance.times
-    physics.film.planar.gap.gap_values
+    physics.film.planar.grid.gap_values
     physics.film.planar.grid.PlanarGrid physics.film.planar.grid.disc_grid
     physics.film.planar.grid.ellipse_grid physics.film.planar.grid.graded_line
     physics.film.planar.grid.rectangle_grid physics.film.planar.ladder.Climb
@@ -175,9 +175,9 @@ NOT_CALLED = {
     """,
     "no number but the index of what its other arguments hold, or an array the package made": """
     physics.contact.sharing.gas_table.FilmTable.build
-    physics.contact.sharing.film_panels.Panel.at physics.contact.sharing.film_panels.Panel.films
-    physics.contact.sharing.film_panels.Panel.octave_solved
-    physics.contact.sharing.film_panels.Panel.solved
+    physics.contact.sharing.gas_table.Panel.at physics.contact.sharing.gas_table.Panel.films
+    physics.contact.sharing.gas_table.Panel.octave_solved
+    physics.contact.sharing.gas_table.Panel.solved
     physics.plate.solid.volume.PlateVolume.displacement
     physics.plate.solid.volume.PlateVolume.potential physics.plate.solid.volume.harmonic_fields
     physics.plate.solid.volume.mode_fields physics.plate.solid.volume.plate_volume
@@ -189,6 +189,9 @@ NOT_CALLED = {
     """,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": """
     physics.render.program.renderer.Renderer.tick
+    """,
+    "a verb that is called with the fields of a record, which is attacked itself": """
+    design.sweep.sweep.sweep
     """,
     "the check of numbers itself, whose bounds are the code's own, and its messages' text": """
     core.quantities.require.require core.quantities.units.format_quantity
@@ -280,7 +283,10 @@ def public_calls() -> dict[str, PublicCall]:
                 calls = list(_calls_of_class(item, home))
             elif inspect.isroutine(inspect.unwrap(item)) and not is_kernel(item):
                 name = f"{module.name}.{key}".removeprefix("squeezefilm.")
-                calls = [PublicCall(name, item, None, annotations_of(inspect.unwrap(item), home))]
+                taking = inspect.unwrap(
+                    item, stop=lambda function: "__signature__" in vars(function)
+                )
+                calls = [PublicCall(name, item, None, annotations_of(taking, home))]
             else:
                 calls = []
             found.update({call.name: call for call in calls if call.numbers})

@@ -9,9 +9,8 @@ from hypothesis import given, reject
 from hypothesis import strategies as st
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
-from squeezefilm.physics.contact.sliding.march import Sliding, slide
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
+from squeezefilm.physics.contact.sliding.march import DryFriction, Sliding, SpeedFriction, slide
 
 SAMPLES = 200
 

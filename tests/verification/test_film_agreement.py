@@ -9,7 +9,7 @@ from squeezefilm.physics.film.gas import FilmGas
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.profile import flexural_profile
 from squeezefilm.physics.film.planar.film import solve_planar
-from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.film.planar.grid import PlanarGap
 
 
 @pytest.mark.parametrize(

@@ -13,8 +13,8 @@ from squeezefilm.core.hard_limits import PLANAR_MEMORY
 from squeezefilm.physics.film.gas import CompiledGas, FilmGas
 from squeezefilm.physics.film.planar.balance import Balancer, Film, derivative, resampled
 from squeezefilm.physics.film.planar.film import solve_planar
-from squeezefilm.physics.film.planar.gap import PlanarGap
 from squeezefilm.physics.film.planar.grid import (
+    PlanarGap,
     disc_grid,
     ellipse_grid,
     graded_line,

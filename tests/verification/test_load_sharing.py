@@ -21,14 +21,13 @@ from squeezefilm.physics.contact.asperities import (
 )
 from squeezefilm.physics.contact.finger.fingertip import Finger, Skin
 from squeezefilm.physics.contact.sharing.balance import share_load, share_load_tied
-from squeezefilm.physics.contact.sharing.film_panels import DEEPEST_EXCURSION
-from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
+from squeezefilm.physics.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable, film_table
+from squeezefilm.physics.contact.sharing.levitation import relative_friction
 from squeezefilm.physics.contact.sharing.pad import (
     PadFriction,
     pad_friction,
     pad_points,
 )
-from squeezefilm.physics.contact.sharing.paper import relative_friction
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.film.closed import relative_damping, relative_stiffness
 from squeezefilm.physics.film.gap import PaperGap, squeeze_number

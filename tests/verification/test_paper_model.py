@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError, UnreachableError
-from squeezefilm.physics.contact.sharing import paper
+from squeezefilm.physics.contact.sharing import levitation
 from squeezefilm.physics.film.closed import contact_mean_pressure, mean_pressure_profile
 from squeezefilm.physics.film.gap import (
     PaperGap,
@@ -23,7 +23,7 @@ def gap(amplitude=2e-6, roughness=0.6e-6, half_wavelength=18.7e-3 / 2) -> PaperG
 
 
 def friction(amplitude, roughness=0.6e-6, force=FORCE, **more):
-    return paper.relative_friction(gap(amplitude, roughness), force, AMBIENT, **more)
+    return levitation.relative_friction(gap(amplitude, roughness), force, AMBIENT, **more)
 
 
 # --- squeeze number: Table 1, section 2.3.1, 3.1.2 and 3.2.1 ---------------------------------
@@ -88,7 +88,7 @@ def test_reference_points(roughness, expected) -> None:
 
 @pytest.mark.parametrize(("roughness", "expected"), [(0.6e-6, 7.63e-6), (0.2e-6, 5.46e-6)])
 def test_zero_friction_amplitude(roughness, expected) -> None:
-    amplitude = paper.vibration_amplitude_for(0.0, gap(roughness=roughness), FORCE, AMBIENT)
+    amplitude = levitation.vibration_amplitude_for(0.0, gap(roughness=roughness), FORCE, AMBIENT)
     assert amplitude == pytest.approx(expected, abs=5e-9)
     assert friction(amplitude * (1 - 1e-9), roughness) == pytest.approx(0, abs=1e-8)
     assert friction(amplitude * (1 - 1e-9), roughness) > 0
@@ -104,16 +104,16 @@ def test_zero_friction_amplitude(roughness, expected) -> None:
 )
 def test_figure_11_amplitudes(half_wavelength, expected) -> None:
     surface = gap(half_wavelength=half_wavelength)
-    amplitude = paper.vibration_amplitude_for(0.7, surface, FORCE, AMBIENT)
+    amplitude = levitation.vibration_amplitude_for(0.7, surface, FORCE, AMBIENT)
     assert amplitude == pytest.approx(expected, abs=5e-9)
-    back = paper.relative_friction(surface.with_amplitude(amplitude), FORCE, AMBIENT)
+    back = levitation.relative_friction(surface.with_amplitude(amplitude), FORCE, AMBIENT)
     assert back == pytest.approx(0.7, rel=1e-9)
 
 
 def test_prototype_is_not_enough_by_its_own_curve() -> None:
     prototype = gap(1.15e-6, half_wavelength=10.37e-3)
-    assert paper.relative_friction(prototype, FORCE, AMBIENT) == pytest.approx(0.82, abs=0.002)
-    needed = paper.vibration_amplitude_for(0.7, prototype, FORCE, AMBIENT)
+    assert levitation.relative_friction(prototype, FORCE, AMBIENT) == pytest.approx(0.82, abs=0.002)
+    needed = levitation.vibration_amplitude_for(0.7, prototype, FORCE, AMBIENT)
     assert needed == pytest.approx(1.82e-6, abs=6e-9)
 
 
@@ -134,12 +134,12 @@ def test_printed_equation_14_hardly_leaves_one() -> None:
     literal = 1 - (pressure - 1) / (FORCE / CONTACT**2)
     assert printed[3] == pytest.approx(literal, rel=1e-14)
     with pytest.raises(UnreachableError, match="paper2008-printed"):
-        paper.vibration_amplitude_for(0.7, gap(), FORCE, AMBIENT, "paper2008-printed")
+        levitation.vibration_amplitude_for(0.7, gap(), FORCE, AMBIENT, "paper2008-printed")
 
 
 def test_no_vibration_no_reduction() -> None:
     assert friction(0.0) == 1
-    assert paper.vibration_amplitude_for(1.0, gap(), FORCE, AMBIENT) == 0
+    assert levitation.vibration_amplitude_for(1.0, gap(), FORCE, AMBIENT) == 0
 
 
 def test_friction_falls_with_amplitude_and_rises_with_force_and_roughness() -> None:
@@ -152,7 +152,7 @@ def test_friction_falls_with_amplitude_and_rises_with_force_and_roughness() -> N
 
 @pytest.mark.parametrize("wanted", [0.0, 0.1, 0.5, 0.9, 0.999])
 def test_inverse_gives_back_the_friction(wanted) -> None:
-    amplitude = paper.vibration_amplitude_for(wanted, gap(), FORCE, AMBIENT)
+    amplitude = levitation.vibration_amplitude_for(wanted, gap(), FORCE, AMBIENT)
     assert friction(amplitude) == pytest.approx(wanted, abs=1e-9)
 
 
@@ -160,16 +160,16 @@ def test_model_hangs_on_where_the_contact_ends() -> None:
     # A contact that ends on a ridge crest (29 ridges, 10.15 mm) lets the whole film start from the
     # crest's pressure: µ′/µ drops by a quarter over 1.5 % of length. An artefact of the 1-D model.
     ends = [PaperGap(0.6e-6, 2e-6, 50e-6, 350e-6, 18.7e-3, length) for length in (1e-2, 1.015e-2)]
-    middle, crest = (paper.relative_friction(end, FORCE, AMBIENT) for end in ends)
+    middle, crest = (levitation.relative_friction(end, FORCE, AMBIENT) for end in ends)
     assert crest / middle < 0.8
 
 
 def test_refusals_name_what_was_asked() -> None:
     with pytest.raises(InputError, match="normal_force = 0 N"):
-        paper.relative_friction(gap(), 0.0, AMBIENT)
+        levitation.relative_friction(gap(), 0.0, AMBIENT)
     with pytest.raises(InputError, match=r"relative_friction = 1\.2"):
-        paper.vibration_amplitude_for(1.2, gap(), FORCE, AMBIENT)
+        levitation.vibration_amplitude_for(1.2, gap(), FORCE, AMBIENT)
     with pytest.raises(UnreachableError, match="press less"):
-        paper.vibration_amplitude_for(0.1, gap(), 500.0, AMBIENT)
+        levitation.vibration_amplitude_for(0.1, gap(), 500.0, AMBIENT)
     with pytest.raises(InputError, match="paper2009"):
-        paper.vibration_amplitude_for(0.5, gap(), FORCE, AMBIENT, "paper2009")
+        levitation.vibration_amplitude_for(0.5, gap(), FORCE, AMBIENT, "paper2009")

@@ -10,12 +10,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from squeezefilm.core.quantities import FloatArray
-from squeezefilm.physics.contact.finger.fingerpad import (
+from squeezefilm.physics.contact.finger.fingertip import (
     FingerpadDynamics,
     skin_displacement_per_friction,
 )
-from squeezefilm.physics.contact.sliding.dry_friction import DryFriction
-from squeezefilm.physics.contact.sliding.march import Sliding, slide
+from squeezefilm.physics.contact.sliding.march import DryFriction, Sliding, slide
 
 STIFFNESS, MASS = 1000.0, 1.5e-4
 CRITICAL = 2 * math.sqrt(STIFFNESS * MASS)

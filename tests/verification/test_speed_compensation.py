@@ -15,8 +15,7 @@ from squeezefilm.physics.display import load_display
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.physics.render.program.inverse import LOWEST_SPEED, FrictionInverse
 from squeezefilm.physics.render.program.lowering import lower
-from squeezefilm.physics.render.program.made_for import MadeForSpeed
-from squeezefilm.physics.render.program.renderer import render
+from squeezefilm.physics.render.program.renderer import MadeForSpeed, render
 from squeezefilm.physics.render.texture.levels import RelativeFriction
 from squeezefilm.physics.render.texture.shapes import SineWave
 

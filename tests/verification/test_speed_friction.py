@@ -12,9 +12,8 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import expm
 
 from squeezefilm.core.quantities import FloatArray
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
-from squeezefilm.physics.contact.sliding.march import Sliding, slide
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
+from squeezefilm.physics.contact.sliding.march import DryFriction, Sliding, SpeedFriction, slide
 
 PAD = FingerpadDynamics()
 RATE = 19_200.0

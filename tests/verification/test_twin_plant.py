@@ -31,7 +31,7 @@ from squeezefilm.instruments.twin.settings import (
 )
 from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
 from squeezefilm.physics.chain.prediction import predict
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.working_mode import resonance_factor
 from squeezefilm.physics.render.motion.stroke import Stroke

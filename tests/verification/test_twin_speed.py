@@ -15,11 +15,9 @@ from squeezefilm.instruments.twin.settings import PlateDrift, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
 from squeezefilm.physics.chain.friction import TABLE_SPEEDS, friction_law
 from squeezefilm.physics.chain.prediction import predict
-from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
-from squeezefilm.physics.contact.sliding.march import Sliding, slide
+from squeezefilm.physics.contact.sliding.march import DryFriction, Sliding, SpeedFriction, slide
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.render.motion.finger_path import FingerPath
-from squeezefilm.physics.render.motion.stroke import Stroke
+from squeezefilm.physics.render.motion.stroke import FingerPath, Stroke
 
 CALM = TwinSettings(
     friction_lag=0.0,

@@ -19,7 +19,7 @@ from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.profile import GapFunction, GapProfile
 from squeezefilm.physics.film.periodic.solution import FilmSolution
 from squeezefilm.physics.film.planar.film import FilmPlanar, solve_planar
-from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.film.planar.grid import PlanarGap
 
 SHAPES = ("strip", "disc", "rectangle", "ellipse")
 _LINES = ("strip", "disc")

@@ -24,7 +24,7 @@ from squeezefilm.design.analysis.verdict import (
     why_not_good,
 )
 from squeezefilm.design.analysis.wanted import Wanted, wanted_friction
-from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, FrictionModel
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.wanted_voltage import WantedFriction

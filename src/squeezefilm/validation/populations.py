@@ -29,9 +29,9 @@ from squeezefilm.measure.recordings.kinds import (
     FrictionDecays,
     Told,
 )
-from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+from squeezefilm.physics.chain.pad_law import MODEL_KINDS
 from squeezefilm.physics.chain.prediction import predict
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.perception.felt import MEAN_FRICTION, Rubbed, detected_share
 from squeezefilm.physics.perception.observer import Observer, load_observer

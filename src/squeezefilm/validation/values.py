@@ -25,7 +25,10 @@ from squeezefilm.design.plate.changed_plates import (
     working_point,
 )
 from squeezefilm.physics.chain.friction import friction_law
-from squeezefilm.physics.contact.sharing.paper import relative_friction, vibration_amplitude_for
+from squeezefilm.physics.contact.sharing.levitation import (
+    relative_friction,
+    vibration_amplitude_for,
+)
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.film.closed import contact_mean_pressure, mean_pressure_profile
 from squeezefilm.physics.film.gap import (

@@ -9,7 +9,7 @@ from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.skin_stretch import bimorph, budget, cradle
 from squeezefilm.actuators.skin_stretch.array import SkinStretchArray, SkinStretchDescription
 from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.render.texture.shapes import SineWave
 
 

@@ -22,7 +22,7 @@ from tests.unit.measure.recordings.bench_files import (
 from squeezefilm.cli.measure import check, fit
 from squeezefilm.measure.fits.estimate import Adequacy, Estimate
 from squeezefilm.measure.fits.friction.friction_scores import SHAPES
-from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+from squeezefilm.physics.chain.pad_law import MODEL_KINDS
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.validation.published_friction import FolderComparison
 

@@ -20,7 +20,7 @@ from squeezefilm.design.friction import (
     analyze_friction,
     friction_map,
 )
-from squeezefilm.physics.chain.friction_models import MODEL_KINDS, ModelKind
+from squeezefilm.physics.chain.pad_law import MODEL_KINDS, ModelKind
 from squeezefilm.physics.display import Display
 
 

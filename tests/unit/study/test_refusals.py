@@ -13,7 +13,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.observer import load_observer
-from squeezefilm.physics.render.motion.finger_path import FingerPath
+from squeezefilm.physics.render.motion.stroke import FingerPath
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
 from squeezefilm.study.conduct.rehearsal import MOST_PEOPLE, rehearse
 from squeezefilm.study.design.plan import plan_study

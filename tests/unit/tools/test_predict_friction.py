@@ -9,7 +9,7 @@ import pytest
 from levitation_fit import fits, ridge_fits
 from predict_disc import is_sealed
 from predict_friction import FILES
-from squeezefilm.physics.chain.friction_models import FrictionModel
+from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.contact.finger.fingertip import (
     CONTACT_DECAY_LENGTH,
     DECAY_SPEED_EXPONENT,

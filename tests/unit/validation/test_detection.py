@@ -12,7 +12,7 @@ from squeezefilm.core import presets
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.recordings.kinds import DetectionThresholds
 from squeezefilm.measure.recordings.read import read_recording
-from squeezefilm.physics.contact.finger.fingerpad import (
+from squeezefilm.physics.contact.finger.fingertip import (
     FingerpadDynamics,
     skin_displacement_per_friction,
 )

@@ -33,7 +33,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import UnreachableError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, to_json
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.render.texture.shapes import SineWave
 
 # The wave that is shown: so many of the finest periods long, and so many steps of it.

@@ -20,7 +20,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.blas_threads import one_blas_thread
 from squeezefilm.core.errors import GeometryError, OutOfRangeError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.plate.elements.box_model import (
     BoxModel,
     ModelElectrode,

@@ -17,7 +17,7 @@ from squeezefilm.actuators.skin_stretch.elastic_layer import (
 from squeezefilm.core import hard_limits as hard
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 
 Sizes = Annotated[tuple[si.Metre, si.Metre], hard.SIDE]
 

@@ -17,7 +17,7 @@ from squeezefilm.design.analysis.felt import what_survives
 from squeezefilm.design.analysis.sensitivities import Effort
 from squeezefilm.design.analysis.verdict import verdict
 from squeezefilm.design.analysis.wanted import wanted_friction
-from squeezefilm.physics.chain.friction_models import FrictionModel
+from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.wanted_voltage import WantedFriction

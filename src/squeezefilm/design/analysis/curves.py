@@ -19,7 +19,7 @@ from squeezefilm.design.analysis.paper_procedure import PAPER_HALF_WAVELENGTHS, 
 from squeezefilm.measure.recordings import kinds as recordings
 from squeezefilm.measure.recordings.read import check_folder
 from squeezefilm.physics.chain.friction import FrictionLaw
-from squeezefilm.physics.chain.friction_models import FrictionModel
+from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Surface, load_display
 from squeezefilm.physics.film.closed import mean_pressure_profile

@@ -13,7 +13,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, UnreachableError
-from squeezefilm.physics.contact.sharing.paper import vibration_amplitude_for
+from squeezefilm.physics.contact.sharing.levitation import vibration_amplitude_for
 from squeezefilm.physics.film.gap import PaperGap, frequency_for_squeeze_number
 from squeezefilm.physics.plate.beam_modes import (
     euler_bernoulli_half_wavelength,
@@ -73,7 +73,7 @@ def friction_criterion(
     """The amplitude (m, zero-to-peak) that reaches a relative friction at each half wavelength (m).
 
     The paper's Fig 11; NaN where it is out of reach, see
-    `physics.contact.sharing.paper.vibration_amplitude_for`.
+    `physics.contact.sharing.levitation.vibration_amplitude_for`.
     """
     amplitudes = []
     for half in half_wavelengths:

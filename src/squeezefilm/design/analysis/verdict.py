@@ -21,7 +21,7 @@ from squeezefilm.design.analysis.ears import AUDIBLE, EarExposure
 from squeezefilm.design.analysis.felt import GratingsLeft
 from squeezefilm.design.plate.mode_doubts import mode_doubts, why_undriven
 from squeezefilm.physics.chain.active_area import CRITERIA
-from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import RectangularPlate

@@ -17,7 +17,7 @@ from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.touch import kept_at
 from squeezefilm.physics.chain.wanted_voltage import voltage_for_friction
-from squeezefilm.physics.contact.sharing.paper import HIGHEST_AMPLITUDE
+from squeezefilm.physics.contact.sharing.levitation import HIGHEST_AMPLITUDE
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.draws import (
     Draw,

@@ -24,7 +24,7 @@ from squeezefilm.design.analysis.report.rows import (
     weight_rows,
 )
 from squeezefilm.design.plate.report.terminal import heat_rows
-from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+from squeezefilm.physics.chain.pad_law import MODEL_KINDS
 from squeezefilm.physics.uncertainty.parameters import parameter_name
 
 if TYPE_CHECKING:

@@ -31,7 +31,7 @@ from squeezefilm.core.kit.page_style import (
 from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, table
 from squeezefilm.design.report import texture_figures as draw
 from squeezefilm.physics.render.fidelity.report import contrast_rows, lag_rows
-from squeezefilm.physics.render.program.made_for import MadeForSpeed
+from squeezefilm.physics.render.program.renderer import MadeForSpeed
 from squeezefilm.physics.texture_files.hjif import HjifExport, ReferenceDevice, hjif_of
 
 if TYPE_CHECKING:

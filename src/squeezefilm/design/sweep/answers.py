@@ -24,7 +24,7 @@ from squeezefilm.design.analysis.analyze import analyze
 from squeezefilm.design.friction import analyze_friction
 from squeezefilm.design.plate.command import parse_band, solve_plate
 from squeezefilm.design.sweep.followed import modes_to_follow
-from squeezefilm.physics.chain.friction_models import FrictionModel
+from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.chain.rendered_texture import render_texture
 from squeezefilm.physics.chain.standing_wave import WAVES

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.render.motion.finger_path import FingerPath
+from squeezefilm.physics.render.motion.stroke import FingerPath
 from squeezefilm.physics.texture_files.trajectories import Motion, motion_from
 
 EXPLORING = "60 mm in 0.75 s"

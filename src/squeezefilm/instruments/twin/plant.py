@@ -23,7 +23,7 @@ from squeezefilm.instruments.twin.envelope_step import Fingers, FrictionTables
 from squeezefilm.instruments.twin.hand import Hand
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.contact.sliding.march import substeps
 from squeezefilm.physics.plate.heat_states import cooling_of, heat_capacity
 from squeezefilm.physics.plate.thermal import driven_thickness, thermal_body

@@ -12,7 +12,7 @@ from typing import Annotated, Literal
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.contact.sliding.dry_friction import DryFriction
+from squeezefilm.physics.contact.sliding.march import DryFriction
 from squeezefilm.physics.plate.thermal import LOSS_TANGENT, Thermal
 from squeezefilm.physics.render.motion.sensor import TOUCH_PANEL_240_HZ, SensorModel
 

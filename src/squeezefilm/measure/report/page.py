@@ -32,7 +32,7 @@ from squeezefilm.measure.fits.friction.friction_scores import NO_PHYSICS
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
 from squeezefilm.measure.report.figures import recording_figure
 from squeezefilm.measure.report.fit_figures import fit_figure
-from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

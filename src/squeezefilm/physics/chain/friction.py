@@ -14,11 +14,16 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
 from squeezefilm.physics.chain.friction_table import FrictionTable
-from squeezefilm.physics.chain.pad_law import PadLaw, require_tabulated
+from squeezefilm.physics.chain.pad_law import (
+    DEFAULT_MODEL,
+    MODEL_KINDS,
+    FrictionModel,
+    PadLaw,
+    require_tabulated,
+)
 from squeezefilm.physics.chain.pad_place import PadPlace
-from squeezefilm.physics.contact.sharing import paper
+from squeezefilm.physics.contact.sharing import levitation
 from squeezefilm.physics.contact.sharing.levitation import (
     PUBLISHED_DECAY_LENGTH,
     levitation_friction,
@@ -148,7 +153,7 @@ class FrictionLaw(PadLaw):
         Raises `UnreachableError` where no amplitude up to `largest_amplitude` does.
         """
         highest = self.largest_amplitude
-        return paper.least_amplitude(self.at, relative_friction, self.model, highest)
+        return levitation.least_amplitude(self.at, relative_friction, self.model, highest)
 
     @si.checked_numbers
     def table(
@@ -207,7 +212,7 @@ class AsymptoteLaw(FrictionLaw):
     def friction_in(self, limit: Limit, amplitude: si.MetreArray) -> si.DimensionlessArray:
         """Relative friction µ′/µ at amplitudes (m), shape (n,), whichever the limit: this gap does
         not yield."""
-        share = paper.relative_friction(
+        share = levitation.relative_friction(
             self.gap(amplitude), self.normal_force, self.gas.ambient_pressure, self._closed_form
         )
         # As printed, the mean pressure of small vibrations is a hair below the ambient one.
@@ -222,7 +227,7 @@ class AsymptoteLaw(FrictionLaw):
         Raises `UnreachableError` where no amplitude up to 50 µm does.
         """
         still, ambient = self.gap(0.0), self.gas.ambient_pressure
-        return paper.vibration_amplitude_for(
+        return levitation.vibration_amplitude_for(
             relative_friction, still, self.normal_force, ambient, self._closed_form
         )
 

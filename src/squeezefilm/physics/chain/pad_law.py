@@ -1,4 +1,4 @@
-"""The pad of a finger on a vibration: what its ridges meet, how film and asperities carry it."""
+"""Models of friction, and the pad of a finger on a vibration: how film and asperities carry it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal, NamedTuple
 
 import numpy as np
 
@@ -16,20 +16,61 @@ from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.core.hard_limits import FINGER_SPEED
 from squeezefilm.core.materials import Gas
-from squeezefilm.physics.chain.friction_models import MODEL_KINDS, FrictionModel, ModelKind
 from squeezefilm.physics.chain.pad_place import PadPlace
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED, Finger
 from squeezefilm.physics.contact.finger.load import compiled_finger
 from squeezefilm.physics.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.physics.contact.sharing.balance import require_balanced
 from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
+from squeezefilm.physics.contact.sharing.levitation import HIGHEST_AMPLITUDE
 from squeezefilm.physics.contact.sharing.pad import Limit, PadFriction, pad_friction, pad_points
-from squeezefilm.physics.contact.sharing.paper import HIGHEST_AMPLITUDE
 from squeezefilm.physics.display import Surface
 from squeezefilm.physics.plate.loaded_mode import mean_square_wave
 
 if TYPE_CHECKING:
     from squeezefilm.physics.contact.sharing.kernel import CompiledPad
+
+FrictionModel = Literal[
+    "paper2008",
+    "paper2008-printed",
+    "levitation-2016",
+    "levitation-ridges",
+    "partial-levitation",
+    "levitation",
+]
+DEFAULT_MODEL: FrictionModel = "levitation"
+"""The film lifts the contact off over a length fitted to people (decision 0018)."""
+
+
+class ModelKind(NamedTuple):
+    """Kind of a friction model by what it makes of film and skin.
+
+    `friction` is what the model takes: the paper's closed form at an infinite squeeze number and a
+    gap that does not yield ("asymptote"); or films that carry the finger together with asperities,
+    at the gap where both balance the load. Of that it takes the part that asperities carry
+    ("load"), or the closed form of 2016 ("lift"), while the balance only says what the plate feels
+    of the finger. `fitted` is whether that has the finger's length, fitted to people and growing
+    with the speed, or the constants published in 2016.
+    """
+
+    friction: Literal["asymptote", "load", "lift"]
+    fitted: bool = False
+
+    @property
+    def shares_load(self) -> bool:
+        """True where film and asperities share the load, at a gap that yields."""
+        return self.friction != "asymptote"
+
+
+MODEL_KINDS: dict[FrictionModel, ModelKind] = {
+    "paper2008": ModelKind("asymptote"),
+    "paper2008-printed": ModelKind("asymptote"),
+    "levitation-2016": ModelKind("lift"),
+    "levitation-ridges": ModelKind("lift", fitted=True),
+    "partial-levitation": ModelKind("load"),
+    "levitation": ModelKind("lift", fitted=True),
+}
+
 
 PascalPerMetreComplex = Annotated[complex, si.Unit("Pa/m")]
 

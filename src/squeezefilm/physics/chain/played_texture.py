@@ -18,8 +18,13 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import RENDER_STEPS, require_motion
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.plate.layout import Actuator, AnnularStator
-from squeezefilm.physics.render.motion.finger_path import FingerPath, OverPath
-from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke, Trajectory
+from squeezefilm.physics.render.motion.stroke import (
+    FingerPath,
+    MinimumJerkStroke,
+    OverPath,
+    Stroke,
+    Trajectory,
+)
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import evaluate

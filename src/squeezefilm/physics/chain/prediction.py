@@ -12,21 +12,22 @@ import dataclasses
 import functools
 import math
 import warnings
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.core.progress import NO_HURRY, Pace
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.physics.chain.area_map import at_best_place
 from squeezefilm.physics.chain.free_vibration import FreeVibration, chosen_mode, free_vibration
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
-from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, FrictionModel
 from squeezefilm.physics.chain.friction_table import FrictionTable
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace, pad_place, place_words
 from squeezefilm.physics.chain.touch import Touch, held_touch, touch
 from squeezefilm.physics.display import Display, NamedDisplay, Surface
@@ -210,24 +211,30 @@ class Prediction(Result):
         }
 
 
-@reads_text
 @si.checked_numbers
-def predict(
-    display: NamedDisplay,
-    *,
-    voltage: si.Volt | None = None,
-    frequency: si.Hertz | None = None,
-    normal_force: si.Newton | None = None,
-    surface: str | None = None,
-    vibration_amplitude: si.Metre | None = None,
-    position: si.Metre | None = None,
-    theory: PlateTheory | None = None,
-    model: FrictionModel | None = None,
-    speed: si.MetrePerSecond | None = None,
-    place: FacePlace | None = None,
-    strict: bool = False,
-    pace: Pace = NO_HURRY,
-) -> Prediction:
+@dataclass(frozen=True, slots=True, eq=False)
+class PredictionRequest:
+    """Arguments of `predict`."""
+
+    display: NamedDisplay
+    _: KW_ONLY
+    voltage: si.Volt | None = None
+    frequency: si.Hertz | None = None
+    normal_force: si.Newton | None = None
+    surface: str | None = None
+    vibration_amplitude: si.Metre | None = None
+    position: si.Metre | None = None
+    theory: PlateTheory | None = None
+    model: FrictionModel | None = None
+    speed: si.MetrePerSecond | None = None
+    place: FacePlace | None = None
+    strict: bool = False
+    pace: Pace = NO_HURRY
+
+
+@reads_text
+@called_with(PredictionRequest)
+def predict(asked: PredictionRequest) -> Prediction:
     """The friction of a display driven with a voltage (V, zero-to-peak) at a frequency (Hz).
 
     The frequency defaults to the resonance without a finger; voltage, force, surface and the
@@ -253,32 +260,34 @@ def predict(
     right is refused, see `require_plausible`. Raises `InputError` for a value that cannot be used,
     or an amplitude given together with a voltage.
     """
-    if vibration_amplitude is not None and voltage is not None:
+    display, frequency, strict = asked.display, asked.frequency, asked.strict
+    voltage, amplitude = asked.voltage, asked.vibration_amplitude
+    if amplitude is not None and voltage is not None:
         raise InputError("a voltage and an amplitude were both given; give one of them")
-    force = display.finger.normal_force if normal_force is None else normal_force
+    force = display.finger.normal_force if asked.normal_force is None else asked.normal_force
     si.require("normal_force", force, si.Unit("N"), above=0)
-    where = display.surface(surface)
-    unusual = require_plausible(display, voltage if vibration_amplitude is None else 0.0)
+    where = display.surface(asked.surface)
+    unusual = require_plausible(display, voltage if amplitude is None else 0.0)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         if isinstance(display.actuator, RectangularPlate):
             display.actuator.ceramic.check_consistency(strict=strict)
-        mode, replaced = chosen_mode(display.actuator, theory, strict=strict, pace=pace)
-        drive = free_vibration(display, mode, frequency, voltage, vibration_amplitude)
+        mode, replaced = chosen_mode(display.actuator, asked.theory, strict=strict, pace=asked.pace)
+        drive = free_vibration(display, mode, frequency, voltage, amplitude)
         law = friction_law(
             display,
             mode.half_wavelength,
             drive.frequency,
             surface=where,
             normal_force=force,
-            model=model or DEFAULT_MODEL,
-            position=position or 0.0,
-            speed=speed,
-            place=pad_place(display.actuator, mode, drive.frequency, place),
+            model=asked.model or DEFAULT_MODEL,
+            position=asked.position or 0.0,
+            speed=asked.speed,
+            place=pad_place(display.actuator, mode, drive.frequency, asked.place),
         )
-        if place is None and position is None:
+        if asked.place is None and asked.position is None:
             law = at_best_place(display, mode, law)
-        asked_for_asymptote = model is not None and not law.kind.shares_load
+        asked_for_asymptote = asked.model is not None and not law.kind.shares_load
         found = _felt(display, mode, drive, law, strict=strict and asked_for_asymptote)
     objections = (*unusual, *replaced)
     doubts = (*objections, *_doubts(caught, found))

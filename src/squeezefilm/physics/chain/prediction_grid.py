@@ -14,7 +14,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError, optional
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import stamp
-from squeezefilm.physics.chain.friction_models import FrictionModel
+from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace, read_place
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import NamedDisplay

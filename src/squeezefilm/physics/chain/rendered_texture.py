@@ -19,7 +19,7 @@ from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp, to_json
-from squeezefilm.physics.chain.friction_models import FrictionModel
+from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace
 from squeezefilm.physics.chain.played_texture import (
     FingerMotion,

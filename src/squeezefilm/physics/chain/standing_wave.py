@@ -10,12 +10,12 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.chain.friction_models import MODEL_KINDS, FrictionModel
 from squeezefilm.physics.chain.friction_table import FrictionTable
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace
 from squeezefilm.physics.chain.played_texture import FingerMotion
 from squeezefilm.physics.chain.prediction import Prediction, predict
-from squeezefilm.physics.contact.sliding.dry_friction import SpeedFriction
+from squeezefilm.physics.contact.sliding.march import SpeedFriction
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import DiscPlate
 from squeezefilm.physics.render.program.inverse import FrictionInverse
@@ -44,7 +44,8 @@ def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
 
     It explains the friction along the wave under a finger at the prediction's speed, and is taken
     to be the same at others: what changes with the speed is how friction follows the amplitude.
-    Raises `InputError` for a disc, whose wave is none along a line.
+    By the default model where the prediction's own knows the finger over an antinode only. Raises
+    `InputError` for a disc, whose wave is none along a line.
     """
     plate = display.actuator
     if isinstance(plate, DiscPlate):
@@ -53,8 +54,8 @@ def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
         )
     along = AlongY() if plate.lines_across == "width" else AlongX()
     half, law = p.mode.half_wavelength, p.law
-    if not MODEL_KINDS[p.model].shares_load:
-        return WaveCompensation.over_contact(half, law.finger.contact_length, along=along)
+    if not law.kind.shares_load:
+        law = law.by(DEFAULT_MODEL)
     ripple = law.ripple(p.vibration_amplitude)
     # Off the antinode friction may be less than the display makes centred on it.
     wide = _BETTER * p.vibration_amplitude

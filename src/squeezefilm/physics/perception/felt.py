@@ -4,7 +4,7 @@ A grating that survives the resonator need not be felt, and one that the resonat
 be. A finger slides steadily at a speed v over a square grating of period λ, the vibration switched
 between two amplitudes with the first-order envelope of the resonator. The friction over one
 passage has the lines µF c_h at the frequencies h v/λ; the skin moves by each of them as the
-fingerpad's mass, spring and damper have it (`physics.contact.finger.fingerpad`), and the channels
+fingerpad's mass, spring and damper have it (`physics.contact.finger.fingertip`), and the channels
 make d′ of that as in `senses`: thresholds, what the mean stretch masks, and the sum over harmonics.
 
 What a stroke adds (it speeds up and slows down, the pad lies on the standing wave, the sensor is
@@ -21,7 +21,7 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.contact.finger.fingerpad import (
+from squeezefilm.physics.contact.finger.fingertip import (
     FingerpadDynamics,
     skin_displacement_per_friction,
 )

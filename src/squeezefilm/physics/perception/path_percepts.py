@@ -1,4 +1,4 @@
-"""Percept of a finger's own path over a surface, through the whole chain.
+"""Percept of a finger's own path, or of a free hand's, over a surface, through the whole chain.
 
 The path goes through the loop, the friction and the skin as a simulated stroke does (`percepts`),
 and the same senses look at the same lines along its way, run by run (`path_runs`). Runs along x and
@@ -13,9 +13,11 @@ it, where the finger turns, is left out with the first two millimetres of each r
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -24,13 +26,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.physics.chain.rendered_texture import RenderAnalysis, render_texture
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.perception.observer import FingerClass, Observer
-from squeezefilm.physics.perception.path_runs import straight_runs
-from squeezefilm.physics.perception.percepts import (
-    CONTROL_RATE,
-    Apparatus,
-    Percept,
-    with_finger,
-)
+from squeezefilm.physics.perception.percepts import CONTROL_RATE, Apparatus, Percept, with_finger
 from squeezefilm.physics.perception.senses import (
     SETTLING,
     SPACING,
@@ -40,53 +36,104 @@ from squeezefilm.physics.perception.senses import (
     line_amplitudes,
     line_periods,
 )
-from squeezefilm.physics.render.motion.finger_path import FingerPath
+from squeezefilm.physics.render.motion.stroke import FingerPath, MinimumJerkStroke
 from squeezefilm.physics.texture_files.texture_file import TextureFile
+
+# A rhythm is felt along a run, at the spacing that the surface has in that direction: a finger that
+# crosses a grating of period λ at an angle θ to its axis meets λ/cos θ, and one that goes along the
+# ridges meets none. A run ends where the finger turns back, or leaves the straight line from where
+# the run began to where it ends, by more than `TURN`.
+TURN: si.Metre = 1e-3
+"""A finger that comes back, or strays from the straight, by less has not turned (m); assumed: a
+tenth of a contact, and far above a sensor's noise."""
+SHORTEST_RUN: si.Metre = 4e-3
+"""Shortest run that is told of: two millimetres go by while the pad is stretched (m)."""
+
+
+@dataclass(frozen=True, slots=True)
+class PathRun:
+    """A straight stretch of a path.
+
+    Attributes:
+        begin, end: numbers of its first and its last sample.
+        length: from its begin to its end (m).
+        heading: direction in which it goes, from x towards y (rad), −π to π.
+    """
+
+    begin: int
+    end: int
+    length: si.Metre
+    heading: si.Radian
+
+    @property
+    def along_x(self) -> bool:
+        """True where it goes along x more than along y; at 45° it counts as along x."""
+        return abs(math.cos(self.heading)) >= abs(math.sin(self.heading)) - 1e-9
+
+
+def straight_runs(path: FingerPath, shortest: si.Metre = SHORTEST_RUN) -> tuple[PathRun, ...]:
+    """The runs of a path that are at least `shortest` (m) long, in their order.
+
+    The cuts do not change where path and axes are shifted or turned together.
+    """
+    place = np.stack([path.x, path.y], axis=1)
+    runs = []
+    for begin, end in _one_way(place):
+        for first, last in _straight(place, begin, end):
+            dx, dy = (float(one) for one in place[last] - place[first])
+            length = math.hypot(dx, dy)
+            if length >= shortest:
+                runs.append(PathRun(first, last, length, math.atan2(dy, dx)))
+    return tuple(runs)
+
+
+def _one_way(place: si.FloatArray) -> list[tuple[int, int]]:
+    """Stretches on which the finger does not come back towards where it began."""
+    stretches, begin, end = [], 0, place.shape[0] - 1
+    while begin < end:
+        away = np.hypot(*(place[begin:] - place[begin]).T)
+        farthest = np.maximum.accumulate(away)
+        back = np.flatnonzero(farthest - away > TURN)
+        if not back.size:
+            last = begin + int(np.argmax(away))
+        else:
+            last = begin + int(np.argmax(away[: back[0] + 1]))
+        if last == begin:
+            break
+        stretches.append((begin, last))
+        begin = last
+    return stretches
+
+
+def _straight(place: si.FloatArray, begin: int, end: int) -> list[tuple[int, int]]:
+    """Parts of a stretch that keep to the straight line between their ends (Douglas and Peucker
+    1973, 10.3138/FM57-6770-U75U-7727)."""
+    todo, pieces = [(begin, end)], []
+    while todo:
+        first, last = todo.pop()
+        along = place[last] - place[first]
+        off = place[first : last + 1] - place[first]
+        length = math.hypot(float(along[0]), float(along[1]))
+        aside = np.abs(off[:, 0] * along[1] - off[:, 1] * along[0]) / max(length, 1e-12)
+        widest = int(np.argmax(aside))
+        if aside[widest] > TURN and 0 < widest < last - first:
+            todo += [(first + widest, last), (first, first + widest)]
+        else:
+            pieces.append((first, last))
+    return pieces
+
 
 _SEED = 0
 _ROUNDING: si.Metre = 1e-9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RunPercept:
-    """Percept of the runs in one direction.
-
-    Attributes:
-        percept: evidence by period along the runs, and the rhythms that compete.
-        runs: how many count.
-        way: their length together (m).
-        mean_speed: along them (m/s).
-        asked_swing, felt_swing: standard deviation along them of the relative friction that the
-            surface asks for, and of the one that the finger meets (1).
-    """
-
-    percept: Percept
-    runs: int
-    way: si.Metre
-    mean_speed: si.MetrePerSecond
-    asked_swing: si.Dimensionless
-    felt_swing: si.Dimensionless
-
-    @property
-    def clearest_period(self) -> si.Metre:
-        """Period of the most evident rhythm (m); NaN where there is none."""
-        rhythms = self.percept.candidates
-        return float(rhythms.period[0]) if np.isfinite(rhythms.d_prime[0]) else math.nan
-
-    @property
-    def clearest_d_prime(self) -> si.Dimensionless:
-        """Evidence of the most evident rhythm (1); 0 where there is none."""
-        return max(float(self.percept.candidates.d_prime[0]), 0.0)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class PathPercept:
     """Percept of a path over a surface: on its runs `along` x and `across`, along y; None where
-    there is no run. `played` is how each part of the path was rendered."""
+    there is no run."""
 
-    along: RunPercept | None
-    across: RunPercept | None
-    played: tuple[RenderAnalysis, ...]
+    along: Percept | None
+    across: Percept | None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,10 +143,7 @@ class _OneRun:
     along_x: bool
     stretch: si.MetreArray
     speed: si.MetrePerSecondArray
-    asked: si.DimensionlessArray
-    felt: si.DimensionlessArray
     length: si.Metre
-    duration: si.Second
 
 
 def path_percept(
@@ -124,7 +168,7 @@ def path_percept(
         InputError: no path, a path that holds no run of 4 mm, or what `render_texture` refuses.
     """
     run = apparatus or Apparatus()
-    played, runs = [], []
+    runs = []
     for path in paths:
         rendered = render_texture(
             with_finger(display, finger),
@@ -138,7 +182,6 @@ def path_percept(
             control_rate=CONTROL_RATE,
             seed=_SEED,
         )
-        played.append(rendered)
         runs += _runs_of(rendered, path)
     if not runs:
         raise InputError(
@@ -146,7 +189,7 @@ def path_percept(
             "check its unit (x_m in metres), or give a longer one"
         )
     along, across = ([run for run in runs if run.along_x is which] for which in (True, False))
-    return PathPercept(_felt(observer, along), _felt(observer, across), tuple(played))
+    return PathPercept(_felt(observer, along), _felt(observer, across))
 
 
 def _runs_of(played: RenderAnalysis, path: FingerPath) -> list[_OneRun]:
@@ -167,30 +210,26 @@ def _runs_of(played: RenderAnalysis, path: FingerPath) -> list[_OneRun]:
 
         def along(
             values: si.FloatArray,
-            sign: float = 1.0,
             even: si.FloatArray = even,
             here: si.FloatArray = here[rising],
             rows: slice = rows,
             rising: si.Array = rising,
         ) -> si.FloatArray:
-            return np.asarray(np.interp(even, here, sign * values[rows][rising]))
+            return np.asarray(np.interp(even, here, values[rows][rising]))
 
         runs.append(
             _OneRun(
                 along_x=run.along_x,
                 # The skin trails the bone.
-                stretch=along(force.stretch, -forth),
-                speed=np.maximum(along(speed, forth), 0.0),
-                asked=along(played.asked),
-                felt=along(played.stroke.relative_friction_rendered),
+                stretch=along(-forth * force.stretch),
+                speed=np.maximum(along(forth * speed), 0.0),
                 length=abs(stop - start),
-                duration=end - begin,
             )
         )
     return runs
 
 
-def _felt(observer: Observer, runs: list[_OneRun]) -> RunPercept | None:
+def _felt(observer: Observer, runs: list[_OneRun]) -> Percept | None:
     if not runs:
         return None
     longest = max(run.length for run in runs)
@@ -202,19 +241,67 @@ def _felt(observer: Observer, runs: list[_OneRun]) -> RunPercept | None:
         power += size * holds * line_amplitudes(run.stretch[None, :]) ** 2
         weight += size * holds
     amplitude = np.sqrt(power / np.maximum(weight, 1.0))
-    way, speed, asked, felt = (
-        np.concatenate([getattr(run, name) for run in runs])
-        for name in ("stretch", "speed", "asked", "felt")
-    )
-    mean = abs(float(np.mean(way)))
+    speed = np.concatenate([run.speed for run in runs])
+    mean = abs(float(np.mean(np.concatenate([run.stretch for run in runs]))))
     heard = evidence(observer, amplitude, channel_gains(observer, speed), mean)
     lengths = np.array([run.length for run in runs])
     rhythms = candidates(observer, heard, float(share @ lengths / share.sum()))
-    return RunPercept(
-        percept=Percept(heard, rhythms, mean),
-        runs=len(runs),
-        way=float(lengths.sum()),
-        mean_speed=float(lengths.sum() / sum(run.duration for run in runs)),
-        asked_swing=float(np.std(asked)),
-        felt_swing=float(np.std(felt)),
-    )
+    return Percept(heard, rhythms, mean)
+
+
+# Nobody was measured for it. The finger goes to and fro along x on lines spread over a square of
+# the observer's stroke, or over the face where that is smaller, then along y in the same way; as
+# many lines each way as the observer's strokes have passes, each of least jerk at the finger's own
+# mean speed, and so are the steps between lines.
+SAYS = (
+    "Free exploration is a plain hand: sweeps to and fro along x and then along y, on lines spread "
+    "over a square of the observer's stroke; nobody was measured for it."
+)
+"""Sentence that results which rest on this hand repeat."""
+_SAMPLE: si.Second = 2e-3
+
+
+@si.checked_numbers
+def free_exploration(
+    observer: Observer,
+    finger: FingerClass,
+    face: tuple[
+        Annotated[si.Metre, si.AtLeast(0.01), si.AtMost(10.0)],
+        Annotated[si.Metre, si.AtLeast(0.01), si.AtMost(10.0)],
+    ],
+) -> FingerPath:
+    """The path of a finger that explores a face of that length and width (m); see the module.
+
+    It keeps to x and y from 0 to the stroke's length, or to the face's own where that is shorter.
+    Raises `InputError` for a face outside of 1 cm to 10 m.
+    """
+    width, height = (min(observer.stroke_length, side) for side in face)
+    spread = (np.arange(observer.passes) + 0.5) / observer.passes
+    corners = [(0.0, height * spread[0])]
+    for place in height * spread:
+        # To the line, then along it to the other end.
+        corners += [(corners[-1][0], place), (width - corners[-1][0], place)]
+    far = width if corners[-1][0] > width / 2 else 0.0
+    columns = width * (spread[::-1] if far else spread)
+    corners += [(columns[0], corners[-1][1]), (columns[0], height)]
+    for place in columns:
+        corners += [(place, corners[-1][1]), (place, height - corners[-1][1])]
+    return _led_through(np.array(corners), finger.speed)
+
+
+def _led_through(corners: si.FloatArray, speed: si.MetrePerSecond) -> FingerPath:
+    """A path through corners (m), shape (n, 2), each part of least jerk at a mean speed."""
+    times, places = [np.zeros(1)], [corners[:1]]
+    now = 0.0
+    for begin, end in itertools.pairwise(corners):
+        length = float(np.hypot(*(end - begin)))
+        if length < _SAMPLE * speed:
+            continue
+        part = MinimumJerkStroke(length, length / speed, 1)
+        count = max(int(np.ceil(part.duration / _SAMPLE)), 2)
+        t = part.duration * np.arange(1, count + 1) / count
+        times.append(now + t)
+        places.append(begin + (end - begin) * (part.position(t) / length)[:, None])
+        now += part.duration
+    path = np.concatenate(places)
+    return FingerPath(np.concatenate(times), path[:, 0], path[:, 1])

@@ -26,7 +26,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
-from squeezefilm.physics.render.program.made_for import MadeForSpeed
+from squeezefilm.physics.render.program.renderer import MadeForSpeed
 from squeezefilm.physics.render.texture.composition import Composable, require_texture
 from squeezefilm.physics.render.texture.coordinate import AlongX
 from squeezefilm.physics.render.texture.levels import RelativeFriction

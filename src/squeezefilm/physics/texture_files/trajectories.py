@@ -24,8 +24,7 @@ from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.formats.traces import Table, table_from_csv, text_of_file
 from squeezefilm.core.hard_limits import FINGER_SPEED
-from squeezefilm.physics.render.motion.finger_path import FingerPath
-from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
+from squeezefilm.physics.render.motion.stroke import FingerPath, MinimumJerkStroke, Stroke
 
 Motion = Stroke | MinimumJerkStroke | FingerPath
 """Motion of a finger, however it was said."""

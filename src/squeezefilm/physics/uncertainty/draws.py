@@ -18,7 +18,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.errors import OutOfRangeWarning, SqueezefilmError
 from squeezefilm.physics.chain.friction import LAWS, FrictionLaw
-from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.touch import Touch, touch
 from squeezefilm.physics.display import Display

@@ -22,7 +22,7 @@ from squeezefilm.core.results import write_whole
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.stimuli import Stimulus
-from squeezefilm.physics.render.motion.finger_path import FingerPath
+from squeezefilm.physics.render.motion.stroke import FingerPath
 from squeezefilm.study.conduct.again import COUNTED, why_begun_again
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, Response, StudyRun
 from squeezefilm.study.conduct.sessions import (

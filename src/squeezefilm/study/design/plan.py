@@ -18,7 +18,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.hard_limits import PLANNED_TRIALS, require_within
 from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import Result, write_named
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.perception.felt import MEAN_FRICTION, Rubbed, detected_share
 from squeezefilm.physics.perception.observer import NamedObserver, Observer, load_observer

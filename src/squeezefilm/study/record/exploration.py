@@ -15,9 +15,9 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.formats.traces import Table, table_from_csv
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.perception.path_runs import straight_runs
+from squeezefilm.physics.perception.path_percepts import straight_runs
 from squeezefilm.physics.plate.layout import AnnularStator
-from squeezefilm.physics.render.motion.finger_path import FingerPath
+from squeezefilm.physics.render.motion.stroke import FingerPath
 from squeezefilm.study.record.store import StudyStore
 
 CELL: si.Metre = 5e-3

@@ -22,16 +22,21 @@ from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import config_hash
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.physics.perception.free_hand import SAYS
 from squeezefilm.physics.perception.observer import FingerClass, Observer
-from squeezefilm.physics.perception.perceived import Perceived, perceived_anew
-from squeezefilm.physics.perception.percepts import Apparatus, grating_percept, percept
+from squeezefilm.physics.perception.path_percepts import SAYS
+from squeezefilm.physics.perception.percepts import (
+    Apparatus,
+    Perceived,
+    grating_percept,
+    perceived_anew,
+    percept,
+)
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
 
 if TYPE_CHECKING:
-    from squeezefilm.physics.render.motion.finger_path import FingerPath
+    from squeezefilm.physics.render.motion.stroke import FingerPath
 
 _KEPT: Kept[Candidates] = Kept("percepts", Candidates)
 _REMEMBERED: dict[str, Candidates] = {}
@@ -88,7 +93,7 @@ def felt_freely(
         # The hand sweeps both ways, on lines far longer than the shortest run.
         assert found.along is not None
         assert found.across is not None
-        return _by_direction(found.along.percept.candidates, found.across.percept.candidates)
+        return _by_direction(found.along.candidates, found.across.candidates)
 
     return _known(felt_freely, stimulus, (display, observer, finger, run), make)
 
@@ -112,7 +117,7 @@ def felt_really(grating: Grating, observer: Observer, finger: FingerClass) -> Ca
 
 def free_path(display: Display, observer: Observer, finger: FingerClass) -> FingerPath:
     """Path of a finger that explores a display freely. Raises `InputError` for a ring."""
-    from squeezefilm.physics.perception.free_hand import free_exploration
+    from squeezefilm.physics.perception.path_percepts import free_exploration
     from squeezefilm.physics.plate.layout import AnnularStator
 
     plate = display.actuator
@@ -252,7 +257,7 @@ def chain_tables(
 
 
 # A surface is perceived in each direction in which it was explored
-# (`physics.perception.perceived`): how evident its clearest rhythm is, and with which period. Two
+# (`physics.perception.percepts`): how evident its clearest rhythm is, and with which period. Two
 # percepts differ, in standard deviations of that difference, by the strengths in every direction
 # and by the periods where both have one that is felt. A person who knows the stimuli by name
 # recalls each as if it were felt again, with noise of its own, and names the one that differs

@@ -1,6 +1,6 @@
 """Simulated participants of all tasks but match-to-sample, trial by trial.
 
-Senses and noise are those of match-to-sample (`physics.perception.perceived`): every surface is
+Senses and noise are those of match-to-sample (`physics.perception.percepts`): every surface is
 perceived anew on every trial. What the tasks add is how an answer follows from what was perceived.
 None of that was measured, none was tuned, and `assumptions` says each in a sentence that results
 repeat.
@@ -22,7 +22,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.observer import Observer
-from squeezefilm.physics.perception.perceived import Perceived, perceived
+from squeezefilm.physics.perception.percepts import Perceived, perceived
 from squeezefilm.physics.perception.senses import FINEST_PERIOD, Candidates, percept_deviation
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import AdaptiveMethod, adaptive_method, hears_choice

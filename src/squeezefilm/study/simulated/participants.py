@@ -20,7 +20,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import SIMULATED_TRIALS, require_within
 from squeezefilm.physics.perception.observer import Observer
-from squeezefilm.physics.perception.perceived import perceived_anew
+from squeezefilm.physics.perception.percepts import perceived_anew
 from squeezefilm.physics.perception.senses import Candidates, percept_deviation
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials

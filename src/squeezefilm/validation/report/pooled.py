@@ -12,7 +12,7 @@ from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import printable, shown
 from squeezefilm.measure.fits.friction.friction_curve import LEVELS
 from squeezefilm.measure.report.page import model_words, number_words
-from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL
 from squeezefilm.physics.perception.felt import MEAN_FRICTION
 from squeezefilm.physics.perception.observer import TUNED_AT, load_observer
 from squeezefilm.validation.populations import (

@@ -2,7 +2,7 @@
 
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.model_looks import look_of
-from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+from squeezefilm.physics.chain.pad_law import MODEL_KINDS
 
 
 def test_no_two_models_look_alike() -> None:

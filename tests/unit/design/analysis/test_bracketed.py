@@ -9,7 +9,7 @@ import pytest
 
 from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.design.analysis.wanted import _LEAST, _STEP, _bracket
-from squeezefilm.physics.contact.sharing.paper import HIGHEST_AMPLITUDE
+from squeezefilm.physics.contact.sharing.levitation import HIGHEST_AMPLITUDE
 
 
 def friction(half: float, closed: float = math.inf) -> Callable[[float], float]:

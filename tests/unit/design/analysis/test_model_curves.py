@@ -11,7 +11,7 @@ from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.design.analysis import curves as models
 from squeezefilm.design.analysis.curves import COMPARED, ModelCurve, model_curves
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
-from squeezefilm.physics.chain.friction_models import MODEL_KINDS, FrictionModel
+from squeezefilm.physics.chain.pad_law import MODEL_KINDS, FrictionModel
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import load_display
 

@@ -12,7 +12,7 @@ from squeezefilm.design.analysis.published_claims import (
     missed_by,
     read_claims,
 )
-from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+from squeezefilm.physics.chain.pad_law import MODEL_KINDS
 from squeezefilm.validation.frozen import MODELS
 
 CLAIMS = read_claims().all_claims

@@ -17,7 +17,7 @@ from squeezefilm.core.kit.style import BLUE
 from squeezefilm.design.film import FilmMap, FilmRequest
 from squeezefilm.design.report.film import film_map, film_pressure, write_film_map
 from squeezefilm.physics.film.planar.film import FilmPlanar
-from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.film.planar.grid import PlanarGap
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 

@@ -9,8 +9,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.twin.hand import FOR_EVER, Hand, hand_from, wanted
-from squeezefilm.physics.render.motion.finger_path import FingerPath
-from squeezefilm.physics.render.motion.stroke import Stroke
+from squeezefilm.physics.render.motion.stroke import FingerPath, Stroke
 
 # No whole number of samples, so that the last one is shorter than the others.
 LENGTH = 10_070

@@ -18,8 +18,7 @@ from squeezefilm.instruments.twin.settings import (
     TwinSettings,
     load_settings,
 )
-from squeezefilm.physics.render.motion.finger_path import FingerPath
-from squeezefilm.physics.render.motion.stroke import Stroke
+from squeezefilm.physics.render.motion.stroke import FingerPath, Stroke
 
 
 def test_settings_come_from_a_file_and_say_what_is_assumed(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ from squeezefilm.measure.recordings.kinds import (
     FrictionDecays,
     Told,
 )
-from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.physics.display import load_display
 from squeezefilm.validation import populations, published_friction
 from squeezefilm.validation.published_friction import compare_folder

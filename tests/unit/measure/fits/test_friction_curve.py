@@ -12,7 +12,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison, compare_friction_curve
 from squeezefilm.measure.fits.friction.friction_scores import SHAPES
 from squeezefilm.measure.recordings.kinds import FrictionCurve, Told
-from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+from squeezefilm.physics.chain.pad_law import MODEL_KINDS
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
 

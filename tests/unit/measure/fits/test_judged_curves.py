@@ -16,7 +16,7 @@ from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.friction.friction_curve import _adequacy, relative_friction
 from squeezefilm.measure.fits.friction.friction_scores import SHAPES, ModelScore
 from squeezefilm.measure.recordings.kinds import FrictionCurve, FrictionDecays, Told
-from squeezefilm.physics.chain.friction_models import MODEL_KINDS
+from squeezefilm.physics.chain.pad_law import MODEL_KINDS
 from squeezefilm.physics.display import load_display
 from squeezefilm.validation import populations
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import get_args
 
-from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, MODEL_KINDS, FrictionModel
 
 
 def test_every_model_has_a_kind() -> None:

@@ -16,8 +16,7 @@ from squeezefilm.physics.chain.played_texture import (
     single_period,
 )
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.render.motion.finger_path import FingerPath
-from squeezefilm.physics.render.motion.stroke import Stroke
+from squeezefilm.physics.render.motion.stroke import FingerPath, Stroke
 from squeezefilm.physics.render.program.lowering import lower
 from squeezefilm.physics.render.texture.coordinate import AlongDirection
 from squeezefilm.physics.render.texture.image import Image

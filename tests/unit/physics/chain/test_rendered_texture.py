@@ -21,12 +21,11 @@ from squeezefilm.physics.chain.rendered_texture import (
 )
 from squeezefilm.physics.chain.standing_wave import WAVES, UnderPad, wave_factors
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
-from squeezefilm.physics.contact.sliding.dry_friction import SpeedFriction
+from squeezefilm.physics.contact.sliding.march import SpeedFriction
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.render.fidelity.report import strongest_lines
-from squeezefilm.physics.render.motion.finger_path import FingerPath
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
-from squeezefilm.physics.render.motion.stroke import Stroke
+from squeezefilm.physics.render.motion.stroke import FingerPath, Stroke
 from squeezefilm.physics.render.texture.coordinate import AlongDirection
 from squeezefilm.physics.render.texture.image import Image
 from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction

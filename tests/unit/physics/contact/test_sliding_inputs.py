@@ -9,9 +9,14 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
-from squeezefilm.physics.contact.sliding.march import Sliding, interval_speeds, slide
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
+from squeezefilm.physics.contact.sliding.march import (
+    DryFriction,
+    Sliding,
+    SpeedFriction,
+    interval_speeds,
+    slide,
+)
 from squeezefilm.physics.render.motion.stroke import Stroke
 from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.physics.chain.prediction import predict
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.perception.felt import (
     Rubbed,

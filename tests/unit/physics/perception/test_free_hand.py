@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.perception.free_hand import free_exploration
 from squeezefilm.physics.perception.observer import load_observer
-from squeezefilm.physics.perception.path_runs import straight_runs
+from squeezefilm.physics.perception.path_percepts import free_exploration, straight_runs
 
 OBSERVER = load_observer()
 FINGER = OBSERVER.median_finger()

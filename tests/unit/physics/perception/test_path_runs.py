@@ -8,9 +8,8 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.physics.perception.path_runs import straight_runs
-from squeezefilm.physics.render.motion.finger_path import FingerPath
-from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
+from squeezefilm.physics.perception.path_percepts import straight_runs
+from squeezefilm.physics.render.motion.stroke import FingerPath, MinimumJerkStroke
 
 
 def _path(corners: list[tuple[float, float]], each: int = 50) -> FingerPath:

@@ -10,7 +10,7 @@ import pytest
 from scipy.special import ndtr
 
 from squeezefilm.physics.perception.observer import load_observer
-from squeezefilm.physics.perception.perceived import perceived
+from squeezefilm.physics.perception.percepts import perceived
 from squeezefilm.physics.perception.senses import Candidates
 
 OBSERVER = dataclasses.replace(load_observer(), detection_criterion=1.0)

@@ -8,7 +8,7 @@ import pytest
 from tests.unit.core.formats.hjif_conformance import require_hjif
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.render.program.made_for import MadeForSpeed
+from squeezefilm.physics.render.program.renderer import MadeForSpeed
 from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.render.texture.coordinate import AlongY
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction

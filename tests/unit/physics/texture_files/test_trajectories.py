@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.physics.render.motion.finger_path import FingerPath, OverPath
-from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
+from squeezefilm.physics.render.motion.stroke import FingerPath, MinimumJerkStroke, OverPath, Stroke
 from squeezefilm.physics.texture_files.trajectories import (
     motion_from,
     read_trajectory,

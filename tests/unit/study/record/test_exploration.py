@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.render.motion.finger_path import FingerPath
+from squeezefilm.physics.render.motion.stroke import FingerPath
 from squeezefilm.study.record.exploration import coverage, exploration, touches
 
 

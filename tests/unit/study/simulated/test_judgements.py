@@ -13,8 +13,7 @@ from scipy.special import ndtr
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.observer import load_observer
-from squeezefilm.physics.perception.perceived import Perceived
-from squeezefilm.physics.perception.percepts import Apparatus
+from squeezefilm.physics.perception.percepts import Apparatus, Perceived
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75, Candidates
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import adaptive_method

@@ -11,7 +11,7 @@ import pytest
 from scipy import stats
 
 from squeezefilm.physics.perception.observer import load_observer
-from squeezefilm.physics.perception.perceived import Perceived
+from squeezefilm.physics.perception.percepts import Perceived
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.simulated.chain_tables import assumed, difference, recalled_distances
 from squeezefilm.study.simulated.participants import SimulatedPeople

@@ -26,8 +26,7 @@ from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.render.fidelity.rendered_stroke import RelativeFriction
 from squeezefilm.physics.render.program.layout import FASTEST
 from squeezefilm.physics.render.program.lowering import Program
-from squeezefilm.physics.render.program.made_for import MadeForSpeed
-from squeezefilm.physics.render.program.renderer import render
+from squeezefilm.physics.render.program.renderer import MadeForSpeed, render
 
 # record's rows.
 _MODES = ("searching", "probing", "locked", "not found", "wrong sign")

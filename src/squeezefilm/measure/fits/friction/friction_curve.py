@@ -23,7 +23,7 @@ from squeezefilm.measure.fits.friction.friction_scores import (
 )
 from squeezefilm.measure.recordings.kinds import FrictionCurve
 from squeezefilm.physics.chain.friction import FrictionLaw
-from squeezefilm.physics.chain.friction_models import DEFAULT_MODEL, MODEL_KINDS
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.uncertainty.intervals import LEVEL

@@ -20,8 +20,7 @@ from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.physics.contact.rough_contact import LEAST_GAP, ContactLaw, RoughContact
-from squeezefilm.physics.contact.sharing.film_panels import DEEPEST_EXCURSION
-from squeezefilm.physics.contact.sharing.gas_table import FilmTable
+from squeezefilm.physics.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable
 
 
 @dataclass(frozen=True, eq=False)

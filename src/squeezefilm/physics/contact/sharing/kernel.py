@@ -15,7 +15,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.contact.asperities import CompiledAsperities
 from squeezefilm.physics.contact.asperity_kernel import asperity_mean, bessel
-from squeezefilm.physics.contact.finger.load_kernel import CompiledFinger, felt
+from squeezefilm.physics.contact.finger.load import CompiledFinger, felt
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
 """Outcomes of a balance."""

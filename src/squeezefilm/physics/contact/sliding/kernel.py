@@ -31,8 +31,7 @@ from squeezefilm.physics.contact.sliding.pieces import (
     slipped,
     stay,
 )
-from squeezefilm.physics.contact.sliding.skin_motion import HALVINGS, LumpedSkin
-from squeezefilm.physics.contact.sliding.skin_path import TERMS
+from squeezefilm.physics.contact.sliding.skin_path import HALVINGS, TERMS, LumpedSkin
 
 # Slip starts and ends that one sample interval may hold before the march gives up.
 MOST_EVENTS = 200

@@ -9,11 +9,12 @@ from typing import NamedTuple
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin, first_rise
 from squeezefilm.physics.contact.sliding.skin_path import (
     BonePull,
     Friction,
+    LumpedSkin,
     SkinPath,
+    first_rise,
     passes,
     path_over,
     speed_on,

@@ -22,8 +22,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.mobility import mobility
-from squeezefilm.physics.film.planar.gap import PlanarGap, gap_values
-from squeezefilm.physics.film.planar.grid import PlanarGrid
+from squeezefilm.physics.film.planar.grid import PlanarGap, PlanarGrid, gap_values
 
 
 class Faces(NamedTuple):

@@ -16,7 +16,7 @@ from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.physics.film.gas import ISOTHERMAL, FilmGas, require_film
 from squeezefilm.physics.film.planar.balance import Film, row_block
-from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.film.planar.grid import PlanarGap
 from squeezefilm.physics.film.planar.ladder import Climb, Ladder, PlanarShape, climb_to
 
 

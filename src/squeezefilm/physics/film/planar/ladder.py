@@ -16,11 +16,11 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.hard_limits import PLANAR_MEMORY, require_within
 from squeezefilm.physics.film.periodic.nested import steadied
 from squeezefilm.physics.film.planar.balance import Balance, Balancer, Film, resampled
-from squeezefilm.physics.film.planar.gap import gap_values
 from squeezefilm.physics.film.planar.grid import (
     PlanarGrid,
     disc_grid,
     ellipse_grid,
+    gap_values,
     graded_line,
     rectangle_grid,
     refined_line,

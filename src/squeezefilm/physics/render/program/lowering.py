@@ -57,27 +57,13 @@ class Program:
         return int(self.array[at.H_STACK])
 
     @property
-    def depends_on(self) -> frozenset[str]:
-        """Names of what its amplitude may depend on, of "x", "y", "speed", "direction" and "time".
+    def wanted_depends_on(self) -> frozenset[str]:
+        """Names of what the texture and the wave may depend on, of "x", "y", "speed", "direction"
+        and "time": without the speed by which a wanted friction becomes an amplitude.
 
         Read off the instructions: what is not named has no influence but on the
         last digit, what is named may have none.
         """
-        return self.wanted_depends_on | ({"speed"} if self.inverse_speeds.size else set())
-
-    @property
-    def inverse_speeds(self) -> si.MetrePerSecondArray:
-        """The finger's speeds for which it knows the friction (m/s), shape (k,).
-
-        Empty where friction does not depend on the speed, or none is wanted.
-        """
-        end = int(self.array[at.H_WAVE])
-        return self.array[end - int(self.array[at.H_INVERSE_SPEEDS]) : end]
-
-    @property
-    def wanted_depends_on(self) -> frozenset[str]:
-        """Names as by `depends_on`, but without the speed by which a wanted friction becomes an
-        amplitude: what the texture and the wave depend on."""
         names: set[str] = set()
         for code, operands in _instructions(self.array):
             if code == op.ALONG:

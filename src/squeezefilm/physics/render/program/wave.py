@@ -1,14 +1,13 @@
 """The standing wave under the finger: how much of its amplitude a contact meets, place by place.
 
 A plate in a standing wave |cos(πx/λ½)| vibrates at antinodes and rests at nodes, so a texture
-that asks for one amplitude is felt with a ripple of period λ½, half the wavelength. `wave_factor`
-predicts the share of the amplitude a contact meets; `WaveCompensation` gives it to the renderer,
-which divides by it.
+that asks for one amplitude is felt with a ripple of period λ½, half the wavelength.
+`WaveCompensation` gives the share of the amplitude that a contact meets to the renderer, which
+divides by it.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -23,41 +22,11 @@ _MOST_FACTORS = 65_536
 
 
 @si.checked_numbers
-def wave_factor(
-    position: si.MetreLike,
-    half_wavelength: Annotated[si.Metre, si.Above(0.0), si.AtMost(FARTHEST)],
-    contact_length: Annotated[si.Metre, si.AtLeast(0.0), si.AtMost(FARTHEST)] = 0.0,
-) -> si.DimensionlessArray:
-    """Mean of |cos(πx/half_wavelength)| over a contact centred at `position` (1), in its shape.
-
-    `contact_length` (m) is the contact's extent along the wave; 0 for a point. Antinodes lie at
-    whole multiples of `half_wavelength` (m). The mean of amplitude, not of friction: it predicts
-    the friction of a contact as far as friction is linear in amplitude over it. From the integral
-    of |cos u|, which is 2n + sin(u − nπ) with n = ⌊u/π + ½⌋.
-
-    Raises:
-        InputError: a position that is not finite, a half wavelength not above 0, a negative
-            contact.
-    """
-    u = math.pi * np.asarray(position, dtype=float) / half_wavelength
-    half = 0.5 * math.pi * contact_length / half_wavelength
-    # Below this width the difference loses more to rounding than the point does to its width.
-    if half < 1e-5:
-        return np.asarray(np.abs(np.cos(u)))
-    return np.asarray((_area(u + half) - _area(u - half)) / (2.0 * half))
-
-
-def _area(u: si.FloatArray) -> si.FloatArray:
-    n = np.floor(u / math.pi + 0.5)
-    return np.asarray(2.0 * n + np.sin(u - n * math.pi))
-
-
-@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class WaveCompensation:
     """Compensation of the wave's weakness, place by place; a renderer divides amplitudes by it.
 
-    Build it with `over_contact` or `from_ripple`.
+    Build it with `from_ripple`.
 
     Args:
         half_wavelength: the period (m); from 1 µm to 10 m.
@@ -78,29 +47,6 @@ class WaveCompensation:
             raise InputError(f"{len(self.factors)} factors cannot be used; give 2 to 65 536")
         if isinstance(self.along, FromPoint):
             raise InputError("a wave runs along a direction; give AlongX, AlongY, AlongDirection")
-
-    @classmethod
-    @si.checked_numbers
-    def over_contact(
-        cls,
-        half_wavelength: si.Metre,
-        contact_length: si.Metre,
-        *,
-        least: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 0.1,
-        along: Coordinate = X_AXIS,
-        count: Annotated[int, si.AtLeast(2), si.AtMost(_MOST_FACTORS)] = 256,
-    ) -> WaveCompensation:
-        """Compensation by `wave_factor` over its largest; `least` bounds what is made up for.
-
-        Where the contact meets less than the share `least`, the ripple is made up for in part.
-
-        Raises:
-            InputError: a value outside its range.
-        """
-        places = np.arange(count) / count * half_wavelength
-        raw = wave_factor(places, half_wavelength, contact_length)
-        factors = np.clip(raw / np.max(raw), least, 1.0)
-        return cls(half_wavelength, tuple(factors.tolist()), along)
 
     @classmethod
     @si.checked_numbers

@@ -8,8 +8,7 @@ from tests.finger_stiffness import finger_stiffness, interface_stiffness
 
 from squeezefilm.physics.contact.asperities import AsperityLaw
 from squeezefilm.physics.contact.finger.fingertip import Skin
-from squeezefilm.physics.contact.finger.load import compiled_finger
-from squeezefilm.physics.contact.finger.load_kernel import felt, strip_force
+from squeezefilm.physics.contact.finger.load import compiled_finger, felt, strip_force
 from squeezefilm.physics.contact.rough_contact import ContactLaw, RoughContact
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.film.closed import relative_damping, relative_stiffness

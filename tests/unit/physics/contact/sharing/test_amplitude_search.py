@@ -3,7 +3,7 @@
 import pytest
 
 from squeezefilm.core.errors import OutOfRangeError, UnreachableError
-from squeezefilm.physics.contact.sharing.paper import HIGHEST_AMPLITUDE, least_amplitude
+from squeezefilm.physics.contact.sharing.levitation import HIGHEST_AMPLITUDE, least_amplitude
 
 
 def falling(amplitude: float) -> float:

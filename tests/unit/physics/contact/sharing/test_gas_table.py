@@ -11,15 +11,15 @@ import pytest
 
 from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.core.materials import Gas
-from squeezefilm.physics.contact.sharing import film_panels
-from squeezefilm.physics.contact.sharing.film_panels import (
+from squeezefilm.physics.contact.sharing import gas_table
+from squeezefilm.physics.contact.sharing.gas_table import (
     SHIPPED_OCTAVES,
     SHIPPED_PANELS,
     START,
+    FilmTable,
     Panel,
     default_tolerance,
 )
-from squeezefilm.physics.contact.sharing.gas_table import FilmTable
 
 GAP, AMPLITUDE = 2e-6, 1e-6
 AIR = Gas(viscosity=1.8e-5, ambient_pressure=1.013e5, density=1.2, mean_free_path=6.8e-8)
@@ -44,7 +44,7 @@ def test_a_panel_that_is_kept_is_the_one_solved(
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     first, solved = fresh()
     with monkeypatch.context() as patch:
-        patch.setattr(film_panels, "solve_films", never)
+        patch.setattr(gas_table, "solve_films", never)
         again, found = fresh()
         # Another slip length Λ/ℓ, another slip or tolerance has films of its own.
         for changes in (
@@ -67,7 +67,7 @@ def test_a_panel_that_is_kept_is_the_one_solved(
 
 def test_no_film_is_solved_in_the_range_that_people_use(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(CACHE_VARIABLE, "off")
-    monkeypatch.setattr(film_panels, "solve_films", never)
+    monkeypatch.setattr(gas_table, "solve_films", never)
     for width in (100e-6, 250e-6, 500e-6):
         for frequency in (20e3, 40e3, 100e3):
             found, table = over_pressure(frequency, width=width)
@@ -81,13 +81,13 @@ def test_panels_that_come_with_the_package_are_what_the_solver_gives(slip: str, 
     """Run `tools/film_panels.py` where this fails: the solver or the table's nodes have changed."""
     # Another processor may refine a film elsewhere: it is then another by the error of films.
     tolerance = default_tolerance(slip)
-    error = tolerance / (6 if slip in film_panels.SMOOTH_LAWS else 10)
+    error = tolerance / (6 if slip in gas_table.SMOOTH_LAWS else 10)
     for number in SHIPPED_PANELS[slip][share > 1 :: share]:
         panel = Panel(slip, tolerance, START, number)
         for octave in SHIPPED_OCTAVES if share == 1 else SHIPPED_OCTAVES[number % 5 :][:1]:
             solved, shipped = (
                 panel.octave_solved(octave),
-                film_panels._shipped().get((octave, panel)),
+                gas_table._shipped().get((octave, panel)),
             )
             if shipped is None:
                 assert solved[-1] > 0.8 * tolerance

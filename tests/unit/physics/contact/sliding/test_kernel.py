@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 from squeezefilm.physics.contact.sliding.kernel import Track, slide_march
 from squeezefilm.physics.contact.sliding.pieces import BoneDrive, Rows
-from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin
+from squeezefilm.physics.contact.sliding.skin_path import LumpedSkin
 
 MASS, STIFFNESS = 1.6e-4, 1000.0
 W = math.sqrt(STIFFNESS / MASS)

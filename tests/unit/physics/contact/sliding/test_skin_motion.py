@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from squeezefilm.physics.contact.sliding.skin_motion import (
+from squeezefilm.physics.contact.sliding.skin_path import (
     Forces,
     LumpedSkin,
     first_rise,

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin
 from squeezefilm.physics.contact.sliding.skin_path import (
     TERMS,
     BonePull,
     Friction,
+    LumpedSkin,
     SkinPath,
     passes,
     path_over,

@@ -7,10 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.physics.contact.finger.fingerpad import FingerpadDynamics
-from squeezefilm.physics.contact.sliding.dry_friction import DryFriction, SpeedFriction
+from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.contact.sliding.kernel import Track, slide_march, strongest_and_fall
-from squeezefilm.physics.contact.sliding.march import slide
+from squeezefilm.physics.contact.sliding.march import DryFriction, SpeedFriction, slide
 from squeezefilm.physics.contact.sliding.pieces import (
     BoneDrive,
     Rows,
@@ -18,8 +17,7 @@ from squeezefilm.physics.contact.sliding.pieces import (
     on_segment,
     works_of_rest,
 )
-from squeezefilm.physics.contact.sliding.skin_motion import LumpedSkin
-from squeezefilm.physics.contact.sliding.skin_path import BonePull
+from squeezefilm.physics.contact.sliding.skin_path import BonePull, LumpedSkin
 
 SPEED = np.array([0.0, 0.1, 0.5])
 ROWS = np.array([[0.2, 0.4, 0.3], [0.0, 0.9, 0.1]])

@@ -13,7 +13,7 @@ from squeezefilm.core.hard_limits import PLANAR_MEMORY
 from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.planar import ladder as module
 from squeezefilm.physics.film.planar.balance import Balance, Balancer, Film
-from squeezefilm.physics.film.planar.gap import PlanarGap
+from squeezefilm.physics.film.planar.grid import PlanarGap
 from squeezefilm.physics.film.planar.ladder import (
     RUNGS,
     Climb,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.render.motion.finger_path import FingerPath, OverPath
+from squeezefilm.physics.render.motion.stroke import FingerPath, OverPath
 
 # Three millimetres along x, a rest, four along y.
 PATH = FingerPath(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.render.program.made_for import MadeForSpeed
+from squeezefilm.physics.render.program.renderer import MadeForSpeed
 
 AMPLITUDE = np.array([0.0, 1e-6, 2e-6])
 
