@@ -45,13 +45,8 @@ from squeezefilm.instruments.twin.envelope_step import (
 from squeezefilm.instruments.twin.hand import wanted
 from squeezefilm.physics.contact.sliding.kernel import Track, slide_march
 from squeezefilm.physics.contact.sliding.pieces import BoneDrive, Rows
-<<<<<<< HEAD
 from squeezefilm.physics.contact.sliding.skin_path import Forces, LumpedSkin, slide_by, transition
 from squeezefilm.physics.plate.heat_states import Drifts, changed, warmed
-=======
-from squeezefilm.physics.contact.sliding.skin_path import Forces, LumpedSkin, slide_by, transition
-from squeezefilm.physics.plate.heat_states import warmed
->>>>>>> 762e4cfb (Films in plain loops, predict by one record, joined modules of physics)
 from squeezefilm.physics.plate.thermal import Cooling
 
 # The state, float64: plate; finger; skin and friction; output; what the sensor shows.
