@@ -37,7 +37,7 @@ from tests.loop_runs import run_ticks
 from squeezefilm.instruments.session.loop import shared
 from squeezefilm.instruments.session.loop.atomics import store_release
 from squeezefilm.instruments.session.loop.lateness import Lateness
-from squeezefilm.instruments.session.loop.plan import DriveTable, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.process import PRIORITY, LoopProcess, lateness_in
 from squeezefilm.instruments.session.loop.ring import ring_put_all, taken
 from squeezefilm.instruments.session.loop.worker import Orders, run_loop
@@ -59,7 +59,7 @@ def plan_at(rate: float) -> LoopPlan:
         program=lower(Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6), largest_amplitude=LIMIT),
         rate=rate,
         envelope=DrivenEnvelope(0.5e-3, 0.5e-3, LIMIT),
-        drive=DriveTable.linear(LIMIT / 100.0, 100.0),
+        drive=LinearDrive(LIMIT / 100.0, 100.0),
         estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
         compensation="inverse",
         # The host's own lateness under load is not what is measured here.

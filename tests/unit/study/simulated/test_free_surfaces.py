@@ -23,7 +23,7 @@ FINGER = PEOPLE.median_finger()
 
 def run(*periods: float) -> Any:
     felt = Candidates(np.array(periods), np.arange(float(len(periods))))
-    return SimpleNamespace(percept=SimpleNamespace(candidates=felt))
+    return SimpleNamespace(candidates=felt)
 
 
 def test_a_free_hand_feels_both_ways_once(monkeypatch: pytest.MonkeyPatch) -> None:
