@@ -16,9 +16,8 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import DeviceError
 from squeezefilm.instruments.bench import loop_check
 from squeezefilm.instruments.bench.check import check_device
-from squeezefilm.instruments.bench.check_result import DeviceCheck
 from squeezefilm.instruments.bench.conversation import Conversation
-from squeezefilm.instruments.bench.loop_check import loop_result
+from squeezefilm.instruments.bench.loop_check import DeviceCheck, loop_result
 from squeezefilm.instruments.bench.reading_check import DELAY_WITHIN, reading_checks
 from squeezefilm.instruments.device.machine import device
 from squeezefilm.instruments.device.machine.device import Machine

@@ -20,8 +20,8 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import DeviceError
-from squeezefilm.instruments.bench.check_result import CheckResult, DeviceCheck, in_ms, judged
 from squeezefilm.instruments.bench.conversation import Conversation
+from squeezefilm.instruments.bench.loop_check import CheckResult, DeviceCheck, in_ms, judged
 from squeezefilm.instruments.bench.reading_check import reading_checks, sensor_checks
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m

@@ -26,9 +26,8 @@ from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.regular_file import read_regular_text
 from squeezefilm.core.results import Result, stamp
 from squeezefilm.instruments.bench.check import WATCHED, check_device
-from squeezefilm.instruments.bench.check_result import DeviceCheck
 from squeezefilm.instruments.bench.conversation import Conversation
-from squeezefilm.instruments.bench.loop_check import check_loop, waited_time
+from squeezefilm.instruments.bench.loop_check import DeviceCheck, check_loop, waited_time
 from squeezefilm.instruments.bench.played_session import PlayedSession, judge_session, tile_summary
 from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.instruments.control.gains import IdentifiedPlate, identified_plate

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import STOP_RAMP
-from squeezefilm.instruments.bench.check_result import CheckResult, in_ms, judged
 from squeezefilm.instruments.bench.conversation import KEEP_ALIVE, Conversation
+from squeezefilm.instruments.bench.loop_check import CheckResult, in_ms, judged
 from squeezefilm.instruments.bench.resonance_sweep import peak
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m

@@ -13,7 +13,7 @@ from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, tab
 from squeezefilm.physics.render.fidelity.report import contrast_rows, lag_rows
 
 if TYPE_CHECKING:
-    from squeezefilm.instruments.bench.check_result import DeviceCheck
+    from squeezefilm.instruments.bench.loop_check import DeviceCheck
     from squeezefilm.instruments.bench.play import PlayResult
     from squeezefilm.instruments.bench.played_session import Judged, PlayedSession
     from squeezefilm.instruments.session.play.plan import PlayView

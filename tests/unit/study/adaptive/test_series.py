@@ -14,7 +14,7 @@ from squeezefilm.study.adaptive.series import ModelSeries, adaptive_method
 from squeezefilm.study.adaptive.staircase import Staircase
 from squeezefilm.study.design.rules import AdaptiveCondition
 from squeezefilm.study.design.tasks.every_task import TASKS
-from squeezefilm.study.design.tasks.odd_one_out import share_right
+from squeezefilm.study.design.tasks.same_different import share_right
 from squeezefilm.study.design.tasks.task import Task
 from squeezefilm.study.design.tasks.two_surfaces import QUARTILE
 

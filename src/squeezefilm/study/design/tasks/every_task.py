@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from squeezefilm.study.design.tasks.adjustment import ADJUSTMENT
-from squeezefilm.study.design.tasks.odd_one_out import (
+from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE, YES_NO
+from squeezefilm.study.design.tasks.ranking import RANKING
+from squeezefilm.study.design.tasks.same_different import (
     ODD_ONE_OUT,
     ODD_ONE_OUT_OF_FIVE,
     ODD_ONE_OUT_OF_FOUR,
+    SAME_DIFFERENT,
 )
-from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE, YES_NO
-from squeezefilm.study.design.tasks.ranking import RANKING
-from squeezefilm.study.design.tasks.same_different import SAME_DIFFERENT
 from squeezefilm.study.design.tasks.task import StudyTask
 from squeezefilm.study.design.tasks.two_surfaces import (
     DETECTION,

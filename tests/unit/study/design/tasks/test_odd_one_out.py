@@ -19,7 +19,7 @@ from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.rules import AdaptiveCondition
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.design.tasks.every_task import TASKS
-from squeezefilm.study.design.tasks.odd_one_out import (
+from squeezefilm.study.design.tasks.same_different import (
     ODD_ONE_OUT,
     d_prime_of_share,
     share_right,
