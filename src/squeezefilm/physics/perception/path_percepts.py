@@ -17,13 +17,12 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.chain.rendered_texture import RenderAnalysis, render_texture
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.perception.observer import FingerClass, Observer
 from squeezefilm.physics.perception.percepts import CONTROL_RATE, Apparatus, Percept, with_finger
@@ -38,6 +37,9 @@ from squeezefilm.physics.perception.senses import (
 )
 from squeezefilm.physics.render.motion.stroke import FingerPath, MinimumJerkStroke
 from squeezefilm.physics.texture_files.texture_file import TextureFile
+
+if TYPE_CHECKING:
+    from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
 
 # A rhythm is felt along a run, at the spacing that the surface has in that direction: a finger that
 # crosses a grating of period λ at an angle θ to its axis meets λ/cos θ, and one that goes along the
@@ -167,6 +169,9 @@ def path_percept(
     Raises:
         InputError: no path, a path that holds no run of 4 mm, or what `render_texture` refuses.
     """
+    # What was felt before is read from disk, and needs neither plates nor loop.
+    from squeezefilm.physics.chain.rendered_texture import render_texture
+
     run = apparatus or Apparatus()
     runs = []
     for path in paths:
