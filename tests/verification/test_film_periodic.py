@@ -13,7 +13,9 @@ from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.kernel import newton
 from squeezefilm.physics.film.periodic.profile import flexural_profile
 from squeezefilm.physics.film.periodic.resolution import (
+    Cells,
     GridGap,
+    SolveRoom,
     collocation_times,
 )
 
@@ -180,12 +182,17 @@ def load_on_one_grid(cells, nt, sigma=30.0, eps=0.6):
     from squeezefilm.physics.film.periodic import uniform as u
 
     times = collocation_times(nt)
-    H = 1 + eps * np.cos(2 * np.pi * np.arange(nt) / nt)
-    w, _, _ = u.load_weights(eps, 1.0, H)
-    gap = GridGap(H[None], H[None], w[None], 0)
-    nodes = u.grid(cells, 0, sigma, 0.3)
-    p = np.zeros((cells, nt))
-    over, _, left = newton(times, nodes, gap, CompiledGas(1.0, 0.0, 0), p, Aim(1e-12, 40))
+    ntp = times.row
+    H, H3, w, c, s = (np.empty(ntp) for _ in range(5))
+    g, vol, share = np.zeros(cells + 1), np.zeros(cells + 1), np.zeros(cells + 1)
+    u.gap(nt, ntp, eps, H, H3)
+    u.load_weights(nt, ntp, eps, 1.0, H, w, c, s)
+    u.grid(cells, 0, sigma, 0.3, g, vol, share)
+    p, work = np.zeros(cells * ntp), np.zeros(10 * (cells + 1) * ntp)
+    over, _, left = newton(
+        cells, times, Cells(g, vol, share), GridGap(H, H, H3, w, 0), CompiledGas(1.0, 0.0, 0), p,
+        SolveRoom(work, np.empty(cells * nt * ntp)), Aim(1e-12, 40),
+    )  # fmt: skip
     assert left < 1e-9
     return over
 

@@ -102,12 +102,14 @@ def _refined_uniform(
     def solve(resolution: FilmResolution) -> Nested:
         cells = resolution.cells
         out = np.full((1, u.COLUMNS), np.nan)
-        rows = 7 * resolution.times.number + resolution.check.number
+        rows = 7 * resolution.times.row + resolution.check.row
         keep = np.empty(cells // 4 * rows)
         u.solve_rows(0, 1, films, resolution, Aim(NEWTON_SHARE * tolerance, MOST_NEWTON), out, keep)
 
         def share(m: int) -> si.FloatArray:
-            return np.append(u.grid(m, films.shape, 1.0, a).share, 0.0)
+            g, vol, part = np.zeros(m + 1), np.zeros(m + 1), np.zeros(m + 1)
+            u.grid(m, films.shape, 1.0, a, g, vol, part)
+            return part
 
         xi = np.linspace(0.0, 1.0, cells + 1)
         x = (0.5 if strip else 1.0) * xi * (1.0 + a * (1.0 - xi * xi))
@@ -181,7 +183,7 @@ def _refined_profile(
         x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
         even, odd = np.ascontiguousarray(harmonics.real), np.ascontiguousarray(-harmonics.imag)
         row = np.full(u.COLUMNS, np.nan)
-        keep = np.empty(cells // 4 * (7 * times.number + check.number) if field else 0)
+        keep = np.empty(cells // 4 * (7 * times.row + check.row) if field else 0)
         loads = (load_times(times.number, depth), load_times(check.number, depth))
         gap = Profile(slope, even, odd, depth, closed)
         solve_varying(sigma, gas, gap, resolution, loads, aim, row, keep)

@@ -1,7 +1,7 @@
 """Newton solve of the periodic film on one grid, compiled: the inner loop of everything here.
 
-Unknowns are the pressure deviations p = P − 1 at m nodes × nt times. The equation at node i, with
-M = P^{1/n} H the gas stored there,
+Unknowns are the pressure deviations p = P − 1 at m nodes × nt times; a row of nt times is padded
+to a multiple of eight lanes. The equation at node i, with M = P^{1/n} H the gas stored there,
 
     F[i+1] − F[i] − vol[i] · D M[i] = 0,   F[f] = g[f] Hf[f]³ φ[f] (Φ[f] − Φ[f−1]),
     Φ = n/(n+1) (P^{(n+1)/n} − 1),
@@ -16,182 +16,299 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-import numpy as np
-
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.film.gas import NO_SLIP, Aim, CompiledGas
 from squeezefilm.physics.film.mobility import slip_factor
-from squeezefilm.physics.film.periodic.resolution import Cells, GridGap, PeriodTimes
+from squeezefilm.physics.film.periodic.lanes import (
+    add,
+    broadcast,
+    div,
+    fma,
+    item,
+    largest_magnitude,
+    load,
+    mul,
+    peak,
+    store,
+    sub,
+    total,
+)
+from squeezefilm.physics.film.periodic.resolution import Cells, GridGap, PeriodTimes, SolveRoom
 
 # `reassoc` and `contract` only: NaN must stay visible, so `nnan` and `ninf` stay off.
 _FAST = {"reassoc", "contract", "arcp", "nsz"}
 
 
 class _Flow(NamedTuple):
-    """At nodes (m, times) storage R = P^{1/n}, q = dp/dM and potential Φ; at faces (m + 1, times)
-    the flux F and its slopes, −∂F/∂M of the node on the left and ∂F/∂M of that on the right."""
+    """Offsets of the rows in a solve's memory: storage R = P^{1/n}, q = dp/dM, potential Φ at
+    nodes; fluxes at faces and their slopes. Numbers and not arrays, whose references numba counts:
+    that took a tenth of the time of a small film."""
 
-    storage: si.FloatArray
-    q: si.FloatArray
-    potential: si.FloatArray
-    flux: si.FloatArray
-    left: si.FloatArray
-    right: si.FloatArray
+    storage: int
+    q: int
+    potential: int
+    flux: int
+    left: int
+    right: int
 
 
 @compiled(fastmath=_FAST, error_model="numpy")
-def _invert(S: si.FloatArray) -> None:
-    """Invert a block in place, without pivoting.
+def _invert(S: si.FloatArray, start: int, nt: int, ntp: int, mask: si.FloatArray) -> None:
+    """Invert the nt × nt block at `start` in place, without pivoting.
 
     The blocks are a positive diagonal plus an antisymmetric matrix (up to diagonal scaling), for
-    which elimination without pivoting is stable.
+    which elimination without pivoting is stable. `mask` is one minus the unit matrix: it clears
+    the pivot column inside the vector operation, where a scalar store would stall the next load.
     """
-    nt = S.shape[0]
     for k in range(nt):
-        pivot = 1.0 / S[k, k]
-        S[k, k] = 1.0
+        pivot_row = start + k * ntp
+        pivot = broadcast(1.0 / item(S, pivot_row + k))
+        for v in range(0, ntp, 8):
+            keep = load(mask, k * ntp + v)
+            one = sub(broadcast(1.0), keep)
+            store(S, pivot_row + v, mul(fma(load(S, pivot_row + v), keep, one), pivot))
+        if ntp == 8:
+            keep = load(mask, k * ntp)
+            row = load(S, pivot_row)
+            for i in range(nt):
+                if i != k:
+                    at = start + i * ntp
+                    factor = broadcast(-item(S, at + k))
+                    store(S, at, fma(factor, row, mul(load(S, at), keep)))
+        else:
+            for i in range(nt):
+                if i != k:
+                    at = start + i * ntp
+                    factor = broadcast(-item(S, at + k))
+                    for v in range(0, ntp, 8):
+                        keep = load(mask, k * ntp + v)
+                        row = load(S, pivot_row + v)
+                        store(S, at + v, fma(factor, row, mul(load(S, at + v), keep)))
+
+
+@compiled(fastmath=_FAST, error_model="numpy")
+def _apply(
+    S: si.FloatArray,
+    start: int,
+    nt: int,
+    ntp: int,
+    work: si.FloatArray,
+    at: int,
+    to: int,
+    accumulate: bool,
+) -> None:
+    """work[to:] (+)= Sᵀ work[at:] for the block at `start`, which holds the transposed inverse."""
+    for v in range(0, ntp, 8):
+        result = load(work, to + v) if accumulate else broadcast(0.0)
         for j in range(nt):
-            S[k, j] *= pivot
-        for i in range(nt):
-            if i != k:
-                factor = S[i, k]
-                S[i, k] = 0.0
-                for j in range(nt):
-                    S[i, j] -= factor * S[k, j]
+            result = fma(broadcast(item(work, at + j)), load(S, start + j * ntp + v), result)
+        store(work, to + v, result)
 
 
 @compiled(fastmath=_FAST, error_model="numpy")
-def _apply(S: si.FloatArray, right: si.FloatArray, out: si.FloatArray) -> None:
-    """out += Sᵀ right for a block S, the transposed inverse."""
-    for j in range(S.shape[0]):
-        value = right[j]
-        for t in range(S.shape[0]):
-            out[t] += value * S[j, t]
-
-
-@compiled(fastmath=_FAST, error_model="numpy")
-def _fill(g: si.FloatArray, gap: GridGap, gas: CompiledGas, p: si.FloatArray, flow: _Flow) -> None:
-    """Fill the rows of `flow` at p."""
-    H, Hf, stride = gap.node, gap.face, gap.stride
+def _coefficients(
+    m: int,
+    ntp: int,
+    g: si.FloatArray,
+    gap: GridGap,
+    gas: CompiledGas,
+    p: si.FloatArray,
+    work: si.FloatArray,
+    flow: _Flow,
+) -> None:
+    """Fill the rows of `flow` at p: the slope of the flux F is −∂F/∂M left of the face, ∂F/∂M right
+    of it."""
+    H, Hf, Hf3, _, stride = gap
     n, kn, law = gas
-    R, q, Phi, F, left, right = flow
-    m, nt = p.shape
-    for i in range(m):
-        for t in range(nt):
-            P = 1.0 + p[i, t]
-            if n == 1.0:
-                R[i, t] = P
-                q[i, t] = 1.0 / H[i * stride, t]
+    R, q, Phi, F, cl, cr = flow
+    one = broadcast(1.0)
+    if n == 1.0:
+        half = broadcast(0.5)
+        for i in range(m):
+            for v in range(0, ntp, 8):
+                at = i * ntp + v
+                dev = load(p, at)
+                P = add(one, dev)
+                store(work, R + at, P)
+                store(work, q + at, div(one, load(H, i * stride + v)))
                 # p + p²/2 keeps its digits where p is small; (P² − 1)/2 would not.
-                Phi[i, t] = p[i, t] * (1.0 + 0.5 * p[i, t])
-            else:
-                root = math.exp(math.log(P) / n)
-                R[i, t] = root
-                q[i, t] = n * P / (H[i * stride, t] * root)
-                Phi[i, t] = n / (n + 1.0) * (P * root - 1.0)
+                store(work, Phi + at, mul(dev, fma(half, dev, one)))
+    else:
+        inverse, share = 1.0 / n, n / (n + 1.0)
+        for i in range(m):
+            for t in range(ntp):
+                at = i * ntp + t
+                P = 1.0 + p[at]
+                root = math.exp(inverse * math.log(P))
+                work[R + at] = root
+                work[q + at] = n * P / (H[i * stride + t] * root)
+                work[Phi + at] = share * (P * root - 1.0)
+    zero = broadcast(0.0)
+    if law == NO_SLIP:
+        for f in range(m + 1):
+            geometry = broadcast(item(g, f))
+            for v in range(0, ntp, 8):
+                c = mul(geometry, load(Hf3, f * stride + v))
+                left, right = (f - 1) * ntp + v, f * ntp + v
+                a = load(work, Phi + left) if f > 0 else zero
+                b = load(work, Phi + right) if f < m else zero
+                store(work, F + right, mul(c, sub(b, a)))
+                if f > 0:
+                    store(work, cl + right, mul(c, mul(load(work, R + left), load(work, q + left))))
+                if f < m:
+                    store(
+                        work, cr + right, mul(c, mul(load(work, R + right), load(work, q + right)))
+                    )
+        return
     for f in range(m + 1):
-        for t in range(nt):
+        if g[f] == 0.0:
+            for v in range(0, ntp, 8):
+                store(work, F + f * ntp + v, zero)
+                store(work, cl + f * ntp + v, zero)
+                store(work, cr + f * ntp + v, zero)
+            continue
+        for t in range(ntp):
+            left, right = (f - 1) * ntp + t, f * ntp + t
             Phi_a, R_a, q_a, p_a = 0.0, 1.0, 1.0, 0.0
             Phi_b, R_b, q_b, p_b = 0.0, 1.0, 1.0, 0.0
             if f > 0:
-                Phi_a, R_a, q_a, p_a = Phi[f - 1, t], R[f - 1, t], q[f - 1, t], p[f - 1, t]
+                Phi_a, R_a, q_a, p_a = work[Phi + left], work[R + left], work[q + left], p[left]
             if f < m:
-                Phi_b, R_b, q_b, p_b = Phi[f, t], R[f, t], q[f, t], p[f, t]
-            h = Hf[f * stride, t]
-            c, rise, factor, bend = g[f] * h * h * h, Phi_b - Phi_a, 1.0, 0.0
-            if law != NO_SLIP:
-                mean = 1.0 + 0.5 * (p_a + p_b)
-                local = kn / (mean * h)
-                factor, slope = slip_factor(law, local)
-                bend = -0.5 * slope * local / mean * rise
-            F[f, t] = c * factor * rise
-            left[f, t] = c * (factor * R_a - bend) * q_a
-            right[f, t] = c * (factor * R_b + bend) * q_b
+                Phi_b, R_b, q_b, p_b = work[Phi + right], work[R + right], work[q + right], p[right]
+            mean = 1.0 + 0.5 * (p_a + p_b)
+            local = kn / (mean * Hf[f * stride + t])
+            factor, slope = slip_factor(law, local)
+            c = g[f] * Hf3[f * stride + t]
+            rise = Phi_b - Phi_a
+            bend = -0.5 * slope * local / mean * rise
+            work[F + right] = c * factor * rise
+            work[cl + right] = c * (factor * R_a - bend) * q_a
+            work[cr + right] = c * (factor * R_b + bend) * q_b
 
 
 @compiled(fastmath=_FAST, error_model="numpy")
 def newton(
-    times: PeriodTimes, cells: Cells, gap: GridGap, gas: CompiledGas, p: si.FloatArray, aim: Aim
+    m: int,
+    times: PeriodTimes,
+    cells: Cells,
+    gap: GridGap,
+    gas: CompiledGas,
+    p: si.FloatArray,
+    room: SolveRoom,
+    aim: Aim,
 ) -> tuple[float, int, float]:
-    """Improve p (nodes, times) in place; return the over-pressure, iterations, last residual.
+    """Improve p (m rows of times) in place; return the over-pressure, iterations, last residual.
 
     The residual returned is the estimated relative error that the iteration leaves in the
     over-pressure; above the tolerance aimed at means not converged.
     """
-    DT = times.derivative
+    nt, ntp, DT, mask = times
     g, vol, share = cells
-    H, weight, stride = gap.node, gap.weight, gap.stride
+    H, _, _, weight, stride = gap
     n = gas.polytropic_exponent
-    m, nt = p.shape
-    nodes, faces, S = np.empty((5, m, nt)), np.empty((5, m + 1, nt)), np.empty((m, nt, nt))
-    flow = _Flow(nodes[0], nodes[1], nodes[2], faces[0], faces[1], faces[2])
-    R, F, r, z, lower, upper = nodes[0], faces[0], nodes[3], nodes[4], faces[3], faces[4]
+    work, S = room
+    size = m * ntp
+    faces = size + ntp
+    R, q, Phi, r, z, F = 0, size, 2 * size, 3 * size, 4 * size, 5 * size
+    cl, cr, ol, our = F + faces, F + 2 * faces, F + 3 * faces, F + 4 * faces
+    block = nt * ntp
 
-    over, before, remaining = 0.0, 1e300, 1e300
+    over = 0.0
+    before = 1e300
+    remaining = 1e300
     fresh = True
     iteration = 0
     while iteration < aim.most:
         iteration += 1
-        _fill(g, gap, gas, p, flow)
+        _coefficients(m, ntp, g, gap, gas, p, work, _Flow(R, q, Phi, F, cl, cr))
         if fresh:
-            faces[3:] = faces[1:3]
+            our, cr = cr, our
+            ol, cl = cl, ol
         for i in range(m):
-            for t in range(nt):
-                r[i, t] = F[i + 1, t] - F[i, t]
-            for j in range(nt):
-                stored = vol[i] * R[i, j] * H[i * stride, j]
-                for t in range(nt):
-                    r[i, t] -= stored * DT[j, t]
+            amount = broadcast(-item(vol, i))
+            for v in range(0, ntp, 8):
+                at = i * ntp + v
+                change = broadcast(0.0)
+                for j in range(nt):
+                    M = broadcast(item(work, R + i * ntp + j) * item(H, i * stride + j))
+                    change = fma(M, load(DT, j * ntp + v), change)
+                flow = sub(load(work, F + at + ntp), load(work, F + at))
+                store(work, r + at, fma(amount, change, flow))
+        for i in range(m):
+            start = i * block
+            at = i * ntp
             if fresh:
                 for j in range(nt):
-                    for t in range(nt):
-                        S[i, j, t] = vol[i] * DT[j, t]
+                    row = start + j * ntp
+                    diagonal = broadcast(item(work, ol + at + ntp + j) + item(work, our + at + j))
+                    for v in range(0, ntp, 8):
+                        unit = sub(broadcast(1.0), load(mask, j * ntp + v))
+                        entry = mul(broadcast(item(vol, i)), load(DT, j * ntp + v))
+                        entry = fma(diagonal, unit, entry)
                         if i > 0:
-                            S[i, j, t] -= upper[i, j] * lower[i, t] * S[i - 1, j, t]
-                    S[i, j, j] += lower[i + 1, j] + upper[i, j]
-                _invert(S[i])
+                            link = mul(
+                                broadcast(-item(work, our + at + j)), load(work, ol + at + v)
+                            )
+                            entry = fma(link, load(S, row - block + v), entry)
+                        store(S, row + v, entry)
+                _invert(S, start, nt, ntp, mask)
             if i > 0:
-                for t in range(nt):
-                    r[i, t] += lower[i, t] * z[i - 1, t]
-            z[i] = 0.0
-            _apply(S[i], r[i], z[i])
+                for v in range(0, ntp, 8):
+                    carried = mul(load(work, ol + at + v), load(work, z + at - ntp + v))
+                    store(work, r + at + v, add(load(work, r + at + v), carried))
+            _apply(S, start, nt, ntp, work, r + at, z + at, False)
         for i in range(m - 2, -1, -1):
-            for t in range(nt):
-                r[i, t] = upper[i + 1, t] * z[i + 1, t]
-            _apply(S[i], r[i], z[i])
-        largest, deepest = 0.0, 0.0
+            at = i * ntp
+            for v in range(0, ntp, 8):
+                carried = mul(load(work, our + at + ntp + v), load(work, z + at + ntp + v))
+                store(work, r + at + v, carried)
+            _apply(S, i * block, nt, ntp, work, r + at, z + at, True)
+        size_of_step = broadcast(0.0)
         for i in range(m):
-            for t in range(nt):
-                part = z[i, t] / (H[i * stride, t] * R[i, t])
-                largest, deepest = max(largest, abs(part)), max(deepest, -part)
+            for v in range(0, ntp, 8):
+                at = i * ntp + v
+                held = mul(load(H, i * stride + v), load(work, R + at))
+                size_of_step = largest_magnitude(size_of_step, div(load(work, z + at), held))
+        largest = peak(size_of_step)
         # A full step must leave gas everywhere; 0.8 keeps a margin for the logarithm.
-        scale = 0.8 / deepest if deepest > 0.8 else 1.0
+        scale = 1.0
+        if largest > 0.8:
+            deepest = 0.0
+            for i in range(m):
+                for t in range(nt):
+                    at = i * ntp + t
+                    deepest = max(deepest, -work[z + at] / (H[i * stride + t] * work[R + at]))
+            if deepest > 0.8:
+                scale = 0.8 / deepest
         over = 0.0
         for i in range(m):
-            part = 0.0
-            for t in range(nt):
-                rise = scale * z[i, t] / H[i * stride, t]
+            part = broadcast(0.0)
+            for v in range(0, ntp, 8):
+                at = i * ntp + v
+                rise = mul(broadcast(scale), div(load(work, z + at), load(H, i * stride + v)))
                 if n == 1.0:
-                    p[i, t] += rise
+                    store(p, at, add(rise, load(p, at)))
                 else:
-                    p[i, t] = math.exp(n * math.log(R[i, t] + rise)) - 1.0
-                part += weight[i * stride, t] * p[i, t]
-            over += share[i] * part
+                    store(work, R + at, add(rise, load(work, R + at)))
+                    for t in range(at, at + 8):
+                        p[t] = math.exp(n * math.log(work[R + t])) - 1.0
+                part = fma(load(weight, i * stride + v), load(p, at), part)
+            over += share[i] * total(part)
         if not abs(over) < 1e300:
             return math.nan, iteration, math.inf
         # What remains after a Newton step is about its square; after a chord step, the
         # geometric tail of the steps so far.
         goal = aim.tolerance * abs(over) / (1.0 + abs(over))
         if scale < 1.0:
-            rest = 1.0
+            left = 1.0
         elif fresh:
-            rest = largest * largest
+            left = largest * largest
         else:
             rate = largest / before
-            rest = largest * rate / (1.0 - rate) if rate < 1.0 else 1.0
-        remaining = rest * (1.0 + abs(over)) / max(abs(over), 1e-300)
-        if rest <= goal:
+            left = largest * rate / (1.0 - rate) if rate < 1.0 else 1.0
+        remaining = left * (1.0 + abs(over)) / max(abs(over), 1e-300)
+        if left <= goal:
             break
         # Keep the old inverses while they gain: a chord step costs a fifth of a Newton step.
         fresh = scale < 1.0 or largest > 0.03 or (largest > 0.1 * before and not fresh)
@@ -200,33 +317,44 @@ def newton(
 
 
 @compiled(fastmath=_FAST, error_model="numpy")
-def prolong(coarse: si.FloatArray, closed: bool) -> si.FloatArray:
-    """Carry p (m, times) to the grid with twice the cells, by cubics.
+def prolong(coarse: si.FloatArray, m: int, ntp: int, closed: bool, fine: si.FloatArray) -> None:
+    """Carry m rows of p to the grid with twice the cells, by cubics.
 
     With `closed`, node 0 is a plane of symmetry and the edge follows node m − 1 (2m rows come
     out); without, both neighbours outside are edges (2m + 1 rows come out).
     """
-    m, nt = coarse.shape
-    parts = 2 * m if closed else m + 1
-    whole = np.zeros((parts + 1, nt))
-    for i in range(m):
-        whole[m + i if closed else i + 1] = coarse[i]
+    for t in range(ntp):
         if closed:
-            whole[m - i] = coarse[i]
-    fine = np.zeros((2 * parts + 1, nt))
-    fine[::2] = whole
-    for i in range(parts):
-        if parts < 3:
-            # The edges are 0: the parabola through what is between.
-            fine[2 * i + 1] = 0.75 * whole[1]
-            continue
-        # Of four neighbours, between the first two, the middle ones or the last.
-        first = min(max(i - 1, 0), parts - 3)
-        a, b, c, d = whole[first], whole[first + 1], whole[first + 2], whole[first + 3]
-        if i == first:
-            fine[2 * i + 1] = (5.0 * a + 15.0 * b - 5.0 * c + d) / 16.0
-        elif i == first + 1:
-            fine[2 * i + 1] = (9.0 * (b + c) - a - d) / 16.0
+            for i in range(m):
+                a = coarse[i * ntp + t]
+                b = coarse[(i + 1) * ntp + t] if i + 1 < m else 0.0
+                fine[2 * i * ntp + t] = a
+                before = coarse[abs(i - 1) * ntp + t] if m > 1 or i > 1 else 0.0
+                if i + 1 < m:
+                    after = coarse[(i + 2) * ntp + t] if i + 2 < m else 0.0
+                    middle = (9.0 * (a + b) - before - after) / 16.0
+                elif m == 1:
+                    middle = 0.75 * a
+                else:
+                    second = coarse[abs(i - 2) * ntp + t]
+                    middle = (15.0 * a - 5.0 * before + second) / 16.0
+                fine[(2 * i + 1) * ntp + t] = middle
         else:
-            fine[2 * i + 1] = (a - 5.0 * b + 15.0 * c + 5.0 * d) / 16.0
-    return fine[parts : 2 * parts] if closed else fine[1 : 2 * parts]
+            for i in range(m + 1):
+                a = coarse[(i - 1) * ntp + t] if i > 0 else 0.0
+                b = coarse[i * ntp + t] if i < m else 0.0
+                if i > 0:
+                    fine[(2 * i - 1) * ntp + t] = a
+                if m < 3:
+                    middle = 0.5 * (a + b)
+                elif i == 0:
+                    middle = (15.0 * b - 5.0 * coarse[ntp + t] + coarse[2 * ntp + t]) / 16.0
+                elif i == m:
+                    before = coarse[(m - 2) * ntp + t]
+                    second = coarse[(m - 3) * ntp + t]
+                    middle = (15.0 * a - 5.0 * before + second) / 16.0
+                else:
+                    before = coarse[(i - 2) * ntp + t] if i > 1 else 0.0
+                    after = coarse[(i + 1) * ntp + t] if i + 1 < m else 0.0
+                    middle = (9.0 * (a + b) - before - after) / 16.0
+                fine[2 * i * ntp + t] = middle

@@ -80,8 +80,8 @@ def levels_of(
         (cells, times),
     ):
         unknowns = m if closed else m - 1
-        p = keep[start : start + unknowns * now.number].reshape(unknowns, now.number)
-        start += unknowns * now.number
+        p = keep[start : start + unknowns * now.row].reshape(unknowns, now.row)[:, : now.number]
+        start += unknowns * now.row
         edge = np.zeros((1, now.number))
         levels.append(Level(np.vstack([p, edge] if closed else [edge, p, edge]), share(m)))
     return levels

@@ -6,6 +6,7 @@ the error estimate of the solve itself, and refined until that meets the toleran
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -15,11 +16,13 @@ from squeezefilm.core import quantities as si
 
 
 class PeriodTimes(NamedTuple):
-    """The collocation times of a period: how many, and the transposed Fourier differentiation
-    matrix."""
+    """The collocation times of a period: how many, the length of their padded row, the transposed
+    Fourier differentiation matrix, and one minus the unit matrix, both flattened."""
 
     number: int
+    row: int
     derivative: si.FloatArray
+    mask: si.FloatArray
 
 
 class Cells(NamedTuple):
@@ -31,13 +34,21 @@ class Cells(NamedTuple):
 
 
 class GridGap(NamedTuple):
-    """The gap at nodes and at faces, and the weights of p in the mean load, each (places, times);
-    `stride` from one node to the next, 0 where the gap does not depend on position."""
+    """The gap at nodes and faces, its cube there, and the weights of p in the mean load; rows of
+    times with `stride` from one node to the next, 0 where the gap does not depend on position."""
 
     node: si.FloatArray
     face: si.FloatArray
+    face_cubed: si.FloatArray
     weight: si.FloatArray
     stride: int
+
+
+class SolveRoom(NamedTuple):
+    """Memory for a solve: rows of times, and the inverses of the diagonal blocks."""
+
+    rows: si.FloatArray
+    blocks: si.FloatArray
 
 
 class FilmResolution(NamedTuple):
@@ -60,10 +71,17 @@ def collocation_times(nt: int) -> PeriodTimes:
 
     `nt` is odd: an even number leaves the highest harmonic without a derivative.
     """
-    apart = np.arange(nt)[:, None] - np.arange(nt)
-    sine = np.where(apart == 0, 1.0, np.sin(np.pi * apart / nt))
-    derivative = np.where(apart == 0, 0.0, 0.5 * (-1.0) ** apart / sine)
-    return PeriodTimes(nt, np.ascontiguousarray(derivative.T))
+    ntp = 8 * ((nt + 7) // 8)
+    D = np.zeros((nt, ntp))
+    for i in range(nt):
+        for j in range(nt):
+            if i != j:
+                D[i, j] = 0.5 * (-1.0) ** (i - j) / math.sin(math.pi * (i - j) / nt)
+    DT = np.zeros((nt, ntp))
+    DT[:, :nt] = D[:, :nt].T
+    mask = np.ones((nt, ntp))
+    mask[:, :nt] -= np.eye(nt)
+    return PeriodTimes(nt, ntp, DT.ravel(), mask.ravel())
 
 
 def resolution_of(cells: int, times: int) -> FilmResolution:

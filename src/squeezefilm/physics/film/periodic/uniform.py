@@ -20,6 +20,8 @@ from squeezefilm.physics.film.periodic.resolution import (
     Cells,
     FilmResolution,
     GridGap,
+    PeriodTimes,
+    SolveRoom,
 )
 
 STRIP, DISC = 0, 1
@@ -45,16 +47,20 @@ def edge_grading(sigma: float, eps: float) -> float:
 
 @compiled(error_model="numpy")
 def load_weights(
-    eps: float, n: float, H: si.FloatArray
-) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
-    """Weights of p at the times of the gaps H for the mean force and its first harmonic, of cos T
-    and of sin T.
+    nt: int,
+    ntp: int,
+    eps: float,
+    n: float,
+    H: si.FloatArray,
+    w: si.FloatArray,
+    c: si.FloatArray,
+    s: si.FloatArray,
+) -> None:
+    """Weights of p at the nt times for the mean force and its first harmonic.
 
     Ψ = P Hⁿ is nearly constant in time, P is not. So the trigonometric interpolant of Ψ − Hⁿ is
     integrated against H^-n exactly, through the Fourier coefficients of H^-n.
     """
-    nt = H.size
-    w, c, s = np.empty(nt), np.empty(nt), np.empty(nt)
     most = nt // 2
     a = np.zeros(most + 3)
     if n == 1.0:
@@ -77,6 +83,10 @@ def load_weights(
             for k in range(most + 3):
                 a[k] += value * now
                 before, now = now, turn * now - before
+    for t in range(ntp):
+        w[t] = 0.0
+        c[t] = 0.0
+        s[t] = 0.0
     for t in range(nt):
         angle = 2.0 * math.pi * t / nt
         turn = 2.0 * math.cos(angle)
@@ -93,19 +103,26 @@ def load_weights(
         w[t] = mean / nt * power
         c[t] = even / nt * power
         s[t] = odd / nt * power
-    return w, c, s
 
 
 @compiled(error_model="numpy")
-def grid(m: int, shape: int, sigma: float, a: float) -> Cells:
+def grid(
+    m: int,
+    shape: int,
+    sigma: float,
+    a: float,
+    g: si.FloatArray,
+    vol: si.FloatArray,
+    share: si.FloatArray,
+) -> None:
     """Face conductances, σ × volumes and shares of the area for m cells between centre and edge.
 
     The map is odd in ξ about the centre and the same for every m, so that the error of the
     solution is a series in even powers of 1/m, which the extrapolation needs.
     """
-    g, vol, share = np.zeros(m + 1), np.empty(m), np.empty(m)
     step = 1.0 / m
     length = 0.5 if shape == STRIP else 1.0
+    g[0] = 0.0
     for i in range(m):
         x = i * step
         slope = length * (1.0 + a - 3.0 * a * x * x)
@@ -123,7 +140,14 @@ def grid(m: int, shape: int, sigma: float, a: float) -> Cells:
         g[i + 1] = conductance
         vol[i] = sigma * volume
         share[i] = 2.0 * volume
-    return Cells(g, vol, share)
+
+
+@compiled(error_model="numpy")
+def gap(nt: int, ntp: int, eps: float, H: si.FloatArray, H3: si.FloatArray) -> None:
+    """H = 1 + ε cos T at the nt times, and its cube; 1 in the padding."""
+    for t in range(ntp):
+        H[t] = 1.0 + eps * math.cos(2.0 * math.pi * t / nt) if t < nt else 1.0
+        H3[t] = H[t] * H[t] * H[t]
 
 
 @compiled(error_model="numpy")
@@ -198,6 +222,16 @@ def solve_rows(
     """
     sigma, eps, n, kn, law, shape = films
     cells, times, fuller = resolution
+    nt, ntp = times.number, times.row
+    wide = max(ntp, fuller.row)
+    rows = cells + 1
+    H, H3 = np.empty(wide), np.empty(wide)
+    w, c, s = np.empty(wide), np.empty(wide), np.empty(wide)
+    g, vol, share = np.empty(rows), np.empty(rows), np.empty(rows)
+    p, other = np.empty(rows * wide), np.empty(rows * wide)
+    blocks = max(cells * nt * ntp, max(cells // 4, 2) * fuller.number * fuller.row)
+    room = SolveRoom(np.zeros(10 * rows * wide), np.empty(blocks))
+    nodes, gaps = Cells(g, vol, share), GridGap(H, H, H3, w, 0)
     close = Aim(0.03 * aim.tolerance, aim.most)
     # Over-pressure and first harmonic, of the three grids and of the check.
     level, harmonic = np.empty(4), np.empty(4, dtype=np.complex128)
@@ -210,34 +244,41 @@ def solve_rows(
         wide_sigma = sig if shape == STRIP else 2.25 * sig
         a = edge_grading(wide_sigma, e)
         gas = CompiledGas(poly, rare, law)
-        its, left, kept = 0, 0.0, 0
-        level[:] = math.nan
-        for now, first, grids in ((fuller, 3, 1), (times, 0, 3)):
-            nt = now.number
-            H = 1.0 + e * np.cos(2.0 * math.pi * np.arange(nt) / nt)
-            w, c, s = load_weights(e, poly, H)
-            gaps = GridGap(H.reshape(1, nt), H.reshape(1, nt), w.reshape(1, nt), 0)
-            m = checked if first == 3 else coarsest
-            p = np.zeros((m, nt))
-            for stage in range(first, first + grids):
-                if stage in (1, 2):
-                    p = prolong(p, True)
-                    m *= 2
-                nodes = grid(m, shape, sig, a)
-                over, more, remains = newton(now, nodes, gaps, gas, p, close)
-                its += more
-                left = max(left, remains)
-                level[stage] = over
-                harmonic[stage] = _first_harmonic(nodes.share, c, s, p)
-                if math.isnan(over):
-                    break
-                if keep.size > 0:
-                    keep[kept : kept + p.size] = p.ravel()
-                    kept += p.size
-        check = level[3]
+        gap(fuller.number, fuller.row, e, H, H3)
+        load_weights(fuller.number, fuller.row, e, poly, H, w, c, s)
+        grid(checked, shape, sig, a, g, vol, share)
+        p[: checked * fuller.row] = 0.0
+        check, its, left = newton(checked, fuller, nodes, gaps, gas, p, room, close)
+        level[3] = check
+        harmonic[3] = _first_harmonic(checked, fuller, share, c, s, p)
+        kept = 0
+        if keep.size > 0:
+            kept = checked * fuller.row
+            keep[:kept] = p[:kept]
+        gap(nt, ntp, e, H, H3)
+        load_weights(nt, ntp, e, poly, H, w, c, s)
+        p[: coarsest * ntp] = 0.0
+        grid(coarsest, shape, sig, a, g, vol, share)
+        m = coarsest
+        for stage in range(3):
+            if stage > 0:
+                prolong(p, m, ntp, True, other)
+                p, other = other, p
+                m *= 2
+                grid(m, shape, sig, a, g, vol, share)
+            over, more, remains = newton(m, times, nodes, gaps, gas, p, room, close)
+            its += more
+            left = max(left, remains)
+            level[stage] = over
+            harmonic[stage] = _first_harmonic(m, times, share, c, s, p)
+            if math.isnan(over):
+                break
+            if keep.size > 0:
+                keep[kept : kept + m * ntp] = p[: m * ntp]
+                kept += m * ntp
         out[case, ITERATIONS] = its
         out[case, RESIDUAL] = left
-        if math.isnan(level[:3].sum()) or math.isnan(check):
+        if math.isnan(over) or math.isnan(check):
             out[case, OVER] = math.nan
             out[case, ERROR] = math.nan
             continue
@@ -263,15 +304,20 @@ def solve_rows(
 
 @compiled(error_model="numpy")
 def _first_harmonic(
-    share: si.FloatArray, c: si.FloatArray, s: si.FloatArray, p: si.FloatArray
+    m: int,
+    times: PeriodTimes,
+    share: si.FloatArray,
+    c: si.FloatArray,
+    s: si.FloatArray,
+    p: si.FloatArray,
 ) -> complex:
     """F of the area mean Re[F e^{iT}] of p: `c` weighs cos T, `s` weighs sin T, which is −Im F."""
     real, imag = 0.0, 0.0
-    for i in range(share.size):
+    for i in range(m):
         even, odd = 0.0, 0.0
-        for t in range(c.size):
-            even += c[t] * p[i, t]
-            odd += s[t] * p[i, t]
+        for t in range(times.number):
+            even += c[t] * p[i * times.row + t]
+            odd += s[t] * p[i * times.row + t]
         real += share[i] * even
         imag += share[i] * odd
     return complex(real, -imag)

@@ -31,6 +31,7 @@ from squeezefilm.physics.film.periodic.uniform import (
     TIME,
     Films,
     edge_grading,
+    gap,
     grid,
     load_weights,
     rounding,
@@ -47,17 +48,15 @@ def test_the_grading_grows_with_the_layers_sharpness() -> None:
     assert edge_grading(1e9, 0.3) == pytest.approx(0.44)
 
 
-def gap(nt: int, eps: float) -> np.ndarray:
-    return 1 + eps * np.cos(2 * np.pi * np.arange(nt) / nt)
-
-
 @pytest.mark.parametrize("n", [1.0, 1.4, 5 / 3])
 @pytest.mark.parametrize("eps", [0.0, 0.4, 0.9])
-@pytest.mark.parametrize("nt", [5, 9])
+@pytest.mark.parametrize(("nt", "ntp"), [(5, 8), (9, 16)])
 def test_weights_in_time_integrate_what_is_nearly_constant_exactly(
-    nt: int, eps: float, n: float
+    nt: int, ntp: int, eps: float, n: float
 ) -> None:
-    w, c, s = load_weights(eps, n, gap(nt, eps))
+    H, H3, w, c, s = (np.full(ntp, np.nan) for _ in range(5))
+    gap(nt, ntp, eps, H, H3)
+    load_weights(nt, ntp, eps, n, H, w, c, s)
     times, fine = 2 * np.pi * np.arange(nt) / nt, 2 * np.pi * np.arange(2000) / 2000
     for seed in range(3):
         even, odd = np.random.default_rng(seed).standard_normal((2, nt // 2 + 1))
@@ -69,14 +68,20 @@ def test_weights_in_time_integrate_what_is_nearly_constant_exactly(
             return np.asarray(waves / (1 + eps * np.cos(T)) ** n)
 
         p, exact = pressure(times), pressure(fine)
-        assert w @ p == pytest.approx(exact.mean(), rel=1e-9, abs=1e-10)
-        assert c @ p == pytest.approx(2 * (exact * np.cos(fine)).mean(), rel=1e-9, abs=1e-10)
-        assert s @ p == pytest.approx(2 * (exact * np.sin(fine)).mean(), rel=1e-9, abs=1e-10)
+        assert w[:nt] @ p == pytest.approx(exact.mean(), rel=1e-9, abs=1e-10)
+        assert c[:nt] @ p == pytest.approx(2 * (exact * np.cos(fine)).mean(), rel=1e-9, abs=1e-10)
+        assert s[:nt] @ p == pytest.approx(2 * (exact * np.sin(fine)).mean(), rel=1e-9, abs=1e-10)
+    for one in (w, c, s):
+        assert np.all(one[nt:] == 0.0)
+    assert np.all(H[nt:] == 1.0)
+    assert H[:nt] == pytest.approx(1 + eps * np.cos(times))
+    assert pytest.approx(H**3) == H3
 
 
 def sums(m: int, shape: int, a: float) -> tuple[float, float, np.ndarray]:
     """The mean of 1 − (2x)⁴ (1 − r⁴ on the disc), σ × the half width or area, fluxes of x²."""
-    g, vol, share = grid(m, shape, 7.0, a)
+    g, vol, share = np.empty(m + 1), np.empty(m), np.empty(m)
+    grid(m, shape, 7.0, a, g, vol, share)
     xi = np.arange(m + 1) / m
     place = (0.5 if shape == STRIP else 1.0) * xi * (1 + a * (1 - xi**2))
     assert g[0] == 0.0
@@ -106,11 +111,12 @@ def test_a_grids_shares_and_faces_are_those_of_the_film_to_second_order(
 
 
 def test_a_discs_middle_cell_is_a_small_disc_and_volumes_go_with_the_squeeze_number() -> None:
-    _, vol, share = grid(4, DISC, 3.0, 0.2)
+    g, vol, share = np.empty(5), np.empty(4), np.empty(4)
+    grid(4, DISC, 3.0, 0.2, g, vol, share)
     radius = 0.125 * (1 + 0.2 * (1 - 0.125**2))
     assert share[0] == pytest.approx(radius**2)
     assert vol == pytest.approx(1.5 * share)
-    _, vol, share = grid(4, STRIP, 3.0, 0.2)
+    grid(4, STRIP, 3.0, 0.2, g, vol, share)
     # Half a cell of 1/4 at the middle, where the map has the slope (1 + a)/2.
     assert share[0] == pytest.approx(0.125 * 1.2)
     assert vol == pytest.approx(1.5 * share)
@@ -153,9 +159,9 @@ def answers(
     cells: int, shape: int, *, n: float = 1.0, kn: float = 0.0, aim: Aim | None = None
 ) -> tuple[np.ndarray, Any, np.ndarray]:
     resolution = resolution_of(cells, 9)
-    row = resolution.times.number
+    row = resolution.times.row
     films = Films(*(np.array([v]) for v in (20.0, 0.5, n, kn)), 1 if kn else 0, shape)
-    check = max(cells // 4, 2) * resolution.check.number
+    check = max(cells // 4, 2) * resolution.check.row
     size = check + (cells // 4 + cells // 2 + cells) * row
     out, keep = np.full((1, COLUMNS), np.nan), np.full(size, np.nan)
     solve_rows(0, 1, films, resolution, aim or Aim(1e-11, 30), out, keep)
@@ -190,8 +196,10 @@ def test_a_row_of_answers_is_what_its_grids_say(
     assert 0 <= row[RESIDUAL] < 1e-10
     assert row[ITERATIONS] == int(row[ITERATIONS])
     # After those of the check, the pressures kept are those of the three grids.
-    nt = resolution.times.number
-    weights = load_weights(0.5, n, gap(nt, 0.5))
+    nt, ntp = resolution.times.number, resolution.times.row
+    H, H3, w, c, s = (np.empty(ntp) for _ in range(5))
+    gap(nt, ntp, 0.5, H, H3)
+    load_weights(nt, ntp, 0.5, n, H, w, c, s)
     found = []
     quarter, half = cells // 4, cells // 2
     for m, p in (
@@ -199,9 +207,10 @@ def test_a_row_of_answers_is_what_its_grids_say(
         (half, keep[quarter : quarter + half]),
         (cells, keep[quarter + half :]),
     ):
+        g, vol, share = np.empty(m + 1), np.empty(m), np.empty(m)
         a = edge_grading(20.0 * (1.0 if shape == STRIP else 2.25), 0.5)
-        share = grid(m, shape, 20.0, a).share
-        found.append([share @ p @ one for one in weights])
+        grid(m, shape, 20.0, a, g, vol, share)
+        found.append([share @ p[:, :nt] @ one[:nt] for one in (w, c, s)])
     coarse, middle, fine = np.array(found)
     assert coarse[0] == pytest.approx(row[COARSE], rel=1e-7)
     assert (middle[0], fine[0]) == pytest.approx((row[MIDDLE], row[FINE]), rel=1e-7)
@@ -232,9 +241,12 @@ def halfway(values: np.ndarray, at: float, nodes: np.ndarray) -> float:
 
 @pytest.mark.parametrize("m", [1, 2, 3, 4, 7])
 def test_a_symmetric_film_is_carried_to_a_finer_grid_by_cubics(m: int) -> None:
-    coarse = np.random.default_rng(m).standard_normal((m, 8))
-    fine = prolong(coarse, True)
-    assert fine[::2] == pytest.approx(coarse, abs=0)
+    coarse = np.full((m + 2, 8), np.nan)  # what lies beyond must not be read
+    coarse[:m] = np.random.default_rng(m).standard_normal((m, 8))
+    flat = np.full(2 * m * 8, np.nan)
+    prolong(coarse.ravel(), m, 8, True, flat)
+    fine = flat.reshape(2 * m, 8)
+    assert fine[::2] == pytest.approx(coarse[:m], abs=0)
     for i in range(m):
         first = min(i - 1, m - 3)
         nodes = np.arange(first, first + 4) if m > 1 else np.array([-1, 0, 1])
@@ -246,11 +258,15 @@ def test_a_symmetric_film_is_carried_to_a_finer_grid_by_cubics(m: int) -> None:
 
 @pytest.mark.parametrize("m", [1, 2, 3, 4, 7])
 def test_a_film_between_two_edges_is_carried_to_a_finer_grid(m: int) -> None:
-    coarse = np.random.default_rng(m).standard_normal((m, 8))
-    fine = prolong(coarse, False)
-    assert fine[1::2] == pytest.approx(coarse, abs=0)
-    whole = np.vstack([np.zeros(8), coarse, np.zeros(8)])
+    coarse = np.full((m + 1, 8), np.nan)
+    coarse[:m] = np.random.default_rng(m).standard_normal((m, 8))
+    flat = np.full((2 * m + 1) * 8, np.nan)
+    prolong(coarse.ravel(), m, 8, False, flat)
+    fine = flat.reshape(2 * m + 1, 8)
+    assert fine[1::2] == pytest.approx(coarse[:m], abs=0)
+    whole = np.vstack([np.zeros(8), coarse[:m], np.zeros(8)])
     for i in range(m + 1):
-        nodes = np.arange(min(4, m + 2)) + min(max(i - 1, 0), max(m - 2, 0))
+        # With two nodes or one it is by lines.
+        nodes = np.array([i, i + 1]) if m < 3 else np.arange(4) + min(max(i - 1, 0), m - 2)
         for t in range(8):
             assert fine[2 * i, t] == pytest.approx(halfway(whole[nodes, t], i + 0.5, nodes))

@@ -40,17 +40,26 @@ def gap_at(point: int, T: np.ndarray) -> np.ndarray:
     return np.asarray(EVEN[:, point] @ np.cos(k * T) + ODD[:, point] @ np.sin(k * T))
 
 
-def test_gaps_are_their_series_at_the_times() -> None:
-    found = _gaps(EVEN, ODD, 7)
+def sampled(nt: int, ntp: int) -> np.ndarray:
+    out = np.full(5 * ntp, np.nan)
+    _gaps(EVEN, ODD, nt, ntp, out)
+    return out
+
+
+def test_gaps_are_their_series_at_the_times_and_one_in_the_padding() -> None:
+    found = sampled(7, 8).reshape(5, 8)
     T = 2 * np.pi * np.arange(7) / 7
     for point in range(5):
-        assert found[point] == pytest.approx(gap_at(point, T), rel=1e-14)
+        assert found[point, :7] == pytest.approx(gap_at(point, T), rel=1e-14)
+    assert np.all(found[:, 7] == 1.0)
 
 
 @pytest.mark.parametrize("n", [1.0, 1.4])
 def test_weights_integrate_gas_that_is_a_series_over_the_gap(n: float) -> None:
-    nt = 7
-    out = _weights(EVEN, ODD, n, 120, _gaps(EVEN, ODD, nt))
+    nt, ntp, fine = 7, 8, 120
+    H, out = sampled(nt, ntp), np.full(3 * ntp, np.nan)
+    _weights(EVEN, ODD, n, nt, ntp, fine, H, out)
+    assert np.all(out.reshape(3, ntp)[:, nt:] == 0.0)
 
     def gas(T: np.ndarray) -> np.ndarray:
         return 1.3 + 0.2 * np.cos(T) - 0.4 * np.sin(2 * T) + 0.1 * np.cos(3 * T)
@@ -60,7 +69,7 @@ def test_weights_integrate_gas_that_is_a_series_over_the_gap(n: float) -> None:
         # Every other point: the nodes, not the faces.
         P = gas(T) / gap_at(2 * row, T) ** n
         exact = np.mean(gas(every) / gap_at(2 * row, every) ** n)
-        assert out[row] @ P == pytest.approx(exact, rel=1e-12)
+        assert out[row * ntp : row * ntp + nt] @ P == pytest.approx(exact, rel=1e-12)
 
 
 def solved(
@@ -78,18 +87,18 @@ def solved(
     even, odd = (np.ascontiguousarray(np.array(part) + 0.0 * x) for part in gap(x))
     out = np.full(COLUMNS, np.nan)
     resolution = FilmResolution(cells, *(collocation_times(one) for one in times))
-    nt = resolution.times.number
+    ntp = resolution.times.row
     first = cells // 4 if closed else cells // 4 - 1
-    check = first * resolution.check.number
+    check = first * resolution.check.row
     others = sum(cells // part if closed else cells // part - 1 for part in (4, 2, 1))
-    keep = np.full(check + others * nt, np.nan)
+    keep = np.full(check + others * ntp, np.nan)
     solve_varying.py_func(
         sigma, CompiledGas(n, kn, law), Profile(slope, even, odd, 0.5, closed), resolution,
         (60, 70), Aim(tolerance, most), out, keep,
     )  # fmt: skip
     if most > 1 and np.isfinite(out[OVER]):
         assert np.all(np.isfinite(keep))
-    return out, keep[check:].reshape(-1, nt), x
+    return out, keep[check:].reshape(-1, ntp), x
 
 
 def uniform(x: np.ndarray) -> Any:
@@ -125,16 +134,16 @@ def test_half_of_a_symmetric_film_is_the_whole() -> None:
     )
     assert whole[[SPACE, TIME]] == pytest.approx(half[[SPACE, TIME]], rel=1e-3)
     # Two, four and eight rows of half a film, 3, 7 and 15 of the whole: from the plane of symmetry.
-    assert p[:2] == pytest.approx(q[1:3], abs=1e-7)
-    assert p[2:6] == pytest.approx(q[3 + 3 : 3 + 7], abs=1e-7)
-    assert p[6:14] == pytest.approx(q[10 + 7 : 10 + 15], abs=1e-7)
-    assert p[2:6] == pytest.approx(p[6:14:2], abs=0.02)
+    assert p[:2, :9] == pytest.approx(q[1:3, :9], abs=1e-7)
+    assert p[2:6, :9] == pytest.approx(q[3 + 3 : 3 + 7, :9], abs=1e-7)
+    assert p[6:14, :9] == pytest.approx(q[10 + 7 : 10 + 15, :9], abs=1e-7)
+    assert p[2:6, :9] == pytest.approx(p[6:14:2, :9], abs=0.02)
 
 
 def test_the_film_obeys_the_balance_of_its_cells() -> None:
     cells, sigma = 8, 20.0
     out, keep, _ = solved(tilted, False, sigma, cells, tolerance=1e-9)
-    p = np.vstack([np.zeros((1, 9)), keep[1 + 3 : 1 + 3 + cells - 1], np.zeros((1, 9))])
+    p = np.vstack([np.zeros((1, 9)), keep[1 + 3 : 1 + 3 + cells - 1, :9], np.zeros((1, 9))])
     T = 2 * np.pi * np.arange(9) / 9
     X = np.linspace(-0.5, 0.5, 2 * cells + 1)[:, None]
     H = 1 + 0.3 * X + (0.3 + 0.1 * X) * np.cos(T) + 0.2 * X * np.sin(T)
