@@ -94,5 +94,5 @@ def test_every_function_that_draws_is_drawn_by_a_quick_test() -> None:
         for file in (ROOT / "tests" / "unit").rglob("test_*.txt")
         for line in file.read_text(encoding="utf-8").splitlines()
     }
-    assert len(drawing) > 40
+    assert len(drawing) > 60
     assert sorted(drawing - known) == []

@@ -16,7 +16,7 @@ from squeezefilm.core.errors import InputError, WorkersError
 from squeezefilm.core.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED, require_within
 from squeezefilm.core.progress import SayProgress, about
 from squeezefilm.core.results import stamp
-from squeezefilm.design.search import worth_solving as worth
+from squeezefilm.design.search import worth_solving as choice
 from squeezefilm.design.search.candidate import (
     Design,
     Evaluated,
@@ -127,7 +127,7 @@ class SearchRun:
         self._tell = asked.progress or (lambda _: None)
         self._made: dict[Design, Made] = {}
         self._reference: Evaluated | None = None
-        self._corrections: list[worth.Correction | None] = [None] * len(self.requirements.spaces)
+        self._corrections: list[choice.Correction | None] = [None] * len(self.requirements.spaces)
         self._seen: dict[Level, dict[Design, Evaluated]] = {"screened": {}, "solved": {}}
         self._began, self._done = time.monotonic(), False
         self._stage, self._shown_next = "", 0.0
@@ -196,9 +196,9 @@ class SearchRun:
             self._learn()
             self._screen_beside_the_front(pool)
             # Of few plates half are chosen by what the first half corrects.
-            first = max(worth.LEAST_PLATES, left // 2) if left == most else left
+            first = max(choice.LEAST_PLATES, left // 2) if left == most else left
             count = min(_BATCH, first, left)
-            chosen = worth.worth_solving(self.requirements, self._seen, self._corrections, count)
+            chosen = choice.worth_solving(self.requirements, self._seen, self._corrections, count)
             if not chosen:
                 return
             self._say_solving("the best that were screened")
@@ -222,7 +222,7 @@ class SearchRun:
         front, solved = self._front(), self._seen["solved"]
         if not front:
             return  # what is expected before any plate kept the limits lies beyond them
-        rows = worth.objectives_of(self.requirements, front)
+        rows = choice.objectives_of(self.requirements, front)
         # Always from the ends of the front, which decide what it dominates.
         ends = [front[k].design for k in np.argmin(rows, axis=0)]
         self._screen_near(pool, ends, Space.beside)
@@ -230,7 +230,7 @@ class SearchRun:
         for _ in range(_GENERATIONS):
             plates = plates_of(front[k].design for k in draw.permutation(len(front)))
             known = [plate[-1] for plate in plates.values()][:_FROM]
-            expected = worth.worth_solving(self.requirements, self._seen, self._corrections, _FROM)
+            expected = choice.worth_solving(self.requirements, self._seen, self._corrections, _FROM)
             self._screen_near(
                 pool,
                 (*ends, *known, *expected),
@@ -257,7 +257,7 @@ class SearchRun:
         solved = list(self._seen["solved"].values())
         for shape, space in enumerate(self.requirements.spaces):
             here = [solution for solution in solved if solution.design.shape == shape]
-            self._corrections[shape] = worth.learned(space, self._seen["screened"], here)
+            self._corrections[shape] = choice.learned(space, self._seen["screened"], here)
 
     def _propose(self, pool: Workers) -> None:
         """Let a Bayesian sampler propose plates beside the front, and solve them."""
@@ -352,7 +352,7 @@ class SearchRun:
             self._seen[level].update((design, evaluated[design]) for design in came)
         return evaluated
 
-    def _front(self, seen: worth.Seen | None = None) -> list[Evaluated]:
+    def _front(self, seen: choice.Seen | None = None) -> list[Evaluated]:
         """The feasible solved designs that none other beats, the first objective rising."""
         return unbeaten(self.requirements, (seen or self._seen)["solved"].values(), self._made)
 
@@ -364,7 +364,7 @@ class SearchRun:
         self._show({**self._seen, level: {**self._seen[level], **evaluated}})
         self._shown_next = time.monotonic() + max(1.0, 20 * (time.monotonic() - now))
 
-    def _show(self, seen: worth.Seen | None = None) -> None:
+    def _show(self, seen: choice.Seen | None = None) -> None:
         """Show what was seen, if anybody watches."""
         if self._asked.watch is not None:
             seen = seen or self._seen

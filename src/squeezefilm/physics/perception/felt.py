@@ -107,7 +107,7 @@ def detected_share(
     """Share of the mean friction (1) that has d′ = 1 as the size of a wave of friction, shape (n,).
 
     `wave` is of size 1, over each passage of the periods (m, shape (n,)), shape (n, samples).
-    Infinite of a period of which nothing is felt.
+    Infinite where nothing of a period is felt.
     """
     small = 1e-3
     evidence = grating_evidence(observer, period, wave, lambda share: 1 + small * share, rubbed)

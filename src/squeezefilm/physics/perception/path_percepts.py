@@ -1,7 +1,7 @@
 """Percept of a finger's own path, or of a free hand's, over a surface, through the whole chain.
 
 The path goes through the loop, the friction and the skin as a simulated stroke does (`percepts`),
-and the same senses look at the same lines along its way, run by run (`path_runs`). Runs along x and
+and the same senses look at the same lines along its way, run by run. Runs along x and
 runs along y are felt apart. Nothing is tuned for it: of the simulated stroke itself, given as a
 path, this is the percept of that stroke.
 

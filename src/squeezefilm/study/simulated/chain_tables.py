@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from squeezefilm.physics.render.motion.stroke import FingerPath
 
 _KEPT: Kept[Candidates] = Kept("percepts", Candidates)
+_MOST_REMEMBERED = 8192
 _REMEMBERED: dict[str, Candidates] = {}
 """Percepts that this process has met, by request: to be quick, and where no disk keeps them."""
 
@@ -53,6 +54,8 @@ def _known(
     by how it is felt, the surface, and the `rest` of what decides."""
     asked = f"{feel.__name__} {' '.join(_hash(part) for part in rest)} {_name(surface)}"
     if asked not in _REMEMBERED:
+        while len(_REMEMBERED) >= _MOST_REMEMBERED:
+            del _REMEMBERED[next(iter(_REMEMBERED))]
         _REMEMBERED[asked] = _KEPT.found(asked, make)
     return _REMEMBERED[asked]
 
@@ -233,12 +236,14 @@ def chain_tables(
     with one_blas_thread():
         for plate, run in zip(plates, runs, strict=True):
             under = []
-            for number, one in enumerate(fingers, 1):
+            for number, finger_class in enumerate(fingers, 1):
                 tell(f"what fingers feel on {plate.name}: {number} of {len(fingers)}")
-                under.append([feel(each, plate, observer, one, run) for each in design.stimuli])
+                under.append(
+                    [feel(each, plate, observer, finger_class, run) for each in design.stimuli]
+                )
             virtual.append(under)
-        for one in fingers:
-            real.append([felt_really(grating, observer, one) for grating in design.alternatives])
+        for finger_class in fingers:
+            real.append([felt_really(each, observer, finger_class) for each in design.alternatives])
     return ChainTables(
         design=design,
         observer=observer,

@@ -14,6 +14,7 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.physics.perception.observer import Observer, load_observer
+from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.simulated import chain_tables as felt
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
@@ -63,6 +64,16 @@ def test_computed_and_read_from_disk_are_the_same(
         read = numbers(chain_tables(*small))
     for a, b in zip(computed, read, strict=True):
         np.testing.assert_array_equal(a, b)
+
+
+def test_what_is_remembered_is_bounded(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(felt, "_MOST_REMEMBERED", 3)
+    felt_of = {}
+    for grating in load_design("biet2008-gratings").alternatives:
+        made = Candidates(np.zeros(1), np.zeros(1))
+        felt_of[grating.name] = felt._known(felt.felt_really, grating, (), lambda made=made: made)
+    assert len(felt_of) == 5
+    assert list(felt._REMEMBERED.values()) == list(felt_of.values())[2:]
 
 
 @pytest.mark.slow

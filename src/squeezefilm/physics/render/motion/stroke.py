@@ -159,7 +159,6 @@ class MinimumJerkStroke(_Passes):
 
 
 _FARTHEST: si.Metre = 10.0
-_finger_path_ROUNDING = 1e-12
 
 
 @si.checked_numbers
@@ -258,9 +257,7 @@ class FingerPath:
         return axes[0], axes[1]
 
     def _within(self, t: si.SecondLike) -> si.FloatArray:
-        si.require(
-            "t", t, si.Unit("s"), at_least=0.0, at_most=self.duration * (1 + _finger_path_ROUNDING)
-        )
+        si.require("t", t, si.Unit("s"), at_least=0.0, at_most=self.duration * (1 + _ROUNDING))
         return np.asarray(t, dtype=float)
 
 

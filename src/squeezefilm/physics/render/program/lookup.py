@@ -93,5 +93,7 @@ def image(program: si.Array, pc: int, x: float, y: float) -> float:
     row = start + (rows - 1 - j) * columns
     next_row = start + (rows - 1 - j1) * columns
     low = (1.0 - fu) * program[row + i] + fu * program[row + i1]
+    if next_row == row:
+        return float(low)
     high = (1.0 - fu) * program[next_row + i] + fu * program[next_row + i1]
     return float((1.0 - fw) * low + fw * high)

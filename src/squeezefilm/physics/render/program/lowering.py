@@ -61,8 +61,7 @@ class Program:
         """Names of what the texture and the wave may depend on, of "x", "y", "speed", "direction"
         and "time": without the speed by which a wanted friction becomes an amplitude.
 
-        Read off the instructions: what is not named has no influence but on the
-        last digit, what is named may have none.
+        Read off the instructions: what is not named has no influence, what is named may have none.
         """
         names: set[str] = set()
         for code, operands in _instructions(self.array):

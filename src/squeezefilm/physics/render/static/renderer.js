@@ -117,6 +117,7 @@ function image(program, pc, x, y) {
   const row = start + (rows - 1 - j) * columns;
   const nextRow = start + (rows - 1 - j1) * columns;
   const low = (1 - fu) * program[row + i] + fu * program[row + i1];
+  if (nextRow === row) return low;
   const high = (1 - fu) * program[nextRow + i] + fu * program[nextRow + i1];
   return (1 - fw) * low + fw * high;
 }
