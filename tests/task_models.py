@@ -130,7 +130,7 @@ def same_different_model(
     criteria: Positive,
     lapses: Rates = LAPSES,
 ) -> PlacementModel:
-    """Same or different by the differencing model, as `tasks.on_grid` has it.
+    """Same or different by the differencing model, as `tasks.thresholds` has it.
 
     `differences` are of the logarithms, 0 among them or the criterion is not told from the Weber
     fraction; `criteria` are in standard deviations of one percept. Of interest is the Weber

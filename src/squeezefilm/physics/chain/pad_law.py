@@ -140,7 +140,7 @@ class PadLaw:
     ) -> PascalPerMetreComplex:
         """Stiffness of the finger that the plate feels per area of contact (Pa/m, complex) at an
         amplitude (m) of an even wave, wherever the pad is: of `sharing` what the vibration depends
-        on, without the friction. See `load_kernel.between`."""
+        on, without the friction. See `finger.load.between`."""
         from squeezefilm.physics.contact.sharing import kernel
 
         met, known = self._even_swings[0], self._compiled

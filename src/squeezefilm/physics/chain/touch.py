@@ -78,7 +78,7 @@ def touch(
     The finger rests where the law has it, film and asperities in the balance of the law (partial
     levitation, whatever its model). Where several amplitudes fit (a finger that lets go as the film
     lifts it) this is the one reached from the free plate. Range: see `loaded_mode` and
-    `load_kernel.between`. Raises `ConvergenceError` if amplitude and finger do not settle, and what
+    `finger.load.between`. Raises `ConvergenceError` if amplitude and finger do not settle, and what
     the load balance raises.
     """
     if free_amplitude < _LEAST_AMPLITUDE:

@@ -33,7 +33,7 @@ from squeezefilm.instruments.bench.play import device_stream
 from squeezefilm.instruments.bench.resonance_sweep import sweep_resonance
 from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.instruments.device.host import DeviceHost
-from squeezefilm.instruments.device.ports import SerialDrive
+from squeezefilm.instruments.device.serial_ports import SerialDrive
 from squeezefilm.instruments.device.wire.frames import State
 from squeezefilm.instruments.device.wire.link import Link
 from squeezefilm.instruments.device.wire.safety import require_safe_drive

@@ -5,7 +5,7 @@ deviation 1; the strongest is perceived if it passes the criterion. Its period i
 σ √(1 + 1/d′²) in the logarithm, σ from the person's Weber fraction (75 % of two intervals). Each
 real grating is felt again on each trial, with noise of its own. The answer is the grating whose
 perceived period is nearest; a person who feels nothing, or lapses, guesses. All noise falls with
-practice. Where a surface is matched with the stimuli themselves, `recalled` says how.
+practice. Where a surface is matched with the stimuli themselves, `chain_tables` says how.
 **Every number that comes out is simulated.**
 """
 

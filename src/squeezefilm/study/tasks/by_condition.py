@@ -181,7 +181,7 @@ def more_numbers(
     main: Answers, biases: list[float], level: si.Dimensionless
 ) -> dict[str, Estimate]:
     """Bias for an interval, criterion, false alarms and ends of series, as far as the task has
-    them, over people; `biases` as `on_grid` has them, none where there is no scale."""
+    them, over people; `biases` as `thresholds` has them, none where there is no scale."""
     model, people, numbers = main.model, np.unique(main.participant), false_alarms(main, level)
     if model.criterion and biases:
         numbers[model.criterion] = t_interval(np.array(biases), level)

@@ -88,7 +88,7 @@ class TaskAnalysis(Result):
         trials: main trials.
         standard: the reference's value of what is judged (SI); NaN without a reference.
         persons: of each person.
-        pooled: of the population, see `population` and `magnitude`.
+        pooled: of the population, see `population` and `scales`.
         spread: standard deviation over people of the logarithm of `PARTS`, or of the exponent.
         conditions: by comparison or stimulus.
         more: other numbers by name, such as the bias for an interval.

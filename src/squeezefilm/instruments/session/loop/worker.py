@@ -18,7 +18,6 @@ from dataclasses import dataclass
 
 from squeezefilm.instruments.device.priority import collect_garbage_first, real_time_granted
 from squeezefilm.instruments.session.loop import clock, shared
-from squeezefilm.instruments.session.loop.atomics import load_acquire, store_release
 from squeezefilm.instruments.session.loop.pacing import (
     compiled_loop,
     make_due_tick,
@@ -27,6 +26,7 @@ from squeezefilm.instruments.session.loop.pacing import (
     silence,
 )
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
+from squeezefilm.instruments.session.loop.ring import load_acquire, store_release
 
 # Linux: <sys/prctl.h> and <sys/mman.h>.
 _PR_SET_TIMERSLACK = 29

@@ -60,7 +60,7 @@ def finger_impedance(
 ) -> NewtonSecondPerMetreComplex:
     """The mechanical impedance of a whole finger, Z = K A ⟨cos²⟩/(iω) (N·s/m, complex).
 
-    K is `load_kernel.felt` (Pa/m), A the area of contact, `mean_square` the mean of the square of
+    K is `felt` (Pa/m), A the area of contact, `mean_square` the mean of the square of
     the vibration's shape over it: Z is referred to the velocity v at an antinode, and the finger
     takes the power ½ Re Z |v|². A positive imaginary part is a mass, a negative one a spring. Both
     depend on the amplitude through the film and the asperities in K. Raises `InputError` unless

@@ -7,7 +7,7 @@ Everything is seen along the way the skin slides: its way u and speed w begin at
 where G is friction's rise with speed (N·s/m), and F0 and F' are its value at the start and its
 change with time. The solution is a power series, whose first terms are enough for a short piece;
 where G is great, what dies out at once is a summand of its own, b exp(−r t), and the series is that
-of the rest. Nothing here loses digits as G → ∞, which the form of `skin_motion` with its particular
+of the rest. Nothing here loses digits as G → ∞, which the form of `slide_by` with its particular
 parabola does.
 """
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from squeezefilm.study.design.tasks.adjustment import ADJUSTMENT
 from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE, YES_NO
 from squeezefilm.study.design.tasks.ranking import RANKING
 from squeezefilm.study.design.tasks.same_different import (
@@ -13,6 +12,7 @@ from squeezefilm.study.design.tasks.same_different import (
 )
 from squeezefilm.study.design.tasks.task import StudyTask
 from squeezefilm.study.design.tasks.two_surfaces import (
+    ADJUSTMENT,
     DETECTION,
     DIRECTION,
     PAIRED_COMPARISON,

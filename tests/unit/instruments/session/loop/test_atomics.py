@@ -10,8 +10,13 @@ import numba
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop.atomics import load_acquire, store_release
-from squeezefilm.instruments.session.loop.ring import COUNTERS_SIZE, ring_put, ring_take
+from squeezefilm.instruments.session.loop.ring import (
+    COUNTERS_SIZE,
+    load_acquire,
+    ring_put,
+    ring_take,
+    store_release,
+)
 
 
 def test_words_come_back() -> None:
