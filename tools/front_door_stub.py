@@ -12,6 +12,8 @@ import ast
 import builtins
 import importlib
 import inspect
+import subprocess
+import sys
 import typing
 from collections import defaultdict
 from pathlib import Path
@@ -47,7 +49,7 @@ def text_of(hint: Any) -> str:
 def imported_from(module: Any, name: str) -> str:
     """The module from which another one has a name: itself, or as its source says."""
     for node in ast.walk(ast.parse(inspect.getsource(module))):
-        if isinstance(node, ast.ImportFrom) and any(one.name == name for one in node.names):
+        if isinstance(node, ast.ImportFrom) and name in {alias.name for alias in node.names}:
             assert node.module is not None
             return node.module
     return str(module.__name__)
@@ -85,36 +87,37 @@ class Stub:
     def add(self, name: str, place: str) -> None:
         """Write a name out where text may stand in it, and import it as it is elsewhere."""
         module = importlib.import_module(place)
-        found = getattr(module, name)
-        parameters = self._parameters(found, module)
+        subject = getattr(module, name)
+        parameters = self._parameters(subject, module)
         if not any(text for _, text in parameters.values()):
             self.imports[place].add(f"{name} as {name}")
             return
         said = []
-        for key, (one, text) in parameters.items():
-            if one.kind is one.KEYWORD_ONLY and "*" not in said:
+        for key, (parameter, text) in parameters.items():
+            if parameter.kind is parameter.KEYWORD_ONLY and "*" not in said:
                 said.append("*")
-            plain = self._plain(one.annotation, module)
+            plain = self._plain(parameter.annotation, module)
             first, none, _ = plain.partition(" | None")
             widened = f"{first} | {text}{none}" if text else plain
-            said.append(f"{key}: {widened}" + ("" if one.default is one.empty else " = ..."))
-        if inspect.isclass(found):
+            said.append(f"{key}: {widened}" + ("" if parameter.default is parameter.empty else " = ..."))
+        summary = f'    """{str(inspect.getdoc(subject)).splitlines()[0]}"""'
+        if inspect.isclass(subject):
             self.imports[place].add(f"{name} as _{name}")
             self.bodies.append(f"class {name}(_{name}):")
-            self.bodies.append(f'    """{str(inspect.getdoc(found)).splitlines()[0]}"""')
+            self.bodies.append(summary)
             self.bodies.append(f"    def __init__(self, {', '.join(said)}) -> None: ...")
         else:
-            back = self._plain(found.__annotations__["return"], module)
+            back = self._plain(subject.__annotations__["return"], module)
             self.bodies.append(f"def {name}({', '.join(said)}) -> {back}:")
-            self.bodies.append(f'    """{str(inspect.getdoc(found)).splitlines()[0]}"""')
+            self.bodies.append(summary)
 
-    def _parameters(self, found: Any, module: Any) -> dict[str, tuple[inspect.Parameter, str]]:
-        called = found.__init__ if inspect.isclass(found) else found
+    def _parameters(self, subject: Any, module: Any) -> dict[str, tuple[inspect.Parameter, str]]:
+        called = subject.__init__ if inspect.isclass(subject) else subject
         if not hasattr(called, "__wrapped__"):
             return {}  # it reads no text
-        hints = typing.get_type_hints(found, vars(module), include_extras=True)
-        given = inspect.signature(found).parameters
-        return {name: (one, text_of(hints.get(name))) for name, one in given.items()}
+        hints = typing.get_type_hints(subject, vars(module), include_extras=True)
+        given = inspect.signature(subject).parameters
+        return {name: (given[name], text_of(hints.get(name))) for name in given}
 
     def _plain(self, annotation: str, module: Any) -> str:
         """The annotation without its marks; what it names is imported."""
@@ -140,7 +143,7 @@ class Stub:
 
 
 def stub() -> str:
-    """The text of the stub, not formatted."""
+    """The text of the stub; its order and layout are the linter's, as `main` leaves them."""
     made = Stub()
     # What the stub does not say, and this is written from.
     for name, place in vars(squeezefilm)["_NAMES"].items():
@@ -148,6 +151,15 @@ def stub() -> str:
     return made.text()
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Write the stub, its imports sorted and its lines laid out as all code here is."""
     assert squeezefilm.__file__ is not None
-    Path(squeezefilm.__file__).with_suffix(".pyi").write_text(stub(), encoding="utf-8")
+    path = Path(squeezefilm.__file__).with_suffix(".pyi")
+    path.write_text(stub(), encoding="utf-8")
+    # Sorted first: the layout of unsorted imports would stay.
+    for command in (["check", "--fix", "--quiet"], ["format", "--quiet"]):
+        subprocess.run([sys.executable, "-m", "ruff", *command, str(path)], check=True)
+
+
+if __name__ == "__main__":
+    main()
