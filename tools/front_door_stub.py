@@ -99,7 +99,8 @@ class Stub:
             plain = self._plain(parameter.annotation, module)
             first, none, _ = plain.partition(" | None")
             widened = f"{first} | {text}{none}" if text else plain
-            said.append(f"{key}: {widened}" + ("" if parameter.default is parameter.empty else " = ..."))
+            given = "" if parameter.default is parameter.empty else " = ..."
+            said.append(f"{key}: {widened}{given}")
         summary = f'    """{str(inspect.getdoc(subject)).splitlines()[0]}"""'
         if inspect.isclass(subject):
             self.imports[place].add(f"{name} as _{name}")
