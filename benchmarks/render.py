@@ -14,21 +14,26 @@ import os
 os.environ["OMP_NUM_THREADS"] = "1"
 
 import argparse
+import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 
-from squeezefilm.physics.render import opcodes
-from squeezefilm.physics.render.program import interpreter, lookup
+from squeezefilm.physics.render import interpret, opcodes
+from squeezefilm.physics.render.program import interpreter
 from squeezefilm.physics.render.program.inverse import FrictionInverse
-from squeezefilm.physics.render.program.lowering import Program, lower
+from squeezefilm.physics.render.program.lowering import Program, _instructions, lower
 from squeezefilm.physics.render.program.renderer import Renderer, evaluate, new_state
 from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.render.texture.gates import Attack, speed
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
 from squeezefilm.physics.render.texture.noise import Noise, NoiseField
 from squeezefilm.physics.render.texture.shapes import Band, Bump, Pulse, SineWave, SquareWave
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from tests.numpy_textures import numpy_values
 
 INVERSE = FrictionInverse.from_function(lambda a: 0.3 + 0.7 * np.exp(-((a / 2e-6) ** 2)), 4e-6)
 # As many knots and speeds as a display's friction has.
@@ -97,7 +102,7 @@ def samples(count: int) -> tuple[np.ndarray, ...]:
 
 def plain_python() -> Callable[..., float]:
     """The tick with nothing compiled: the same functions as Python runs them."""
-    space = {**vars(lookup), **vars(interpreter)}
+    space = {**vars(opcodes), **vars(interpret), **vars(interpreter)}
     for name, one in list(space.items()):
         if hasattr(one, "py_func"):
             function = one.py_func
@@ -134,10 +139,11 @@ def table(count: int) -> None:
         compiled = best_time(ticks) / count
         wrapped = best_time(from_python) / len(few)
         offline = best_time(lambda p=program: evaluate(p, *arrays)) / count
-        plain = best_time(lambda t=texture: t(*arrays), 3) / count
+        plain = best_time(lambda t=texture: numpy_values(t, *arrays), 3) / count
         python = best_time(uncompiled, 3) / 500
         print(
-            f"{name:32s}  {program.instructions:6d}   {1e9 * compiled:8.0f}   {1e6 * wrapped:10.2f}"
+            f"{name:32s}  {len(_instructions(program.array)):6d}   {1e9 * compiled:8.0f}"
+            f"   {1e6 * wrapped:10.2f}"
             f"   {1e-6 / offline:9.1f} {1e-6 / plain:9.1f}   {plain / offline:11.1f}"
             f"   {python / compiled:16.0f}"
         )

@@ -368,9 +368,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "physics.render.texture.gates.Periodic": {"frequency": 50.0},
     "physics.render.texture.image.Image": {"values": ((0.0, 1.0), (1.0, 0.0))},
     "physics.render.texture.image.Image.from_array": {"values": np.full((4, 4), 0.5)},
-    "physics.render.texture.noise.mixed": {"value": 5},
-    "physics.render.texture.noise.line_noise": {"u": _GRID, "state": 1},
-    "physics.render.texture.noise.field_noise": {"u": _GRID, "w": _GRID, "state": 1},
+    "physics.render.opcodes.mixed": {"value": 5},
     "physics.render.program.lowering.Program": {"array": Later(lambda: made(Program).array)},
     "physics.render.program.lowering.checked": {"array": Later(lambda: made(Program).array)},
     "physics.render.program.lowering.lower": {

@@ -169,9 +169,8 @@ NOT_CALLED = {
     physics.plate.elements.slabs.Slabs.places physics.plate.elements.slabs.Slabs.stiffness_times
     physics.plate.elements.slabs.Slabs.weighted_sections physics.render.opcodes.Assembler.emit
     physics.render.opcodes.Assembler.table physics.render.texture.coordinate.require_fade
-    physics.render.texture.noise.field_noise
-    physics.render.texture.noise.line_noise physics.film.periodic.resolution.resolution_of
-    physics.film.periodic.solution.assembled
+    physics.render.interpret.samples_of physics.render.interpret.values_of
+    physics.film.periodic.resolution.resolution_of physics.film.periodic.solution.assembled
     """,
     "no number but the index of what its other arguments hold, or an array the package made": """
     physics.contact.sharing.gas_table.FilmTable.build

@@ -1,7 +1,7 @@
 """The instructions a texture lowers to: numbers, operands, and what each does to the stack.
 
 A lowered texture is one flat array of floats, `[opcode, operands…, opcode, operands…, END]`, run
-on a stack of floats by the compiled interpreter (`interpreter`), by the page's (`static/
+on a stack of floats by the compiled interpreter (`interpret`), by the page's (`static/
 renderer.js`) and by a device's firmware. The numbers below are the wire format: a number is never
 used again for another meaning, and `VERSION` rises when any meaning changes.
 
@@ -32,7 +32,7 @@ the finger's place (m), velocity (m/s) and the time (s).
 18  BAND          start end fade           1 within start…end, 0 outside, edges linear over fade
 19  BUMP          centre width sign        d = (s − centre)/width; ½ − ½ sign·way·d exp(½(1 − d²))
                                            held within 0…1; way = −1 if v < 0, else 1
-20  NOISE         period seed              spline noise of s/period (see `pattern_noise`)
+20  NOISE         period seed              spline noise of s/period (see `texture.noise`)
 21  NOISE_FIELD   period seed              pushes spline noise of (x/period, y/period)
 22  IMAGE         table rows columns       pushes the table (row after row, the first at the
                   x0 y0 pixel outside      greatest y) read bilinearly; outside: 0 hold, 1 repeat,
@@ -52,6 +52,7 @@ the finger's place (m), velocity (m/s) and the time (s).
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -155,3 +156,19 @@ class Assembler:
             )
         self.tables.append(flat)
         return float(start)
+
+
+MASK = 0xFFFFFFFF
+STEP_ALONG = 0x9E3779B1
+STEP_ACROSS = 0x85EBCA77
+"""Odd numbers that spread neighbouring lattice points of noise over 32 bits."""
+
+
+def mixed(value: Any) -> Any:
+    """A 32-bit number mixed into another: "lowbias32"."""
+    value = value & MASK
+    value = value ^ (value >> 16)
+    value = (value * 0x7FEB352D) & MASK
+    value = value ^ (value >> 15)
+    value = (value * 0x846CA68B) & MASK
+    return value ^ (value >> 16)

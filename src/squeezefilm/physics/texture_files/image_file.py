@@ -30,7 +30,6 @@ from squeezefilm.core.hard_limits import PICTURE_BYTES
 from squeezefilm.core.isolated_reading import Read, read_isolated
 from squeezefilm.core.regular_file import read_regular
 from squeezefilm.physics.render.opcodes import Assembler
-from squeezefilm.physics.render.texture.coordinate import FingerSamples
 from squeezefilm.physics.render.texture.image import MOST_PIXELS, Image
 from squeezefilm.physics.render.texture.pattern import Pattern
 
@@ -174,14 +173,8 @@ class ImageFile(Pattern):
             values, self.pixel, left=self.left, bottom=self.bottom, outside=self.outside
         )
 
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        raise self._unread()
-
     def _lower(self, assembler: Assembler) -> None:
-        raise self._unread()
-
-    def _unread(self) -> InputError:
-        return InputError(
+        raise InputError(
             f"the picture '{self.file}' has not been read; load the texture from its file, or call "
             "with_images(texture, folder)"
         )

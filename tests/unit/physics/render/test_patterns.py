@@ -102,7 +102,7 @@ def test_these_values_of_the_noise_never_change() -> None:
     x = np.array([-3.7e-3, 0.0, 0.25e-3, 5.0])
 
     def value(cell: int, seed: int) -> float:
-        from squeezefilm.physics.render.texture.noise import STEP_ALONG, mixed
+        from squeezefilm.physics.render.opcodes import STEP_ALONG, mixed
 
         return mixed(mixed(seed) ^ (cell * STEP_ALONG % 2**32)) / 2**32
 

@@ -189,7 +189,5 @@ def test_a_picture_with_transparent_pixels_or_cut_short_is_refused() -> None:
 
 def test_a_picture_that_was_not_read_cannot_be_felt() -> None:
     picture = image_file.ImageFile("wood.png", 1e-3)
-    finger: Any = None
-    for use in (picture._values, picture._lower):
-        with pytest.raises(InputError, match=r"picture 'wood\.png' has not been read; load the"):
-            use(finger)
+    with pytest.raises(InputError, match=r"picture 'wood\.png' has not been read; load the"):
+        picture(0.0, 0.0, 0.1, 0.0)

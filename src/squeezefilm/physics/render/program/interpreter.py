@@ -1,9 +1,9 @@
-"""The compiled interpreter of programs: one value, one tick, and both over arrays.
+"""The compiled tick of programs: an amplitude for one sample of a finger, and for many.
 
 Compiled once and cached; releases Python's lock, allocates nothing and calls no Python. It runs
 any program that `program.checked` let pass: nothing else is checked here but what depends on the
-samples. The page's port is `static/renderer.js`; the instructions are explained in `opcodes`, the
-numbers of program and state in `layout`.
+samples. The page's port is `static/renderer.js`; the numbers of program and state are explained in
+`layout`.
 """
 
 from __future__ import annotations
@@ -12,150 +12,8 @@ import math
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.render import opcodes as op
+from squeezefilm.physics.render.interpret import interpret
 from squeezefilm.physics.render.program import layout as at
-from squeezefilm.physics.render.program.lookup import field_noise, image, line_noise
-from squeezefilm.physics.render.texture.noise import STEP_ALONG
-
-
-@compiled(error_model="numpy")
-def interpret(
-    program: si.Array, memory: si.Array, base: int, x: float, y: float, v: float, t: float
-) -> float:
-    """The texture's value, in its quantity; the stack is `memory` from `base` on."""
-    pc = int(program[at.H_CODE])
-    top = base - 1
-    while True:
-        code = int(program[pc])
-        pc += 1
-        if code == op.END:
-            return float(memory[top])
-        if code == op.CONSTANT:
-            top += 1
-            memory[top] = program[pc]
-            pc += 1
-        elif code == op.ALONG:
-            top += 1
-            memory[top] = program[pc] * x + program[pc + 1] * y + program[pc + 2]
-            pc += 3
-        elif code == op.RADIUS:
-            top += 1
-            dx, dy = x - program[pc], y - program[pc + 1]
-            memory[top] = math.sqrt(dx * dx + dy * dy)
-            pc += 2
-        elif code == op.TIME:
-            top += 1
-            memory[top] = t
-        elif code == op.SPEED:
-            top += 1
-            memory[top] = abs(v)
-        elif code == op.ADD:
-            top -= 1
-            memory[top] += memory[top + 1]
-        elif code == op.MULTIPLY:
-            top -= 1
-            memory[top] *= memory[top + 1]
-        elif code == op.LEAST:
-            top -= 1
-            if memory[top + 1] < memory[top]:
-                memory[top] = memory[top + 1]
-        elif code == op.GREATEST:
-            top -= 1
-            if memory[top + 1] > memory[top]:
-                memory[top] = memory[top + 1]
-        elif code == op.COMPLEMENT:
-            memory[top] = 1.0 - memory[top]
-        elif code == op.BETWEEN:
-            s = memory[top]
-            memory[top] = (1.0 - s) * program[pc] + s * program[pc + 1]
-            pc += 2
-        elif code == op.SQUARE:
-            u = memory[top] / program[pc] + program[pc + 1]
-            memory[top] = 1.0 if u - math.floor(u) < program[pc + 2] else 0.0
-            pc += 3
-        elif code == op.SINE:
-            u = memory[top] / program[pc] + program[pc + 1]
-            memory[top] = 0.5 + 0.5 * math.sin(2.0 * math.pi * u)
-            pc += 2
-        elif code == op.GAUSSIAN:
-            u = (memory[top] - program[pc]) / program[pc + 1]
-            memory[top] = math.exp(-0.5 * (u * u))
-            pc += 2
-        elif code == op.HANN:
-            u = abs(memory[top] - program[pc]) / program[pc + 1]
-            memory[top] = 0.5 + 0.5 * math.cos(math.pi * u) if u < 1.0 else 0.0
-            pc += 2
-        elif code == op.RAMP:
-            u = (memory[top] - program[pc]) / (program[pc + 1] - program[pc])
-            memory[top] = min(max(u, 0.0), 1.0)
-            pc += 2
-        elif code == op.SMOOTH:
-            s = memory[top]
-            memory[top] = s * s * (3.0 - 2.0 * s)
-        elif code == op.BAND:
-            s, start, end, fade = memory[top], program[pc], program[pc + 1], program[pc + 2]
-            if fade == 0.0:
-                memory[top] = 1.0 if start <= s < end else 0.0
-            else:
-                memory[top] = min(max(min(s - start, end - s) / fade + 0.5, 0.0), 1.0)
-            pc += 3
-        elif code == op.BUMP:
-            u = (memory[top] - program[pc]) / program[pc + 1]
-            way = -program[pc + 2] if v < 0.0 else program[pc + 2]
-            s = 0.5 - 0.5 * way * u * math.exp(0.5 * (1.0 - u * u))
-            memory[top] = min(max(s, 0.0), 1.0)
-            pc += 3
-        elif code == op.NOISE:
-            memory[top] = line_noise(memory[top] / program[pc], int(program[pc + 1]), STEP_ALONG)
-            pc += 2
-        elif code == op.NOISE_FIELD:
-            top += 1
-            memory[top] = field_noise(x / program[pc], y / program[pc], int(program[pc + 1]))
-            pc += 2
-        elif code == op.IMAGE:
-            top += 1
-            memory[top] = image(program, pc, x, y)
-            pc += 7
-        elif code == op.WITHIN:
-            s = memory[top]
-            memory[top] = 1.0 if program[pc] < s < program[pc + 1] else 0.0
-            pc += 2
-        elif code == op.DECAY:
-            u = max(memory[top] - program[pc], 0.0)
-            memory[top] = math.exp(-u / program[pc + 1])
-            pc += 2
-        elif code == op.FADE:
-            top -= 1
-            s = memory[top + 1]
-            memory[top] = (1.0 - s) * program[pc] + s * memory[top]
-            pc += 1
-        elif code == op.CROSS:
-            top -= 2
-            s, edge, fade = memory[top + 2], program[pc], program[pc + 1]
-            if fade == 0.0:
-                s = 0.0 if s < edge else 1.0
-            else:
-                s = min(max((s - edge) / fade + 0.5, 0.0), 1.0)
-            memory[top] = (1.0 - s) * memory[top] + s * memory[top + 1]
-            pc += 2
-        elif code == op.ENTER_SCALE:
-            u = min(max(abs(v) / program[pc], program[pc + 1]), program[pc + 2])
-            memory[top + 1] = x
-            memory[top + 2] = y
-            top += 2
-            x /= u
-            y /= u
-            pc += 3
-        elif code == op.LEAVE_SCALE:
-            top -= 2
-            x = memory[top]
-            y = memory[top + 1]
-            memory[top] = memory[top + 2]
-        elif code == op.WEIGH:
-            memory[top] *= program[pc]
-            pc += 1
-        else:
-            return math.nan
 
 
 @compiled(error_model="numpy")
@@ -304,7 +162,8 @@ def tick(program: si.Array, state: si.Array, x: float, y: float, v: float, t: fl
             flags |= at.F_REPEATED
             state[at.S_REPEATED] += 1.0
     if flags == 0:
-        wanted = interpret(program, state, at.STATE, x, y, v, t)
+        starts = int(program[at.H_CODE]), int(program[at.H_TABLES])
+        wanted = interpret(program, starts, state, at.STATE, x, y, v, t)
         state[at.S_WANTED] = wanted
         if abs(wanted) < math.inf:
             amplitude, flags = _amplitude(program, state, wanted, x, y, v)
@@ -329,16 +188,6 @@ def tick(program: si.Array, state: si.Array, x: float, y: float, v: float, t: fl
     state[at.S_AMPLITUDE] = amplitude
     state[at.S_FLAGS] = flags
     return float(amplitude)
-
-
-@compiled(error_model="numpy")
-def value_march(
-    program: si.Array, memory: si.Array, samples: tuple[si.Array, ...], out: si.Array
-) -> None:
-    """`interpret` over `samples`, which are x, y, v and t of one length; `memory` is the stack."""
-    x, y, v, t = samples
-    for i in range(x.size):
-        out[i] = interpret(program, memory, 0, x[i], y[i], v[i], t[i])
 
 
 @compiled(error_model="numpy")

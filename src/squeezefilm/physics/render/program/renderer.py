@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
+from squeezefilm.physics.render.interpret import samples_of, values_of
 from squeezefilm.physics.render.program import layout as at
-from squeezefilm.physics.render.program.interpreter import tick, tick_march, value_march
+from squeezefilm.physics.render.program.interpreter import tick, tick_march
 from squeezefilm.physics.render.program.lowering import Program
-from squeezefilm.physics.render.texture.coordinate import finger_arguments
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,21 +127,13 @@ def evaluate(
 ) -> si.FloatArray:
     """The texture's values in its quantity, with no memory and no limits, in the broadcast shape.
 
-    The same as calling the texture, through the compiled interpreter.
+    The same as calling the texture.
 
     Raises:
         InputError: an argument that is not finite, or shapes that do not broadcast.
     """
-    finger = finger_arguments(x, y, v, t)
-    out = np.empty(finger.x.size)
-    value_march(program.array, np.empty(program.stack), _rows(finger), out)
-    return out.reshape(finger.x.shape)
-
-
-def _rows(arrays: Iterable[si.FloatArray]) -> tuple[si.FloatArray, ...]:
-    """Arrays as the compiled loops take them; copies, since NumPy warns when compiled code looks at
-    the views that broadcasting makes."""
-    return tuple(array.copy().ravel() for array in arrays)
+    starts = int(program.array[at.H_CODE]), int(program.array[at.H_TABLES])
+    return values_of(program.array, starts, program.stack, (x, y, v, t))
 
 
 def _series(*arguments: Any) -> tuple[si.FloatArray, ...]:
@@ -152,7 +144,7 @@ def _series(*arguments: Any) -> tuple[si.FloatArray, ...]:
         raise InputError("x, y, v, t do not broadcast; give equal shapes or scalars") from error
     if joint[0].ndim != 1:
         raise InputError(f"x, y, v, t of shape {joint[0].shape} are no series; give one axis")
-    return _rows(joint)
+    return samples_of(joint)
 
 
 # The friction that an amplitude makes depends on how fast the finger slides, and only a loop that

@@ -37,7 +37,6 @@ from squeezefilm.physics.render.opcodes import ADD, CROSS, FADE, MULTIPLY, WEIGH
 from squeezefilm.physics.render.texture.coordinate import (
     X_AXIS,
     Coordinate,
-    FingerSamples,
     Place,
     require_coordinate,
     require_fade,
@@ -208,10 +207,6 @@ class Sum(_Several):
     def __post_init__(self) -> None:
         _require_alike(self.textures, "sum")
 
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        parts = [texture._values(finger) for texture in self.textures]
-        return np.asarray(np.add.reduce(parts))
-
     def _lower(self, assembler: Assembler) -> None:
         for index, texture in enumerate(self.textures):
             texture._lower(assembler)
@@ -253,9 +248,6 @@ class Product(_Shaped):
     pattern: Pattern
     type: Literal["product"] = field(default="product", repr=False)
 
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        return self.texture._values(finger) * self.pattern._values(finger)
-
     def _lower(self, assembler: Assembler) -> None:
         self.texture._lower(assembler)
         self.pattern._lower(assembler)
@@ -269,9 +261,6 @@ class Scaled(_Changed):
     texture: Composable
     factor: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1000.0)]
     type: Literal["scaled"] = field(default="scaled", repr=False)
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        return self.factor * self.texture._values(finger)
 
     def _lower(self, assembler: Assembler) -> None:
         self.texture._lower(assembler)
@@ -288,11 +277,6 @@ class Masked(_Shaped):
     texture: Composable
     pattern: Pattern
     type: Literal["masked"] = field(default="masked", repr=False)
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        share = self.pattern._values(finger)
-        rest = AT_REST[self.quantity]
-        return (1.0 - share) * rest + share * self.texture._values(finger)
 
     def _lower(self, assembler: Assembler) -> None:
         self.texture._lower(assembler)
@@ -337,17 +321,6 @@ class Sequence(_Several):
             )
         widest = float(np.min(steps)) if steps.size else 1.0
         require_fade(self.fade, widest)
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        s = self.along.at(finger.x, finger.y)
-        blended = self.textures[0]._values(finger)
-        for edge, after in zip(self.edges, self.textures[1:], strict=True):
-            if self.fade == 0.0:
-                share = np.where(s < edge, 0.0, 1.0)
-            else:
-                share = np.clip((s - edge) / self.fade + 0.5, 0.0, 1.0)
-            blended = (1.0 - share) * blended + share * after._values(finger)
-        return blended
 
     def _lower(self, assembler: Assembler) -> None:
         self.textures[0]._lower(assembler)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -25,15 +25,6 @@ FINEST: si.Metre = 1e-9
 
 Length = Annotated[si.Metre, TEXTURE_LENGTH]
 """A period or a width on a display, in annotations: from 1 nm to 0.5 m."""
-
-
-class FingerSamples(NamedTuple):
-    """Place `x`, `y` (m), velocity `v` (m/s) and time `t` (s) of a finger: arrays of one shape."""
-
-    x: si.FloatArray
-    y: si.FloatArray
-    v: si.FloatArray
-    t: si.FloatArray
 
 
 class Coordinate:
@@ -140,32 +131,3 @@ def require_coordinate(value: object) -> None:
             "or FromPoint(x, y)",
             quantity="along",
         )
-
-
-_MOST_ARGUMENT = 1e12
-
-
-def finger_arguments(
-    x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike
-) -> FingerSamples:
-    """Place, velocity and time of a finger as arrays of one shape.
-
-    Raises `InputError` for one that is not finite or beyond 1e12 in its SI unit, where a float no
-    longer tells the periods of a texture apart, or for shapes that do not broadcast.
-    """
-    # A NaN would compare false and silently become the low side of an edge.
-    for name, values, unit in (
-        ("position x", x, "m"),
-        ("position y", y, "m"),
-        ("velocity v", v, "m/s"),
-        ("time t", t, "s"),
-    ):
-        si.require(name, values, si.Unit(unit), at_least=-_MOST_ARGUMENT, at_most=_MOST_ARGUMENT)
-    arrays = [np.asarray(one, dtype=float) for one in (x, y, v, t)]
-    try:
-        return FingerSamples(*np.broadcast_arrays(*arrays))
-    except ValueError as error:
-        shapes = ", ".join(str(array.shape) for array in arrays)
-        raise InputError(
-            f"x, y, v, t of shapes {shapes} do not broadcast; give equal shapes or scalars"
-        ) from error

@@ -10,13 +10,10 @@ import math
 from dataclasses import field
 from typing import Annotated, Literal
 
-import numpy as np
-
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render import opcodes
 from squeezefilm.physics.render.opcodes import Assembler
-from squeezefilm.physics.render.texture.coordinate import FingerSamples
 from squeezefilm.physics.render.texture.pattern import Pattern, part
 
 _SECOND = si.Unit("s")
@@ -49,22 +46,11 @@ class SpeedGate(Pattern):
             least = 0.0 if self.above is None else self.above
             si.require("below", self.below, _SPEED, above=least, at_most=_FASTEST)
 
-    @property
-    def _ends(self) -> tuple[float, float]:
-        return (
-            -1.0 if self.above is None else self.above,
-            math.inf if self.below is None else self.below,
-        )
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        low, high = self._ends
-        return np.where((np.abs(finger.v) > low) & (np.abs(finger.v) < high), 1.0, 0.0)
-
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(opcodes.SPEED)
-        low, high = self._ends
         # Infinity has no place in a file of numbers; no finite speed is above this one.
-        assembler.emit(opcodes.WITHIN, low, min(high, 1e300))
+        high = 1e300 if self.below is None else self.below
+        assembler.emit(opcodes.WITHIN, -1.0 if self.above is None else self.above, high)
 
 
 class Speed:
@@ -99,10 +85,6 @@ class Attack(Pattern):
     start: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
     type: Literal["attack"] = field(default="attack", repr=False)
 
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        end = self.start + self.duration
-        return np.clip((finger.t - self.start) / (end - self.start), 0.0, 1.0)
-
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(opcodes.TIME)
         assembler.emit(opcodes.RAMP, self.start, self.start + self.duration)
@@ -123,10 +105,6 @@ class Decay(Pattern):
     time_constant: Annotated[si.Second, si.AtLeast(1e-06), si.AtMost(_LONGEST)]
     start: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
     type: Literal["decay"] = field(default="decay", repr=False)
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        passed = np.maximum(finger.t - self.start, 0.0)
-        return np.asarray(np.exp(-passed / self.time_constant))
 
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(opcodes.TIME)
@@ -152,12 +130,6 @@ class Periodic(Pattern):
     duty: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.5
     phase: si.Radian = 0.0
     type: Literal["periodic"] = field(default="periodic", repr=False)
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        cycles = finger.t / (1.0 / self.frequency) + self.phase / (2 * math.pi)
-        if self.shape == "sine":
-            return 0.5 + 0.5 * np.sin(2 * math.pi * cycles)
-        return np.where(cycles - np.floor(cycles) < self.duty, 1.0, 0.0)
 
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(opcodes.TIME)

@@ -12,7 +12,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import PIXELS
 from squeezefilm.physics.render.opcodes import IMAGE, Assembler
-from squeezefilm.physics.render.texture.coordinate import FingerSamples, Place
+from squeezefilm.physics.render.texture.coordinate import Place
 from squeezefilm.physics.render.texture.pattern import Pattern, part
 
 LARGEST_PIXEL: si.Metre = 0.1
@@ -89,22 +89,6 @@ class Image(Pattern):
         _require_pixels(array.size)
         return cls(tuple(tuple(row) for row in array.tolist()), pixel, left, bottom, outside)
 
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        rows, columns = self._grid.shape
-        u = (finger.x - self.left) / self.pixel
-        w = (finger.y - self.bottom) / self.pixel
-        inside = (u >= 0.0) & (u <= columns) & (w >= 0.0) & (w <= rows)
-        if self.outside == "repeat":
-            u = u - columns * np.floor(u / columns)
-            w = w - rows * np.floor(w / rows)
-        i, i1, fu = _neighbours(u - 0.5, columns, self.outside == "repeat")
-        j, j1, fw = _neighbours(w - 0.5, rows, self.outside == "repeat")
-        grid, top = self._grid, rows - 1
-        low = (1.0 - fu) * grid[top - j, i] + fu * grid[top - j, i1]
-        high = (1.0 - fu) * grid[top - j1, i] + fu * grid[top - j1, i1]
-        value = (1.0 - fw) * low + fw * high
-        return np.where(inside, value, 0.0) if self.outside == "zero" else np.asarray(value)
-
     def _lower(self, assembler: Assembler) -> None:
         rows, columns = self._grid.shape
         table = assembler.table(self._grid)
@@ -119,14 +103,3 @@ def _require_pixels(count: int) -> None:
             "its pixels larger",
             quantity="values",
         )
-
-
-def _neighbours(u: si.FloatArray, count: int, wraps: bool) -> tuple[Any, Any, si.FloatArray]:
-    """The two pixels around `u` pixels from the first centre, and how far between them."""
-    if not wraps:
-        u = np.clip(u, 0.0, count - 1.0)
-    cell = np.floor(u)
-    i = cell.astype(np.int64)
-    if wraps:
-        return i % count, (i + 1) % count, u - cell
-    return i, np.minimum(i + 1, count - 1), u - cell

@@ -6,13 +6,11 @@ import typing
 from dataclasses import field
 from typing import Annotated, Any, ClassVar, Literal, Self
 
-import numpy as np
-
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.opcodes import BETWEEN, Assembler
 from squeezefilm.physics.render.texture.composition import Composable, Quantity
-from squeezefilm.physics.render.texture.coordinate import METRE, X_AXIS, FingerSamples
+from squeezefilm.physics.render.texture.coordinate import METRE, X_AXIS
 from squeezefilm.physics.render.texture.pattern import Pattern, part, require_pattern
 from squeezefilm.physics.render.texture.shapes import Constant
 
@@ -54,11 +52,6 @@ class _Level(Composable):
         """The period of a grating along x (m); None for any other pattern."""
         along_x = getattr(self.pattern, "along", None) == X_AXIS
         return getattr(self.pattern, "spatial_period", None) if along_x else None
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        share = self.pattern._values(finger)
-        # Weighted so, rounding cannot carry the value past either end.
-        return np.asarray((1.0 - share) * self.low + share * self.high)
 
     def _lower(self, assembler: Assembler) -> None:
         self.pattern._lower(assembler)

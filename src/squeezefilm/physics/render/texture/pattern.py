@@ -23,6 +23,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.opcodes import (
     COMPLEMENT,
+    END,
     ENTER_SCALE,
     GREATEST,
     LEAST,
@@ -30,7 +31,6 @@ from squeezefilm.physics.render.opcodes import (
     MULTIPLY,
     Assembler,
 )
-from squeezefilm.physics.render.texture.coordinate import FingerSamples, finger_arguments
 
 MOST_PARTS = 64
 """Parts that one sum, product, sequence or lattice operation may have."""
@@ -51,7 +51,8 @@ class TexturePart:
 
     Called with the finger's place `x`, `y` (m), its velocity `v` along its path (m/s; negative on
     the way back) and the time `t` (s), which broadcast; returns values in the broadcast shape.
-    Raises `InputError` for an argument that is not finite or shapes that do not broadcast.
+    Raises `InputError` for an argument that is not finite, shapes that do not broadcast, or a
+    pattern or texture too deep or too large to be rendered.
     """
 
     __slots__ = ()
@@ -60,10 +61,14 @@ class TexturePart:
         self, x: si.MetreLike, y: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
     ) -> si.FloatArray:
         """The values at these places, velocities and times (m for an amplitude, else 1)."""
-        return np.array(self._values(finger_arguments(x, y, v, t)))
+        # Whoever only says what is to be felt does not load the compiler.
+        from squeezefilm.physics.render.interpret import values_of
 
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        raise NotImplementedError
+        assembler = Assembler()
+        self._lower(assembler)
+        assembler.emit(END)
+        program = np.concatenate([assembler.code, *assembler.tables])
+        return values_of(program, (0, len(assembler.code)), assembler.deepest, (x, y, v, t))
 
     def _lower(self, assembler: Assembler) -> None:
         raise NotImplementedError
@@ -132,9 +137,6 @@ class Complement(Pattern):
     def __post_init__(self) -> None:
         require_pattern("pattern", self.pattern)
 
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        return 1.0 - self.pattern._values(finger)
-
     def _lower(self, assembler: Assembler) -> None:
         self.pattern._lower(assembler)
         assembler.emit(COMPLEMENT)
@@ -145,7 +147,6 @@ class _Joined:
 
     __slots__ = ()
     patterns: tuple[Pattern, ...]
-    _operation: ClassVar[np.ufunc]
     _opcode: ClassVar[int]
 
     def __post_init__(self) -> None:
@@ -156,10 +157,6 @@ class _Joined:
             )
         for pattern in self.patterns:
             require_pattern("patterns", pattern)
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        parts = [pattern._values(finger) for pattern in self.patterns]
-        return np.asarray(self._operation.reduce(parts))
 
     def _lower(self, assembler: Assembler) -> None:
         for index, pattern in enumerate(self.patterns):
@@ -174,7 +171,7 @@ class Least(_Joined, Pattern):
 
     patterns: tuple[Pattern, ...]
     type: Literal["least"] = field(default="least", repr=False)
-    _operation, _opcode = np.minimum, LEAST
+    _opcode = LEAST
 
 
 @part
@@ -183,7 +180,7 @@ class Greatest(_Joined, Pattern):
 
     patterns: tuple[Pattern, ...]
     type: Literal["greatest"] = field(default="greatest", repr=False)
-    _operation, _opcode = np.maximum, GREATEST
+    _opcode = GREATEST
 
 
 @part
@@ -192,7 +189,7 @@ class Times(_Joined, Pattern):
 
     patterns: tuple[Pattern, ...]
     type: Literal["times"] = field(default="times", repr=False)
-    _operation, _opcode = np.multiply, MULTIPLY
+    _opcode = MULTIPLY
 
 
 @part
@@ -220,12 +217,6 @@ class SpeedScaled(Pattern):
         require_pattern("pattern", self.pattern)
         unit = si.Unit("m/s")
         si.require("fastest", self.fastest, unit, at_least=self.slowest, at_most=10.0)
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        x, y, v, t = finger
-        low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed
-        factor = np.clip(np.abs(v) / self.reference_speed, low, high)
-        return self.pattern._values(FingerSamples(x / factor, y / factor, v, t))
 
     def _lower(self, assembler: Assembler) -> None:
         low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed

@@ -6,8 +6,6 @@ import math
 from dataclasses import field
 from typing import Annotated, Literal
 
-import numpy as np
-
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
@@ -27,7 +25,6 @@ from squeezefilm.physics.render.texture.coordinate import (
     METRE,
     X_AXIS,
     Coordinate,
-    FingerSamples,
     FromPoint,
     Length,
     Place,
@@ -47,9 +44,6 @@ class Constant(Pattern):
     share: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 1.0
     type: Literal["constant"] = field(default="constant", repr=False)
 
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        return np.full(finger.x.shape, float(self.share))
-
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(CONSTANT, self.share)
 
@@ -62,9 +56,6 @@ class _Along(Pattern):
 
     def __post_init__(self) -> None:
         require_coordinate(self.along)
-
-    def _place(self, finger: FingerSamples) -> si.FloatArray:
-        return self.along.at(finger.x, finger.y)
 
 
 @part
@@ -95,10 +86,6 @@ class SquareWave(_Along):
     along: Coordinate = X_AXIS
     type: Literal["square_wave"] = field(default="square_wave", repr=False)
 
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        cycles = self._place(finger) / self.spatial_period + self.phase / (2 * math.pi)
-        return np.where(cycles - np.floor(cycles) < self.duty, 1.0, 0.0)
-
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)
         assembler.emit(SQUARE, self.spatial_period, self.phase / (2 * math.pi), self.duty)
@@ -115,10 +102,6 @@ class SineWave(_Along):
     phase: si.Radian = 0.0
     along: Coordinate = X_AXIS
     type: Literal["sine_wave"] = field(default="sine_wave", repr=False)
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        cycles = self._place(finger) / self.spatial_period + self.phase / (2 * math.pi)
-        return 0.5 + 0.5 * np.sin(2 * math.pi * cycles)
 
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)
@@ -144,13 +127,6 @@ class Pulse(_Along):
     shape: Literal["gaussian", "raised_cosine"] = "gaussian"
     along: Coordinate = X_AXIS
     type: Literal["pulse"] = field(default="pulse", repr=False)
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        s = self._place(finger)
-        if self.shape == "gaussian":
-            return np.asarray(np.exp(-0.5 * ((s - self.centre) / (self.width / _FULL_WIDTH)) ** 2))
-        off = np.abs(s - self.centre) / self.width
-        return np.where(off < 1.0, 0.5 + 0.5 * np.cos(math.pi * np.minimum(off, 1.0)), 0.0)
 
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)
@@ -187,10 +163,6 @@ class Ramp(_Along):
                 "take a Band for a step",
                 quantity="end",
             )
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        done = np.clip((self._place(finger) - self.start) / (self.end - self.start), 0.0, 1.0)
-        return done if self.profile == "linear" else done * done * (3.0 - 2.0 * done)
 
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)
@@ -239,13 +211,6 @@ class Band(_Along):
         """1 within `radius` (m) of the point (`x`, `y`) (m)."""
         return cls(-radius, radius, fade, FromPoint(x, y))
 
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        s = self._place(finger)
-        if self.fade == 0.0:
-            return np.where((s >= self.start) & (s < self.end), 1.0, 0.0)
-        within = np.minimum(s - self.start, self.end - s) / self.fade + 0.5
-        return np.clip(within, 0.0, 1.0)
-
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)
         assembler.emit(BAND, self.start, self.end, self.fade)
@@ -282,12 +247,6 @@ class Bump(_Along):
     kind: Literal["bump", "hole"] = "bump"
     along: Coordinate = X_AXIS
     type: Literal["bump"] = field(default="bump", repr=False)
-
-    def _values(self, finger: FingerSamples) -> si.FloatArray:
-        d = (self._place(finger) - self.centre) / self.width
-        way = np.where(finger.v < 0.0, -self._sign, self._sign)
-        # Held within 0 to 1: at d = 1 rounding reaches past it.
-        return np.clip(0.5 - 0.5 * way * d * np.exp(0.5 * (1.0 - d * d)), 0.0, 1.0)
 
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)

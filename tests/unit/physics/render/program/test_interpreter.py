@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 import pytest
+from tests.numpy_textures import numpy_values
 
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, lower
@@ -80,7 +81,7 @@ MILD = Amplitude.constant(0.8e-6)
     ids=lambda one: type(one).__name__,
 )
 def test_patterns_are_lowered_as_they_are_called(pattern: Pattern) -> None:
-    wanted = pattern(X, Y, V, T)
+    wanted = numpy_values(pattern, X, Y, V, T)
     texture = Amplitude(pattern, 0.0, 1e-6)
     program = lower(texture, largest_amplitude=1e-6)
     assert evaluate(program, X, Y, V, T) == pytest.approx(1e-6 * wanted, rel=1e-9, abs=1e-17)
@@ -118,7 +119,7 @@ def played(program: Program) -> np.ndarray:
 )  # fmt: skip
 def test_textures_of_amplitude_are_lowered_as_they_are_called(texture: Composable) -> None:
     program = lower(texture, largest_amplitude=1e-6)
-    wanted = texture(X, Y, V, T)
+    wanted = numpy_values(texture, X, Y, V, T)
     assert evaluate(program, X, Y, V, T) == pytest.approx(wanted, rel=1e-9, abs=1e-17)
     assert played(program) == pytest.approx(wanted, rel=1e-9, abs=1e-17)
 
@@ -126,13 +127,13 @@ def test_textures_of_amplitude_are_lowered_as_they_are_called(texture: Composabl
 def test_friction_is_played_as_the_amplitude_that_makes_it() -> None:
     friction = RelativeFriction(SineWave(3e-3), 0.6, 0.95).when(Band(0.0, 5e-3, 1e-3))
     program = lower(friction, inverse=INVERSE)
-    wanted = friction(X, Y, V, T)
+    wanted = numpy_values(friction, X, Y, V, T)
     assert evaluate(program, X, Y, V, T) == pytest.approx(wanted)
     # 1 − µ′/µ goes with the amplitude, half of it at 4 µm.
     assert played(program) == pytest.approx(8e-6 * (1 - wanted), abs=1e-15)
     reduction = FrictionReduction(Ramp(0.0, 8e-3), 0.05, 0.2).when(SquareWave(2e-3))
     program = lower(reduction, inverse=INVERSE, friction_coefficient=0.5)
-    wanted = reduction(X, Y, V, T)
+    wanted = numpy_values(reduction, X, Y, V, T)
     assert evaluate(program, X, Y, V, T) == pytest.approx(wanted, abs=1e-12)
     assert played(program) == pytest.approx(8e-6 * wanted / 0.5, abs=1e-15)
 

@@ -11,7 +11,7 @@ from numba.core.runtime import _nrt_python, rtsys
 from scipy.interpolate import RegularGridInterpolator
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.render import opcodes
+from squeezefilm.physics.render import interpret, opcodes
 from squeezefilm.physics.render.program import interpreter, layout
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, checked, lower
@@ -195,7 +195,7 @@ def test_one_number_for_every_opcode_and_all_of_them_in_the_table() -> None:
     assert sorted(names.values()) == list(range(len(opcodes.SHAPES)))
     for name, value in names.items():
         assert f"{value:2d}  {name}" in (opcodes.__doc__ or "")
-    source = inspect.getsource(interpreter.interpret.py_func)
+    source = inspect.getsource(interpret.interpret.py_func)
     assert all(f"op.{name}:" in source for name in names)
     for name, place in vars(layout).items():
         if name.startswith("H_") and name not in ("H_WAVE_P", "H_WAVE_Q", "H_WAVE_R"):

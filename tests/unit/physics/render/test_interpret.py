@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 from scipy.interpolate import BSpline
 
-from squeezefilm.physics.render.program import layout
-from squeezefilm.physics.render.program.lookup import field_noise, image, line_noise
-from squeezefilm.physics.render.texture.noise import STEP_ACROSS, STEP_ALONG, mixed
+from squeezefilm.physics.render.interpret import field_noise, image, line_noise
+from squeezefilm.physics.render.opcodes import STEP_ACROSS, STEP_ALONG, mixed
 
 SEED = 12345
 
@@ -52,12 +51,13 @@ def test_where_lattice_points_have_no_number_there_is_no_noise(far: float) -> No
 def test_an_image_ends_with_its_outermost_pixels() -> None:
     """Of an image that is 0 outside both its edges belong to it."""
     program, begin, table = np.zeros(80), 30, 60
-    program[layout.H_TABLES] = table
     program[begin + 1 : begin + 7] = [1, 2, 0.25, 0.5, 0.125, 2]  # rows, columns, left, bottom
     program[table : table + 2] = [0.25, 0.75]
     middle = 0.5625
     for x, value in [(0.25, 0.25), (0.3125, 0.25), (0.375, 0.5), (0.5, 0.75)]:
-        assert image(program, begin, x, middle) == value
-    assert image(program, begin, 0.25, 0.5) == image(program, begin, 0.25, 0.625) == 0.25
+        assert image(program, table, begin, x, middle) == value
+    assert (
+        image(program, table, begin, 0.25, 0.5) == image(program, table, begin, 0.25, 0.625) == 0.25
+    )
     for x, y in [(0.249, middle), (0.501, middle), (0.375, 0.499), (0.375, 0.626)]:
-        assert image(program, begin, x, y) == 0.0
+        assert image(program, table, begin, x, y) == 0.0
