@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable
 from typing import Annotated
 
 import numpy as np
@@ -34,6 +33,7 @@ Places = Annotated[
     si.MetreArray, si.AtLeast(-hard.STROKE_START.most), si.AtMost(hard.STROKE_START.most)
 ]
 """Places on a surface, at most 10 m from its middle."""
+Ratio = Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(0.5)]
 
 
 @si.checked_numbers
@@ -74,41 +74,25 @@ def _corners(
 
 
 @si.checked_numbers
-def tangential_patch(
+def half_space_motion(
     x: Places,
     y: Places,
     length: Annotated[si.Metre, hard.SIDE],
     width: Annotated[si.Metre, hard.SIDE],
-    poisson_ratio: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(0.5)],
-) -> tuple[si.MetreArray, si.MetreArray]:
-    """u_x and u_y at places of the surface (m), times the shear modulus and per traction along x
-    (so in metres), of a rectangle `length` × `width` about the origin.
+    poisson_ratio: Ratio,
+) -> tuple[si.MetreArray, si.MetreArray, si.MetreArray]:
+    """u_x and u_y per traction along x, and u_z per pressure, at places of the surface (m), times
+    the shear modulus (so in metres), of a rectangle `length` × `width` about the origin.
 
     `x` and `y` broadcast. Finite everywhere; the strain is not, at the edges across x. Raises
     `InputError` for sizes not above 0 or a Poisson ratio outside 0 to 0.5.
     """
     inverse, along, mixed = _corners(*together(x, y), length, width)
     scale = 1 / (2 * math.pi)
-    return (
-        scale * ((1 - poisson_ratio) * inverse + poisson_ratio * along),
-        scale * poisson_ratio * mixed,
-    )
+    sunk = scale * (1 - poisson_ratio) * inverse
+    return sunk + scale * poisson_ratio * along, scale * poisson_ratio * mixed, sunk
 
 
-@si.checked_numbers
-def normal_patch(
-    x: Places,
-    y: Places,
-    length: Annotated[si.Metre, hard.SIDE],
-    width: Annotated[si.Metre, hard.SIDE],
-    poisson_ratio: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(0.5)],
-) -> si.MetreArray:
-    """u_z at places of the surface, times the shear modulus and per pressure (so in metres), of a
-    rectangle about the origin. As `tangential_patch`."""
-    return (1 - poisson_ratio) / (2 * math.pi) * _corners(*together(x, y), length, width)[0]
-
-
-Ratio = Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(0.5)]
 _NODES, _REACH = 400, 18.0
 """Quadrature nodes in k h up to a reach where e^(−2kh) is 2e-16."""
 _FARTHEST = 12.0
@@ -169,65 +153,34 @@ def _tabled(table: CubicSpline, r: si.FloatArray, half_space: float) -> si.Float
     return np.where(r <= _FARTHEST, near, -half_space / (2 * np.pi * np.maximum(r, _FARTHEST)))
 
 
-def _over_patch(
-    x: si.FloatArray,
-    y: si.FloatArray,
-    length: float,
-    width: float,
-    kernel: Callable[[si.FloatArray, si.FloatArray], tuple[si.FloatArray, ...]],
-) -> list[si.FloatArray]:
-    points, weights = gauss_points(4)
-    total: list[si.FloatArray] = []
-    for a, wa in zip(points * length / 2, weights, strict=True):
-        for b, wb in zip(points * width / 2, weights, strict=True):
-            some = [wa * wb * length * width / 4 * value for value in kernel(x - a, y - b)]
-            total = [t + s for t, s in zip(total, some, strict=True)] if total else some
-    return total
-
-
 @si.checked_numbers
-def tangential_correction(
+def layer_correction(
     x: Places,
     y: Places,
     length: Annotated[si.Metre, hard.SIDE],
     width: Annotated[si.Metre, hard.SIDE],
     poisson_ratio: Ratio,
     thickness: Annotated[si.Metre, hard.SIDE],
-) -> tuple[si.MetreArray, si.MetreArray]:
-    """Correction of `half_space.tangential_patch` by bone at depth `thickness` (m; negative near).
+) -> tuple[si.MetreArray, si.MetreArray, si.MetreArray]:
+    """What bone at depth `thickness` (m) adds to `half_space_motion` (m; negative near).
 
     Beyond 12 thicknesses both together are nothing. For patches up to two thicknesses wide, and
     layers not thinner than that. Raises `InputError` for sizes not above 0.
     """
-
-    def kernel(dx: si.FloatArray, dy: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
-        steady, turning, _ = _tables(float(poisson_ratio))
-        r2 = dx**2 + dy**2
-        r = np.sqrt(r2) / thickness
-        cos = np.divide(dx**2 - dy**2, r2, out=np.zeros_like(r2), where=r2 > 0)
-        sin = np.divide(2 * dx * dy, r2, out=np.zeros_like(r2), where=r2 > 0)
-        first = _tabled(steady, r, 1 - poisson_ratio / 2)
-        second = _tabled(turning, r, poisson_ratio / 2)
-        return (first + second * cos) / thickness, second * sin / thickness
-
-    u, v = _over_patch(*together(x, y), length, width, kernel)
-    return u, v
-
-
-@si.checked_numbers
-def normal_correction(
-    x: Places,
-    y: Places,
-    length: Annotated[si.Metre, hard.SIDE],
-    width: Annotated[si.Metre, hard.SIDE],
-    poisson_ratio: Ratio,
-    thickness: Annotated[si.Metre, hard.SIDE],
-) -> si.MetreArray:
-    """Correction of `half_space.normal_patch` by bone at a depth `thickness` (m). As
-    `tangential_correction`."""
-
-    def kernel(dx: si.FloatArray, dy: si.FloatArray) -> tuple[si.FloatArray]:
-        r = np.hypot(dx, dy) / thickness
-        return (_tabled(_tables(float(poisson_ratio))[2], r, 1 - poisson_ratio) / thickness,)
-
-    return _over_patch(*together(x, y), length, width, kernel)[0]
+    x, y = together(x, y)
+    steady, turning, normal = _tables(float(poisson_ratio))
+    points, weights = gauss_points(4)
+    total = np.zeros((3, *x.shape))
+    for a, wa in zip(points * length / 2, weights, strict=True):
+        for b, wb in zip(points * width / 2, weights, strict=True):
+            dx, dy = x - a, y - b
+            r2 = dx**2 + dy**2
+            r = np.sqrt(r2) / thickness
+            cos = np.divide(dx**2 - dy**2, r2, out=np.zeros_like(r2), where=r2 > 0)
+            sin = np.divide(2 * dx * dy, r2, out=np.zeros_like(r2), where=r2 > 0)
+            first = _tabled(steady, r, 1 - poisson_ratio / 2)
+            second = _tabled(turning, r, poisson_ratio / 2)
+            sunk = _tabled(normal, r, 1 - poisson_ratio)
+            total += wa * wb * np.array([first + second * cos, second * sin, sunk])
+    u, v, w = total * length * width / 4 / thickness
+    return u, v, w

@@ -9,10 +9,8 @@ import numpy as np
 
 from squeezefilm.actuators.skin_stretch.elastic_layer import (
     Places,
-    normal_correction,
-    normal_patch,
-    tangential_correction,
-    tangential_patch,
+    half_space_motion,
+    layer_correction,
 )
 from squeezefilm.core import hard_limits as hard
 from squeezefilm.core import quantities as si
@@ -46,29 +44,15 @@ class Tissue:
         y: Places,
         length: Annotated[si.Metre, hard.SIDE],
         width: Annotated[si.Metre, hard.SIDE],
-    ) -> tuple[si.FloatArray, si.FloatArray]:
-        """u_x and u_y of the surface at places (m), per newton along x spread evenly over a
-        rectangle about the origin (m/N). `x` and `y` broadcast."""
-        u, v = tangential_patch(x, y, length, width, self.poisson_ratio)
+    ) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
+        """u_x and u_y of the surface at places (m) per newton along x, and u_z per newton across
+        it, spread evenly over a rectangle about the origin (m/N). `x` and `y` broadcast."""
+        moved = np.array(half_space_motion(x, y, length, width, self.poisson_ratio))
         if self.thickness is not None:
-            more = tangential_correction(x, y, length, width, self.poisson_ratio, self.thickness)
-            u, v = u + more[0], v + more[1]
-        scale = 1 / (self.shear_modulus * length * width)
-        return scale * u, scale * v
-
-    @si.checked_numbers
-    def sinking(
-        self,
-        x: Places,
-        y: Places,
-        length: Annotated[si.Metre, hard.SIDE],
-        width: Annotated[si.Metre, hard.SIDE],
-    ) -> si.FloatArray:
-        """u_z of the surface at places (m), per newton of pressure on a rectangle (m/N)."""
-        u = normal_patch(x, y, length, width, self.poisson_ratio)
-        if self.thickness is not None:
-            u = u + normal_correction(x, y, length, width, self.poisson_ratio, self.thickness)
-        return u / (self.shear_modulus * length * width)
+            bone = layer_correction(x, y, length, width, self.poisson_ratio, self.thickness)
+            moved += np.array(bone)
+        u, v, w = moved / (self.shear_modulus * length * width)
+        return u, v, w
 
     @si.checked_numbers
     def contactor_stiffness(
@@ -79,7 +63,7 @@ class Tissue:
         """Stiffness met by one contactor alone, pulling along its `length` (N/m): force over the
         mean displacement under it, for an even traction (a rigid one is some percent stiffer)."""
         at_rest = np.zeros(1)
-        return float(1 / _mean_under(self.shifts, at_rest, at_rest, (length, width))[0])
+        return float(1 / _means_under(self, at_rest, at_rest, (length, width))[0, 0])
 
     @si.checked_numbers
     def under_contactor(
@@ -106,13 +90,12 @@ def _rows(x: si.FloatArray, y: si.FloatArray) -> tuple[si.FloatArray, si.FloatAr
     return x, y
 
 
-def _mean_under(function: object, x: si.FloatArray, y: si.FloatArray, size: Sizes) -> si.FloatArray:
-    """The mean of u_x, or of u_z, over contactors at `x`, `y` from the one that is loaded."""
+def _means_under(tissue: Tissue, x: si.FloatArray, y: si.FloatArray, size: Sizes) -> si.FloatArray:
+    """The means of `Tissue.shifts` over contactors at `x`, `y` from the one that is loaded."""
     points, weights = np.polynomial.legendre.leggauss(8)
     a, b = np.meshgrid(points * size[0] / 2, points * size[1] / 2, indexing="ij")
-    answer = function(x[:, None] + a.ravel(), y[:, None] + b.ravel(), *size)  # type: ignore[operator]
-    u = answer[0] if isinstance(answer, tuple) else answer
-    return np.asarray(u @ np.outer(weights, weights).ravel() / 4)
+    moved = tissue.shifts(x[:, None] + a.ravel(), y[:, None] + b.ravel(), *size)
+    return np.asarray(np.array(moved) @ np.outer(weights, weights).ravel() / 4)
 
 
 @si.checked_numbers
@@ -133,8 +116,7 @@ def influence_matrix(
         [np.abs(np.subtract.outer(places, places)).ravel() for places in (x, y)], axis=1
     )
     unique, place = np.unique(np.round(apart, 12), axis=0, return_inverse=True)
-    function = tissue.sinking if normal else tissue.shifts
-    means = _mean_under(function, unique[:, 0], unique[:, 1], size)
+    means = _means_under(tissue, unique[:, 0], unique[:, 1], size)[2 if normal else 0]
     return means[place.ravel()].reshape(x.size, x.size)
 
 
@@ -160,7 +142,7 @@ def strain_matrices(
         for n, places in zip(margins, (px, py), strict=True)
     ]
     at_x, at_y = np.meshgrid(*edges, indexing="ij")
-    u, v = (
+    u, v, _ = (
         np.stack(part, axis=-1)
         for part in zip(
             *(tissue.shifts(at_x - a, at_y - b, *size) for a, b in zip(px, py, strict=True)),
