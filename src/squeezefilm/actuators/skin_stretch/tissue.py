@@ -117,7 +117,7 @@ def influence_matrix(
     )
     unique, place = np.unique(np.round(apart, 12), axis=0, return_inverse=True)
     means = _means_under(tissue, unique[:, 0], unique[:, 1], size)[2 if normal else 0]
-    return means[place.ravel()].reshape(x.size, x.size)
+    return np.asarray(means[place.ravel()].reshape(x.size, x.size))
 
 
 @si.checked_numbers
