@@ -129,7 +129,7 @@ def check_summaries(
         dict(numbers_of(summary))
         for summary in (
             p.summary(), analysis.summary(), plate | {"resonance_frequency_Hz": None},
-            predicted(display, "solved", DesignPoint("")).summary(),
+            predicted(display, "solved", DesignPoint(text="")).summary(),
         )
     ] + [dict(answer.numbers) for answer in swept]  # fmt: skip
     same(p.mode.resonance_frequency, plate["frequency_Hz"], swept[1].numbers["frequency_Hz"])
@@ -230,7 +230,7 @@ def test_the_verbs_agree_on_a_mode_that_is_hardly_driven() -> None:
 
 @pytest.mark.slow
 def test_the_lab_says_of_a_plate_what_predict_says() -> None:
-    shown = dict(numbers_of(designed(DesignPoint(preset_text("biet2008-plate")), "solved")))
+    shown = dict(numbers_of(designed(DesignPoint(text=preset_text("biet2008-plate")), "solved")))
     p = dict(numbers_of(predict("biet2008-plate").summary()))
     for name in SHARED:
         if not math.isnan(p.get(name, math.nan)):

@@ -7,12 +7,14 @@ can act on.
 
 from __future__ import annotations
 
+import inspect
 import json
 import logging
+import typing
 from collections.abc import Awaitable, Callable
-from typing import Any
+from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, create_model
 
 from squeezefilm.core.errors import InputError, RecordError, SqueezefilmError
 from squeezefilm.core.results import to_json
@@ -24,6 +26,12 @@ LARGEST_FROM_PARTICIPANT = 64 * 1024
 """Characters of a participant's message: an answer, never a file."""
 LONGEST_TEXT = 400_000
 """Characters of one text in a message, a TOML file's for instance."""
+
+# What arguments of handlers may be, and so fields of messages.
+Text = Annotated[str, Field(max_length=LONGEST_TEXT)]
+Name = Annotated[str, Field(max_length=100)]
+FileName = Annotated[str, Field(max_length=64)]
+Seed = Annotated[int, Field(ge=0, le=2**53)]
 
 
 class Request(BaseModel):
@@ -37,14 +45,27 @@ class Request(BaseModel):
     @property
     def own(self) -> dict[str, Any]:
         """The fields of its own, beside id and type."""
-        return self.model_dump(exclude={"id", "type"})
+        names = type(self).model_fields.keys() - {"id", "type"}
+        return {name: getattr(self, name) for name in names}
 
 
 _LOG = logging.getLogger("squeezefilm.lab")
 _OURS = "The lab failed on this request; the terminal it runs in shows why."
 
 Answer = dict[str, Any]
-Handler = Callable[[Any], Awaitable[Answer]]
+Handler = Callable[..., Awaitable[Answer]]
+
+
+def request_of(handler: Handler) -> type[Request]:
+    """The model of a message whose fields are a handler's arguments."""
+    hints = typing.get_type_hints(handler, include_extras=True)
+    fields: dict[str, Any] = {
+        name: (hints[name], ... if argument.default is argument.empty else argument.default)
+        for name, argument in inspect.signature(handler).parameters.items()
+        if name != "self"
+    }
+    model: type[Request] = create_model("Message", __base__=Request, **fields)
+    return model
 
 
 class Dispatcher:
@@ -54,9 +75,13 @@ class Dispatcher:
         self._longest = longest
         self._known: dict[str, tuple[type[Request], Handler]] = {}
 
-    def add(self, kind: str, model: type[Request], handler: Handler) -> None:
-        """Answer messages of a type, read as a model, by a handler."""
-        self._known[kind] = (model, handler)
+    def add(self, kind: str, handler: Handler, model: type[Request] | None = None) -> None:
+        """Answer messages of a type by a handler, called with their fields as its arguments, or
+        with the whole message where it has a `model`."""
+        if model is None:
+            self._known[kind] = request_of(handler), lambda asked: handler(**asked.own)
+        else:
+            self._known[kind] = model, handler
 
     async def answer(self, text: str) -> Answer:
         """The answer to one message's text; never raises for what a page may send.

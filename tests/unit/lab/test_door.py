@@ -25,7 +25,6 @@ from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.lan import certificate
 from squeezefilm.lab.server import Lab, UnheardServer, listening_socket, server_of
-from squeezefilm.lab.wire import Request
 
 ADDRESSES = ("127.0.0.2", "127.0.0.3", "127.0.0.4")
 
@@ -297,10 +296,10 @@ def test_a_page_may_be_silent_for_longer_than_a_request_may_take(
     async def work() -> None:
         async with Served(tmp_path) as served, served.page() as page:
 
-            async def answer(_: Request) -> dict[str, Any]:
+            async def answer() -> dict[str, Any]:
                 return {"type": "here"}
 
-            served.lab.experimenter.add("ask", Request, answer)
+            served.lab.experimenter.add("ask", answer)
             await asyncio.sleep(0.5)
             await page.send(json.dumps({"id": 1, "type": "ask"}))
             said = [json.loads(await page.recv())["type"]]
@@ -329,11 +328,11 @@ def test_a_page_that_does_not_read_is_dropped_and_delays_nobody(
         async with Served(tmp_path) as served, served.page() as good, served.page() as bad:
             lab = served.lab
 
-            async def answer(_: Request) -> dict[str, Any]:
+            async def answer() -> dict[str, Any]:
                 lab.tell({"type": "told", "text": large if kind == "told" else ""})
                 return {"type": "answered", "text": large if kind == "asks" else ""}
 
-            lab.experimenter.add("ask", Request, answer)
+            lab.experimenter.add("ask", answer)
             await until(lambda: len(lab.pages) == 2)
             # This client stops reading from its socket after some messages of its own accord.
             told = 0
@@ -382,11 +381,11 @@ def test_a_page_that_asks_without_end_is_closed_with_words(tmp_path: Path) -> No
     async def work() -> None:
         async with Served(tmp_path) as served, served.page() as page:
 
-            async def never(_: Request) -> dict[str, Any]:
+            async def never() -> dict[str, Any]:
                 await asyncio.sleep(3600)
                 return {}
 
-            served.lab.experimenter.add("never", Request, never)
+            served.lab.experimenter.add("never", never)
             for number in range(65):
                 await page.send(json.dumps({"id": number, "type": "never"}))
             assert await served.closed(page) == (

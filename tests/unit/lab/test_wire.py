@@ -6,16 +6,16 @@ import json
 import pytest
 
 from squeezefilm.core.errors import InputError, RecordError
-from squeezefilm.lab.wire import Dispatcher, Request, as_text
+from squeezefilm.lab.wire import Dispatcher, as_text
 from squeezefilm.lab.worker import SupersededError
 
 
 def answer_to(error: Exception, text: str = '{"id": 7, "type": "x"}') -> dict:
-    async def fail(_: Request) -> dict:
+    async def fail() -> dict:
         raise error
 
     dispatcher = Dispatcher()
-    dispatcher.add("x", Request, fail)
+    dispatcher.add("x", fail)
     return asyncio.run(dispatcher.answer(text))
 
 

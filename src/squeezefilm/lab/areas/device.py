@@ -61,11 +61,11 @@ class DeviceArea:
         self.session = DeviceSession(self._tell)
         lab.closing.append(self.session.close)
         add = lab.experimenter.add
-        add("drives", Request, self._listing)
-        add("play device", PlayDevice, self._play)
-        add("check device", OnDrive, self._check)
-        add("what plays", Request, self._playing)
-        add("stop everything", Request, self._stop)
+        add("drives", self._listing)
+        add("play device", self._play, PlayDevice)
+        add("check device", self._check, OnDrive)
+        add("what plays", self._playing)
+        add("stop everything", self._stop)
 
     def _told(self, message: dict[str, Any]) -> None:
         if message["type"] == "device ended" and not self.session.running:
@@ -81,7 +81,7 @@ class DeviceArea:
         self.session.start(work, **arguments)
         self._lab.playing.note(DEVICE, what, self.session.stop, plays=True)
 
-    async def _listing(self, _: Request) -> Answer:
+    async def _listing(self) -> Answer:
         from serial.tools import list_ports
 
         ports = [
@@ -118,10 +118,10 @@ class DeviceArea:
         )
         return {"type": "checking"}
 
-    async def _playing(self, _: Request) -> Answer:
+    async def _playing(self) -> Answer:
         return self._lab.playing.message()
 
-    async def _stop(self, _: Request) -> Answer:
+    async def _stop(self) -> Answer:
         self._lab.playing.stop()
         return {"type": "stopping"}
 

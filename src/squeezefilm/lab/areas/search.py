@@ -17,7 +17,7 @@ from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import write_whole
 from squeezefilm.lab.files import existing, named
 from squeezefilm.lab.search_process import SearchProcess, asked_of, display_text, folder_of, search
-from squeezefilm.lab.wire import LONGEST_TEXT, Answer, Request
+from squeezefilm.lab.wire import Answer, FileName, Name, Request, Seed, Text
 
 if TYPE_CHECKING:
     from squeezefilm.lab.server import Lab
@@ -28,32 +28,15 @@ LONGEST_STOP: si.Second = 20.0
 _REQUIREMENTS = "requirements"
 
 
-class RequirementsText(Request):
-    """The text of preset requirements, or of those of a search that was begun here."""
+class StartSearch(Request):
+    """Request for a search by requirements as TOML text: how many designs are looked at and solved,
+    the seed, and processes."""
 
-    preset: str | None = Field(None, max_length=100)
-    file: str | None = Field(None, max_length=100)
-
-
-class CheckRequirements(Request):
-    """Requirements as TOML text."""
-
-    text: str = Field(max_length=LONGEST_TEXT)
-
-
-class StartSearch(CheckRequirements):
-    """Request for a search: how many designs are looked at and solved, the seed, and processes."""
-
+    text: Text
     screened: int = Field(2000, ge=int(DESIGNS_SCREENED.least), le=int(DESIGNS_SCREENED.most))
     solved: int = Field(120, ge=int(DESIGNS_SOLVED.least), le=int(DESIGNS_SOLVED.most))
-    seed: int = Field(1, ge=0, le=2**53)
+    seed: Seed = 1
     jobs: int = Field(1, ge=1, le=MOST_JOBS)
-
-
-class OpenFound(Request):
-    """A plate of the front by its short name."""
-
-    name: str = Field(max_length=64)
 
 
 @dataclass(slots=True)
@@ -92,15 +75,15 @@ class SearchArea:
         self.process = SearchProcess(self._tell)
         lab.closing.append(self.process.close)
         add = lab.experimenter.add
-        add("requirements", Request, self._listing)
-        add("requirements text", RequirementsText, self._text_of)
-        add("check requirements", CheckRequirements, self._check)
-        add("start search", StartSearch, self._start)
-        add("what searches", Request, self._what)
-        add("stop search", Request, self._stop)
-        add("open found", OpenFound, self._open)
+        add("requirements", self._listing)
+        add("requirements text", self._text_of)
+        add("check requirements", self._check)
+        add("start search", self._start, StartSearch)
+        add("what searches", self._what)
+        add("stop search", self._stop)
+        add("open found", self._open)
 
-    async def _listing(self, _: Request) -> Answer:
+    async def _listing(self) -> Answer:
         files = self._folder.glob(f"*/{_REQUIREMENTS}.toml")
         saved = sorted(path.parent.name for path in files)
         return {
@@ -109,24 +92,23 @@ class SearchArea:
             "saved": saved,
         }
 
-    async def _text_of(self, asked: RequirementsText) -> Answer:
-        if (asked.preset is None) == (asked.file is None):
+    async def _text_of(self, preset: Name | None = None, file: Name | None = None) -> Answer:
+        """The text of preset requirements, or of those of a search that was begun here."""
+        if (preset is None) == (file is None):
             raise InputError("say which requirements: a preset or those of a search, one of them")
-        if asked.preset is not None:
-            if asked.preset not in presets.names("requirements"):
-                raise InputError(f"'{asked.preset}' is no preset of requirements")
-            file = presets.resolve(asked.preset, "requirements")
+        if preset is not None:
+            if preset not in presets.names("requirements"):
+                raise InputError(f"'{preset}' is no preset of requirements")
+            path = presets.resolve(preset, "requirements")
         else:
-            place = named(self._folder, str(asked.file), "")
-            file = existing(place, _REQUIREMENTS, ".toml")
-        text = read_toml_text(file)
-        return {"type": "requirements text", "text": text}
+            path = existing(named(self._folder, str(file), ""), _REQUIREMENTS, ".toml")
+        return {"type": "requirements text", "text": read_toml_text(path)}
 
     async def _asked(self, text: str) -> dict[str, Any]:
         return await self._lab.workers.quick.do("requirements", asked_of, text, self._lab.folder)
 
-    async def _check(self, asked: CheckRequirements) -> Answer:
-        return {"type": "requirements checked", **await self._asked(asked.text)}
+    async def _check(self, text: Text) -> Answer:
+        return {"type": "requirements checked", **await self._asked(text)}
 
     async def _start(self, asked: StartSearch) -> Answer:
         how = asked.model_dump(include={"screened", "solved", "seed", "jobs"})
@@ -142,10 +124,10 @@ class SearchArea:
         self._tell_pages()
         return {"type": "searching"}
 
-    async def _what(self, _: Request) -> Answer:
+    async def _what(self) -> Answer:
         return self._message()
 
-    async def _stop(self, _: Request) -> Answer:
+    async def _stop(self) -> Answer:
         running = self._search
         if running is not None and running.end is None:
             if running.stopping:
@@ -162,12 +144,12 @@ class SearchArea:
         if search is self._search and search.end is None:
             self.process.kill()
 
-    async def _open(self, asked: OpenFound) -> Answer:
+    async def _open(self, name: FileName) -> Answer:
         running = self._search
         front = [] if running is None else running.known.get("front", [])
-        design = next((plate["design"] for plate in front if plate["name"] == asked.name), None)
+        design = next((plate["design"] for plate in front if plate["name"] == name), None)
         if running is None or design is None:
-            raise InputError(f"no plate {asked.name} is on the front; search again")
+            raise InputError(f"no plate {name} is on the front; search again")
         work = display_text, running.text, self._lab.folder, design["shape"], design["values"]
         return {"type": "found display", "text": await self._lab.workers.quick.do(None, *work)}
 

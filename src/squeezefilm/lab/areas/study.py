@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import partial, wraps
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 from pydantic import Field
 
@@ -15,7 +15,7 @@ from squeezefilm.lab.keys import CODE_LIFE
 from squeezefilm.lab.studying.devices import MeasuredDevice, StudyDevices, require_device
 from squeezefilm.lab.studying.jobs import analysis_of, rehearsed, report_of
 from squeezefilm.lab.studying.studies import Studies
-from squeezefilm.lab.wire import Answer, Handler, Request
+from squeezefilm.lab.wire import Answer, Handler, Name, Request
 from squeezefilm.lab.worker import PAGE
 from squeezefilm.study.conduct.run import Response
 from squeezefilm.study.conduct.sessions import Exposure, exposure
@@ -37,92 +37,27 @@ T = TypeVar("T")
 _LONGEST_SESSION = 3600.0
 
 
-class NamedStudy(Request):
-    """A study by the name of its file."""
-
-    study: str = Field(max_length=100)
-
-
-class PlanStudy(Request):
-    """A preset design."""
-
-    design: str = Field(max_length=100)
-
-
-class CreateStudy(PlanStudy):
-    """A new study's file."""
-
-    study: str = Field(max_length=64)
-    seed: int = Field(ge=0, le=2**53)
-
-
-class OfParticipant(NamedStudy):
-    """A participant of a study."""
-
-    participant: str = Field(max_length=100)
-
-
-class DeleteParticipant(OfParticipant):
-    """Deleting asks for the pseudonym twice."""
-
-    confirm: str = Field(max_length=100)
-
-
-class PrepareSitting(OfParticipant):
+class PrepareSitting(Request):
     """A sitting: what a `SessionConditions` has, and the consent's text."""
 
-    device: str = Field(max_length=100)
+    study: Name
+    participant: Name
+    device: Name
     consent: str = Field(min_length=20, max_length=20_000)
     conditions: dict[str, str | float | None] = Field(default_factory=dict, max_length=20)
     acknowledged: bool = False
 
 
-class OfSitting(Request):
-    """A sitting by its id."""
-
-    sitting: str = Field(max_length=100)
-
-
-class FeelSurface(OfSitting):
-    """A surface of the trial with this token to be played, by its place from 0."""
-
-    token: str = Field(max_length=100)
-    place: int = Field(ge=0, le=9)
-
-
-class SurfacesFelt(OfSitting):
-    """All surfaces of the trial with this token were felt."""
-
-    token: str = Field(max_length=100)
-
-
-class Respond(OfSitting):
+class Respond(Request):
     """An answer to the trial with this token."""
 
-    token: str = Field(max_length=100)
+    sitting: Name
+    token: Name
     choice: str = Field("", max_length=200)
     estimate: float | None = None
     response_time: float | None = Field(None, ge=0.0, le=86400.0)
     started_monotonic: float = Field(0.0, ge=0.0, le=1e12)
     ended_monotonic: float = Field(0.0, ge=0.0, le=1e12)
-
-
-class RehearseStudy(NamedStudy):
-    """Request for a rehearsal: the number of simulated participants who do the study."""
-
-    participants: int = Field(ge=1, le=200)
-
-
-class ExportStudy(NamedStudy):
-    """A study's export."""
-
-    format: str = Field(max_length=20)
-
-
-class MergeStudy(NamedStudy):
-    """Another station's file."""
-
-    other: str = Field(max_length=100)
 
 
 class StudyThread:
@@ -168,32 +103,32 @@ class StudyArea:
         lab.closing.append(self._devices.close)
         lab.left.append(self._left)
         add = lab.experimenter.add
-        add("studies", Request, self._listing)
-        add("plan study", PlanStudy, self._passed_on(Studies.plan, "plan"))
-        add("create study", CreateStudy, self._passed_on(Studies.create, "study"))
-        add("study", NamedStudy, self._passed_on(Studies.status, "study"))
-        add("export study", ExportStudy, self._passed_on(Studies.export, "exported"))
-        add("merge study", MergeStudy, self._passed_on(Studies.merge, "study"))
-        add("enrol", NamedStudy, self._enrol)
-        add("exposure", OfParticipant, self._ultrasound)
-        add("prepare sitting", PrepareSitting, self._prepare)
-        add("station link", OfSitting, self._station)
-        add("pairing code", OfSitting, self._code)
-        add("surface in place", OfSitting, self._in_place)
-        add("end sitting", OfSitting, self._end)
-        add("delete participant", DeleteParticipant, self._delete)
-        add("rehearse study", RehearseStudy, self._rehearse)
-        add("analyze study", NamedStudy, self._analyze)
-        add("report study", NamedStudy, self._report)
+        add("studies", self._listing)
+        add("plan study", self._passed_on(Studies.plan, "plan"))
+        add("create study", self._passed_on(Studies.create, "study"))
+        add("study", self._passed_on(Studies.status, "study"))
+        add("export study", self._passed_on(Studies.export, "exported"))
+        add("merge study", self._passed_on(Studies.merge, "study"))
+        add("enrol", self._enrol)
+        add("exposure", self._ultrasound)
+        add("prepare sitting", self._prepare, PrepareSitting)
+        add("station link", self._station)
+        add("pairing code", self._code)
+        add("surface in place", self._in_place)
+        add("end sitting", self._end)
+        add("delete participant", self._delete)
+        add("rehearse study", self._rehearse)
+        add("analyze study", self._analyze)
+        add("report study", self._report)
         add = lab.participant.add
-        add("where", OfSitting, self._where)
-        add("consent", OfSitting, self._consent)
-        add("next", OfSitting, self._present)
-        add("feel", FeelSurface, self._feel)
-        add("surface in place", OfSitting, self._in_place)
-        add("felt", SurfacesFelt, self._felt)
-        add("stop surface", OfSitting, self._stop)
-        add("respond", Respond, self._respond)
+        add("where", self._where)
+        add("consent", self._consent)
+        add("next", self._present)
+        add("feel", self._feel)
+        add("surface in place", self._in_place)
+        add("felt", self._felt)
+        add("stop surface", self._stop)
+        add("respond", self._respond, Respond)
 
     def _left(self, page: WebSocket) -> None:
         # Nobody is there to feel it, or to stop it.
@@ -202,11 +137,11 @@ class StudyArea:
             self._devices.halt(sitting)
 
     def _passed_on(self, work: Callable[..., Answer], answer: str) -> Handler:
-        """Answers by `work(studies, …)`, called with the request's own fields."""
+        """Answers by `work(studies, …)`, whose arguments are the message's fields."""
 
-        # Each field is bound to the parameter of its name: they are named alike in `Studies`.
-        async def passed(asked: Request) -> Answer:
-            return {"type": answer, **await self.thread.do(partial(work, **asked.own))}
+        @wraps(work)
+        async def passed(**asked: Any) -> Answer:
+            return {"type": answer, **await self.thread.do(partial(work, **asked))}
 
         return passed
 
@@ -218,17 +153,20 @@ class StudyArea:
     def _changed(self, study: str) -> None:
         self._lab.tell({"type": "study changed", "study": study})
 
-    async def _listing(self, _: Request) -> Answer:
+    async def _sitting(self, sitting: str) -> Sitting:
+        return await self.thread.do(lambda studies: studies.sittings.get(sitting))
+
+    async def _listing(self) -> Answer:
         answer = await self.thread.do(Studies.listing)
         return {"type": "studies", **answer, "tablets": self._lab.lan is not None}
 
-    async def _enrol(self, asked: NamedStudy) -> Answer:
-        answer = await self.thread.do(Studies.enrol, asked.study)
-        self._changed(asked.study)
+    async def _enrol(self, study: Name) -> Answer:
+        answer = await self.thread.do(Studies.enrol, study)
+        self._changed(study)
         return {"type": "study", **answer}
 
-    async def _ultrasound(self, asked: OfParticipant) -> Answer:
-        display = await self.thread.do(Studies.display_of, asked.study, asked.participant)
+    async def _ultrasound(self, study: Name, participant: Name) -> Answer:
+        display = await self.thread.do(Studies.display_of, study, participant)
         exposure = await self._exposed(display)
         return {"type": "exposure", "display": display, "statement": exposure.statement}
 
@@ -239,57 +177,58 @@ class StudyArea:
         await self._release_ended()
         return {"type": "study", **answer}
 
-    async def _station(self, asked: OfSitting) -> Answer:
-        await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
-        token = self._lab.keys.new_link("participant", f"/participant#{asked.sitting}")
+    async def _station(self, sitting: Name) -> Answer:
+        await self._sitting(sitting)
+        token = self._lab.keys.new_link("participant", f"/participant#{sitting}")
         return {"type": "link", "path": f"/?token={token}"}
 
-    async def _code(self, asked: OfSitting) -> Answer:
+    async def _code(self, sitting: Name) -> Answer:
         if self._lab.lan is None:
             raise InputError("tablets are paired where the lab was started with lan ADDRESS")
-        await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
+        await self._sitting(sitting)
         return {
             "type": "code",
-            "code": self._lab.keys.new_code(f"/participant#{asked.sitting}"),
+            "code": self._lab.keys.new_code(f"/participant#{sitting}"),
             "link": self._lab.lan.link,
             "fingerprint": self._lab.lan.fingerprint,
             "life_s": CODE_LIFE,
         }
 
-    async def _end(self, asked: OfSitting) -> Answer:
-        sitting = await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
-        device, lost = await self._measured_last(sitting)
-        answer = await self.thread.do(Studies.end, asked.sitting, device)
+    async def _end(self, sitting: Name) -> Answer:
+        device, lost = await self._measured_last(await self._sitting(sitting))
+        answer = await self.thread.do(Studies.end, sitting, device)
         answer["problems"] += [lost] if lost else []
         await self._release_ended()
-        self._lab.tell({"type": "sitting ended", "sitting": asked.sitting}, participants=True)
+        self._lab.tell({"type": "sitting ended", "sitting": sitting}, participants=True)
         return {"type": "study", **answer}
 
-    async def _delete(self, asked: DeleteParticipant) -> Answer:
-        if asked.confirm != asked.participant:
-            raise InputError(f"to delete {asked.participant}, type exactly that; nothing was done")
-        for sitting in await self.thread.do(lambda studies: studies.sittings.of_study(asked.study)):
-            if sitting.participant == asked.participant:
+    async def _delete(self, study: Name, participant: Name, confirm: Name) -> Answer:
+        if confirm != participant:
+            raise InputError(f"to delete {participant}, type exactly that; nothing was done")
+        for sitting in await self.thread.do(lambda studies: studies.sittings.of_study(study)):
+            if sitting.participant == participant:
                 await self._devices.release(sitting.id)
-        answer = await self.thread.do(Studies.delete, asked.study, asked.participant)
-        self._changed(asked.study)
+        answer = await self.thread.do(Studies.delete, study, participant)
+        self._changed(study)
         return {"type": "study", **answer}
 
-    async def _rehearse(self, asked: RehearseStudy) -> Answer:
-        answer = await self._of_file(asked, None, rehearsed, asked.participants)
-        self._changed(asked.study)
+    async def _rehearse(
+        self, study: Name, participants: Annotated[int, Field(ge=1, le=200)]
+    ) -> Answer:
+        answer = await self._of_file(study, None, rehearsed, participants)
+        self._changed(study)
         return {"type": "rehearsed", **answer}
 
-    async def _analyze(self, asked: NamedStudy) -> Answer:
-        return {"type": "analysis", **await self._of_file(asked, "analysis", analysis_of)}
+    async def _analyze(self, study: Name) -> Answer:
+        return {"type": "analysis", **await self._of_file(study, "analysis", analysis_of)}
 
-    async def _report(self, asked: NamedStudy) -> Answer:
-        return {"type": "report", **await self._of_file(asked, "report", report_of)}
+    async def _report(self, study: Name) -> Answer:
+        return {"type": "report", **await self._of_file(study, "report", report_of)}
 
     async def _of_file(
-        self, asked: NamedStudy, slot: str | None, work: Callable[..., Answer], *more: Any
+        self, study: str, slot: str | None, work: Callable[..., Answer], *more: Any
     ) -> Answer:
-        path = await self.thread.do(Studies.path, asked.study)
+        path = await self.thread.do(Studies.path, study)
         return await self._lab.workers.slow.do(slot, work, path, *more)
 
     async def _measured(self, sitting: Sitting) -> StudyDevice:
@@ -315,63 +254,63 @@ class StudyArea:
             if await self.thread.do(Studies.has_ended, held):
                 await self._devices.release(held)
 
-    async def _where(self, asked: OfSitting) -> Answer:
-        return {"type": "where", **await self.thread.do(Studies.where, asked.sitting)}
+    async def _where(self, sitting: Name) -> Answer:
+        return {"type": "where", **await self.thread.do(Studies.where, sitting)}
 
-    async def _consent(self, asked: OfSitting) -> Answer:
-        sitting = await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
-        if sitting.session is not None or sitting.ended:
-            return await self._where(asked)
-        device, seen = await self._measured(sitting), None
+    async def _consent(self, sitting: Name) -> Answer:
+        prepared = await self._sitting(sitting)
+        if prepared.session is not None or prepared.ended:
+            return await self._where(sitting)
+        device, seen = await self._measured(prepared), None
         try:
-            if sitting.device != "none":
+            if prepared.device != "none":
                 seen = await self._exposed(
-                    await self.thread.do(Studies.display_of_sitting, sitting.id)
+                    await self.thread.do(Studies.display_of_sitting, sitting)
                 )
-            answer = await self.thread.do(Studies.consent, asked.sitting, seen, device)
+            answer = await self.thread.do(Studies.consent, sitting, seen, device)
         except BaseException:
-            await self._devices.release(sitting.id)
+            await self._devices.release(sitting)
             raise
-        self._changed(sitting.study)
+        self._changed(prepared.study)
         return {"type": "where", **answer}
 
-    async def _present(self, asked: OfSitting) -> Answer:
-        answer = await self.thread.do(Studies.present, asked.sitting)
+    async def _present(self, sitting: Name) -> Answer:
+        answer = await self.thread.do(Studies.present, sitting)
         study = answer.pop("study", None)
         if study is not None:
             # Who presents by hand is told what; the participant's page is not.
             self._changed(study)
         return {"type": "where", **answer}
 
-    async def _feel(self, asked: FeelSurface) -> Answer:
-        sitting = await self.thread.do(lambda studies: studies.sittings.get(asked.sitting))
-        how = await self.thread.do(Studies.asked_to_feel, sitting.id, asked.token, asked.place)
+    async def _feel(
+        self, sitting: Name, token: Name, place: Annotated[int, Field(ge=0, le=9)]
+    ) -> Answer:
+        begun = await self._sitting(sitting)
+        how = await self.thread.do(Studies.asked_to_feel, sitting, token, place)
         if how != "on a device":
-            self._changed(sitting.study)
-            return {"type": "waiting" if how == "by hand" else "shown", "place": asked.place}
-        surface = await self.thread.do(Studies.surface, sitting.id, asked.token, asked.place)
-        display = await self.thread.do(Studies.display_of_sitting, sitting.id)
-        traces = await self.thread.do(Studies.traces, sitting.study)
-        self._pages[sitting.id] = PAGE.get()
-        await self._devices.present(
-            sitting.id, sitting.device, display, traces, surface, asked.token, asked.place
-        )
-        return {"type": "playing", "place": asked.place}
+            self._changed(begun.study)
+            return {"type": "waiting" if how == "by hand" else "shown", "place": place}
+        surface = await self.thread.do(Studies.surface, sitting, token, place)
+        display = await self.thread.do(Studies.display_of_sitting, sitting)
+        traces = await self.thread.do(Studies.traces, begun.study)
+        self._pages[sitting] = PAGE.get()
+        await self._devices.present(sitting, begun.device, display, traces, surface, token, place)
+        return {"type": "playing", "place": place}
 
-    async def _in_place(self, asked: OfSitting) -> Answer:
-        study, place = await self.thread.do(Studies.in_place, asked.sitting)
+    async def _in_place(self, sitting: Name) -> Answer:
+        study, place = await self.thread.do(Studies.in_place, sitting)
         self._changed(study)
         # The participant's page begins its clock.
-        said = {"type": "surface in place", "sitting": asked.sitting, "place": place}
+        said = {"type": "surface in place", "sitting": sitting, "place": place}
         self._lab.tell(said, participants=True)
         return {"type": "in place", "place": place}
 
-    async def _felt(self, asked: SurfacesFelt) -> Answer:
-        await self._devices.felt(asked.sitting, asked.token)
+    async def _felt(self, sitting: Name, token: Name) -> Answer:
+        await self._devices.felt(sitting, token)
         return {"type": "silent"}
 
-    async def _stop(self, asked: OfSitting) -> Answer:
-        self._devices.halt(asked.sitting)
+    async def _stop(self, sitting: Name) -> Answer:
+        self._devices.halt(sitting)
         return {"type": "silent"}
 
     async def _respond(self, asked: Respond) -> Answer:

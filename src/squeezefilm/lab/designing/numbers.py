@@ -8,17 +8,25 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from pydantic import BaseModel, Field
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.calibration_record import CalibrationRecord, ComparedAnswer
 from squeezefilm.core.errors import InputError, QuantityError, SqueezefilmError
 from squeezefilm.core.progress import Pace
 from squeezefilm.core.results import stamp, to_json
-from squeezefilm.lab.designing.form import covered, display_of, edited, form, stretched
+from squeezefilm.lab.designing.form import (
+    LONGEST_VALUE,
+    covered,
+    display_of,
+    edited,
+    form,
+    stretched,
+)
+from squeezefilm.lab.wire import Name, Text
 from squeezefilm.lab.worker import tell
 from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.prediction import Prediction, predict
@@ -61,19 +69,24 @@ def changed(text: str, path: str, value: str) -> dict[str, Any]:
     return opened(edited(text, path, value))
 
 
-@dataclass(frozen=True, slots=True)
-class DesignPoint:
-    """Request about a display's text; `path` and `value` are an edit made on the way.
+ValuePath = Annotated[str, Field(max_length=200)]
+"""Dotted path of a value of a display."""
+TypedValue = Annotated[str, Field(max_length=LONGEST_VALUE)]
+
+
+class DesignPoint(BaseModel):
+    """Request about a display's text; `path` and `value` are an edit made on the way, so that a
+    slider asks once.
 
     `voltage` and `force` are quantity texts, None for the display's own.
     """
 
-    text: str
-    voltage: str | None = None
-    surface: str | None = None
-    force: str | None = None
-    path: str | None = None
-    value: str | None = None
+    text: Text
+    voltage: Name | None = None
+    surface: Name | None = None
+    force: Name | None = None
+    path: ValuePath | None = None
+    value: TypedValue | None = None
 
     def edited(self) -> str:
         """The text with the edit. Raises as `description.edited`."""

@@ -10,15 +10,17 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+from pydantic import BaseModel
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import stamp, to_json
 from squeezefilm.lab.designing.form import display_of
 from squeezefilm.lab.designing.numbers import DesignPoint, predicted
+from squeezefilm.lab.wire import Name, Text
 from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.played_texture import FingerMotion, lowered, require_on_display
 from squeezefilm.physics.chain.prediction import Prediction
@@ -45,16 +47,14 @@ _LEAST_REDUCTION = 1e-6  # of friction, far below what anybody feels
 _SKIN = ("mass", "stiffness", "damping")
 
 
-@dataclass(frozen=True)
-class TextureOnDisplay:
-    """A texture, a preset's name or a TOML text, whose pictures lie in `folder`, on a display's
-    TOML text, of which the quality (see `numbers`) is asked for."""
+class TextureOnDisplay(BaseModel):
+    """A texture, a preset's name or a TOML text, on a display's TOML text, of which the quality
+    (see `numbers`) is asked for."""
 
-    display: str
-    texture: str | None
-    preset: str | None
-    quality: str
-    folder: Path
+    display: Text
+    texture: Text | None = None
+    preset: Name | None = None
+    quality: Literal["screening", "solved"] = "screening"
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,15 +68,15 @@ class _Ready:
     program: Program
 
 
-def _ready(asked: TextureOnDisplay) -> _Ready:
+def _ready(asked: TextureOnDisplay, folder: Path) -> _Ready:
     if asked.preset is not None and asked.texture is None:
         texture = load_texture(asked.preset)
     elif asked.texture is not None and asked.preset is None:
-        texture = texture_from_text(asked.texture, folder=asked.folder)
+        texture = texture_from_text(asked.texture, folder=folder)
     else:
         raise InputError("say which texture: a preset or a text, one of them")
     display = display_of(asked.display)
-    p = predicted(display, asked.quality, DesignPoint(asked.display))
+    p = predicted(display, asked.quality, DesignPoint(text=asked.display))
     if p.vibration_amplitude <= 0.0 or p.relative_friction > 1.0 - _LEAST_REDUCTION:
         raise InputError(
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
@@ -104,13 +104,14 @@ def pixels_of(data: bytes, name: str) -> tuple[int, int, str]:
     return rows, columns, "; ".join(str(warning.message) for warning in said)
 
 
-def feel(asked: TextureOnDisplay) -> dict[str, Any]:
-    """Program, friction (a row for each speed), envelope, wave and skin of a texture on a display.
+def feel(asked: TextureOnDisplay, folder: Path) -> dict[str, Any]:
+    """Program, friction (a row for each speed), envelope, wave and skin of a texture on a display;
+    the texture's pictures lie in `folder`.
 
     Raises:
         InputError: a display or a texture that cannot be used, or a display that does not vibrate.
     """
-    ready = _ready(asked)
+    ready = _ready(asked, folder)
     display, texture, p = ready.display, ready.texture, ready.prediction
     largest = p.vibration_amplitude
     amplitude = np.linspace(0.0, largest, _KNOTS)
@@ -157,9 +158,9 @@ def feel(asked: TextureOnDisplay) -> dict[str, Any]:
     }
 
 
-def parity(asked: TextureOnDisplay, ticks: int = 2000) -> dict[str, Any]:
+def parity(asked: TextureOnDisplay, folder: Path, ticks: int = 2000) -> dict[str, Any]:
     """A random walk of samples with the amplitudes (m) that the compiled interpreter gives."""
-    ready = _ready(asked)
+    ready = _ready(asked, folder)
     width, height = ready.display.actuator.extent
     rng = np.random.default_rng(20261121)
     t = np.cumsum(rng.uniform(1e-4, 4e-3, ticks))
@@ -198,7 +199,7 @@ def require_playable(
     if most is not None:
         si.require("voltage", most, si.Unit("V"), above=0.0)
     display = display_of(text)
-    p = predicted(display, "screening", DesignPoint(text, voltage=voltage))
+    p = predicted(display, "screening", DesignPoint(text=text, voltage=voltage))
     if p.voltage is not None:
         display.limits(p.frequency, p.voltage, twin=drive == "twin")
     if drive == "twin":

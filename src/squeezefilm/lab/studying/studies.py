@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
 
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
@@ -21,6 +23,7 @@ from squeezefilm.lab.studying.sittings import (
     described,
     shown_sitting,
 )
+from squeezefilm.lab.wire import FileName, Name, Seed
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.again import why_begun_again
 from squeezefilm.study.conduct.run import Response, StudyRun
@@ -75,7 +78,7 @@ class Studies:
         files = sorted(self.folder.glob(f"*{SUFFIX}")) if self.folder.is_dir() else []
         return {"designs": designs, "studies": [path.stem for path in files]}
 
-    def plan(self, design: str) -> dict[str, Any]:
+    def plan(self, design: Name) -> dict[str, Any]:
         """Message of what a design is and how long it takes."""
         loaded = load_design(design)
         return {
@@ -85,7 +88,7 @@ class Studies:
             "consent": CONSENT.format(minutes=round(expected_duration(loaded) / 60)),
         }
 
-    def create(self, design: str, study: str, seed: int) -> dict[str, Any]:
+    def create(self, design: Name, study: FileName, seed: Seed) -> dict[str, Any]:
         """A new study's file."""
         path = fresh(self.folder, study, SUFFIX)
         self._open[path.stem] = StudyStore.create(path, load_design(design), seed)
@@ -97,7 +100,7 @@ class Studies:
             self._open[name] = StudyStore.open(existing(self.folder, name, SUFFIX))
         return self._open[name]
 
-    def status(self, study: str) -> dict[str, Any]:
+    def status(self, study: Name) -> dict[str, Any]:
         """Design, participants with their progress, and sittings."""
         store = self.store(study)
         design = store.design
@@ -352,7 +355,7 @@ class Studies:
         deleted = delete_participant(self.store(name), participant)
         return {"deleted": to_json(deleted), **self.status(name)}
 
-    def export(self, study: str, format: str) -> dict[str, Any]:
+    def export(self, study: Name, format: Annotated[str, Field(max_length=20)]) -> dict[str, Any]:
         """Export a study beside its file; `zip` holds the same in base64, for a link."""
         si.require_one_of("format", format, ("csv", "psych-ds"))
         path = export_study(self.store(study), format)  # type: ignore[arg-type] # checked above
@@ -362,7 +365,7 @@ class Studies:
         """A study's file."""
         return existing(self.folder, name, SUFFIX)
 
-    def merge(self, study: str, other: str) -> dict[str, Any]:
+    def merge(self, study: Name, other: Name) -> dict[str, Any]:
         """Take in the answers of another station's file in the folder."""
         path = existing(self.folder, other, SUFFIX)
         if other in self._open:

@@ -64,6 +64,10 @@ class Talk:
         assert found.pop("id") == 7
         return found
 
+    def model(self, type: str) -> Any:
+        """The model of messages of a type."""
+        return {**self.lab.experimenter._known, **self.lab.participant._known}[type][0]
+
     def opened(self, is_participant: bool = False) -> Page:
         """A page of one kind, open from now on."""
         page: Any = Page(is_participant)

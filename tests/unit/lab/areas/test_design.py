@@ -12,11 +12,7 @@ from tests.unit.lab.areas.too_long import require_refused_if_longer
 
 from squeezefilm.core import presets
 from squeezefilm.lab.areas.design import (
-    ComputeDesign,
     DesignArea,
-    EditDisplay,
-    OpenDisplay,
-    SaveDisplay,
 )
 from squeezefilm.lab.designing import numbers
 from squeezefilm.lab.designing.form import preset_text
@@ -151,28 +147,28 @@ def test_a_display_is_saved_once_unless_it_may_be_replaced(lab: Talk) -> None:
 
 
 @pytest.mark.parametrize(
-    ("model", "field", "most", "others"),
+    ("kind", "field", "most", "others"),
     [
-        (OpenDisplay, "preset", 100, {}),
-        (OpenDisplay, "file", 100, {}),
-        (OpenDisplay, "text", 400_000, {}),
-        (EditDisplay, "text", 400_000, {"path": "", "value": ""}),
-        (EditDisplay, "path", 200, {"text": "", "value": ""}),
-        (EditDisplay, "value", 2000, {"text": "", "path": ""}),
-        (ComputeDesign, "text", 400_000, {"quality": "band"}),
-        (ComputeDesign, "voltage", 100, {"text": "", "quality": "band"}),
-        (ComputeDesign, "surface", 100, {"text": "", "quality": "band"}),
-        (ComputeDesign, "force", 100, {"text": "", "quality": "band"}),
-        (ComputeDesign, "path", 200, {"text": "", "quality": "band"}),
-        (ComputeDesign, "value", 2000, {"text": "", "quality": "band"}),
-        (SaveDisplay, "text", 400_000, {"name": ""}),
-        (SaveDisplay, "name", 64, {"text": ""}),
+        ("open display", "preset", 100, {}),
+        ("open display", "file", 100, {}),
+        ("open display", "text", 400_000, {}),
+        ("edit display", "text", 400_000, {"path": "", "value": ""}),
+        ("edit display", "path", 200, {"text": "", "value": ""}),
+        ("edit display", "value", 2000, {"text": "", "path": ""}),
+        ("compute design", "text", 400_000, {"quality": "band"}),
+        ("compute design", "voltage", 100, {"text": "", "quality": "band"}),
+        ("compute design", "surface", 100, {"text": "", "quality": "band"}),
+        ("compute design", "force", 100, {"text": "", "quality": "band"}),
+        ("compute design", "path", 200, {"text": "", "quality": "band"}),
+        ("compute design", "value", 2000, {"text": "", "quality": "band"}),
+        ("save display", "text", 400_000, {"name": ""}),
+        ("save display", "name", 64, {"text": ""}),
     ],
 )
 def test_texts_that_are_too_long_are_refused(
-    model: Any, field: str, most: int, others: dict[str, Any]
+    lab: Talk, kind: str, field: str, most: int, others: dict[str, Any]
 ) -> None:
-    require_refused_if_longer(model, field, most, others)
+    require_refused_if_longer(lab, kind, field, most, others)
 
 
 def test_a_failed_request_says_so_to_its_asker(lab: Talk) -> None:

@@ -192,22 +192,22 @@ def test_pages_hear_from_the_sessions_thread_and_its_end_frees_the_bar(
 
 
 @pytest.mark.parametrize(
-    ("model", "field", "most", "others"),
+    ("kind", "field", "most", "others"),
     [
-        (OnDrive, "display", 400_000, {"drive": ""}),
-        (OnDrive, "drive", 200, {"display": ""}),
-        (PlayDevice, "preset", 100, {"display": "", "drive": "", "armed": True}),
-        (PlayDevice, "texture", 400_000, {"display": "", "drive": "", "armed": True}),
-        (PlayDevice, "stroke", 200, {"display": "", "drive": "", "armed": True}),
-        (PlayDevice, "sensor", 100, {"display": "", "drive": "", "armed": True}),
-        (PlayDevice, "duration", 50, {"display": "", "drive": "", "armed": True}),
-        (PlayDevice, "voltage", 50, {"display": "", "drive": "", "armed": True}),
+        ("check device", "display", 400_000, {"drive": ""}),
+        ("check device", "drive", 200, {"display": ""}),
+        ("play device", "preset", 100, {"display": "", "drive": "", "armed": True}),
+        ("play device", "texture", 400_000, {"display": "", "drive": "", "armed": True}),
+        ("play device", "stroke", 200, {"display": "", "drive": "", "armed": True}),
+        ("play device", "sensor", 100, {"display": "", "drive": "", "armed": True}),
+        ("play device", "duration", 50, {"display": "", "drive": "", "armed": True}),
+        ("play device", "voltage", 50, {"display": "", "drive": "", "armed": True}),
     ],
 )
 def test_texts_that_are_too_long_are_refused(
-    model: Any, field: str, most: int, others: dict[str, Any]
+    lab: Talk, kind: str, field: str, most: int, others: dict[str, Any]
 ) -> None:
-    require_refused_if_longer(model, field, most, others)
+    require_refused_if_longer(lab, kind, field, most, others)
 
 
 def test_a_seed_is_a_number_that_a_page_can_say() -> None:

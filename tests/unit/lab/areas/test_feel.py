@@ -16,12 +16,7 @@ from squeezefilm.core import presets
 from squeezefilm.core.errors import SqueezefilmWarning
 from squeezefilm.lab.areas.feel import (
     COLUMNS,
-    AddPicture,
     FeelArea,
-    OnDisplay,
-    SaveStroke,
-    SaveTexture,
-    TextureText,
 )
 from squeezefilm.lab.designing.form import preset_text
 from squeezefilm.physics.texture_files.texture_file import load_texture, texture_from_text
@@ -185,33 +180,33 @@ def test_a_stroke_is_its_motion_and_what_was_felt_lies_beside_it(lab: Talk) -> N
 
 
 @pytest.mark.parametrize(
-    ("model", "field", "most", "others"),
+    ("kind", "field", "most", "others"),
     [
-        (OnDisplay, "display", 400_000, {}),
-        (OnDisplay, "preset", 100, {"display": ""}),
-        (OnDisplay, "texture", 400_000, {"display": ""}),
-        (TextureText, "preset", 100, {}),
-        (TextureText, "file", 100, {}),
-        (AddPicture, "name", 64, {"data": "", "pixel": ""}),
+        ("load texture", "display", 400_000, {}),
+        ("load texture", "preset", 100, {"display": ""}),
+        ("load texture", "texture", 400_000, {"display": ""}),
+        ("texture text", "preset", 100, {}),
+        ("texture text", "file", 100, {}),
+        ("add picture", "name", 64, {"data": "", "pixel": ""}),
         # Base64 of the 5 MB that a PNG may have, and less than a message may.
-        (AddPicture, "data", 7_000_000, {"name": "", "pixel": ""}),
-        (AddPicture, "pixel", 100, {"name": "", "data": ""}),
-        (SaveTexture, "name", 64, {"text": ""}),
-        (SaveTexture, "text", 400_000, {"name": ""}),
-        (SaveStroke, "name", 64, {"rows": []}),
+        ("add picture", "data", 7_000_000, {"name": "", "pixel": ""}),
+        ("add picture", "pixel", 100, {"name": "", "data": ""}),
+        ("save texture", "name", 64, {"text": ""}),
+        ("save texture", "text", 400_000, {"name": ""}),
+        ("save stroke", "name", 64, {"rows": []}),
     ],
 )
 def test_texts_that_are_too_long_are_refused(
-    model: Any, field: str, most: int, others: dict[str, Any]
+    lab: Talk, kind: str, field: str, most: int, others: dict[str, Any]
 ) -> None:
-    require_refused_if_longer(model, field, most, others)
+    require_refused_if_longer(lab, kind, field, most, others)
 
 
-def test_a_stroke_has_at_most_two_hundred_thousand_rows() -> None:
-    row = (0.0,) * 8
-    assert len(SaveStroke(id=1, type="t", name="n", rows=[row] * 200_000).rows) == 200_000
+def test_a_stroke_has_at_most_two_hundred_thousand_rows(lab: Talk) -> None:
+    row, model = (0.0,) * 8, lab.model("save stroke")
+    assert len(model(id=1, type="t", name="n", rows=[row] * 200_000).rows) == 200_000
     with pytest.raises(ValidationError, match="at most 200000"):
-        SaveStroke(id=1, type="t", name="n", rows=[row] * 200_001)
+        model(id=1, type="t", name="n", rows=[row] * 200_001)
 
 
 def test_every_preset_can_be_asked_for(lab: Talk) -> None:

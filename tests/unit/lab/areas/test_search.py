@@ -18,11 +18,7 @@ from squeezefilm.lab import search_process as process
 from squeezefilm.lab import search_process as shown
 from squeezefilm.lab.areas import search as search_area
 from squeezefilm.lab.areas.search import (
-    CheckRequirements,
-    OpenFound,
-    RequirementsText,
     SearchArea,
-    StartSearch,
 )
 from squeezefilm.lab.search_process import SearchProcess
 from squeezefilm.physics.display import Display
@@ -252,19 +248,19 @@ def test_what_the_process_says_reaches_the_pages_by_the_servers_loop(lab: Talk) 
 
 
 @pytest.mark.parametrize(
-    ("model", "field", "most"),
+    ("kind", "field", "most"),
     [
-        (RequirementsText, "preset", 100),
-        (RequirementsText, "file", 100),
-        (CheckRequirements, "text", 400_000),
-        (StartSearch, "text", 400_000),
-        (OpenFound, "name", 64),
+        ("requirements text", "preset", 100),
+        ("requirements text", "file", 100),
+        ("check requirements", "text", 400_000),
+        ("start search", "text", 400_000),
+        ("open found", "name", 64),
     ],
 )
-def test_texts_that_are_too_long_are_refused(model: Any, field: str, most: int) -> None:
-    require_refused_if_longer(model, field, most, {})
+def test_texts_that_are_too_long_are_refused(lab: Talk, kind: str, field: str, most: int) -> None:
+    require_refused_if_longer(lab, kind, field, most, {})
 
 
-def test_nothing_that_is_not_asked_for_is_taken() -> None:
+def test_nothing_that_is_not_asked_for_is_taken(lab: Talk) -> None:
     with pytest.raises(ValidationError):
-        StartSearch(id=1, type="t", text="", out="/tmp")  # type: ignore[call-arg]
+        lab.model("start search")(id=1, type="t", text="", out="/tmp")

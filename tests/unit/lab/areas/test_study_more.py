@@ -17,20 +17,7 @@ from squeezefilm.core import presets
 from squeezefilm.core.errors import DeviceError
 from squeezefilm.lab.areas import study as study_area
 from squeezefilm.lab.areas.study import (
-    CreateStudy,
-    DeleteParticipant,
-    ExportStudy,
-    FeelSurface,
-    MergeStudy,
-    NamedStudy,
-    OfParticipant,
-    OfSitting,
-    PlanStudy,
-    PrepareSitting,
-    RehearseStudy,
-    Respond,
     StudyArea,
-    SurfacesFelt,
 )
 from squeezefilm.lab.keys import CODE_LIFE
 from squeezefilm.lab.server import LanPlace
@@ -497,44 +484,45 @@ BY_PERSON = {"study": "", "participant": ""}
 
 
 @pytest.mark.parametrize(
-    ("model", "field", "most", "others"),
+    ("kind", "field", "most", "others"),
     [
-        (NamedStudy, "study", 100, {}),
-        (PlanStudy, "design", 100, {}),
-        (CreateStudy, "study", 64, {"design": "", "seed": 0}),
-        (OfParticipant, "participant", 100, BY_STUDY),
-        (DeleteParticipant, "confirm", 100, BY_PERSON),
-        (PrepareSitting, "device", 100, {**BY_PERSON, "consent": AGREED}),
-        (PrepareSitting, "consent", 20_000, {**BY_PERSON, "device": ""}),
-        (OfSitting, "sitting", 100, {}),
-        (FeelSurface, "token", 100, {**BY_SITTING, "place": 0}),
-        (SurfacesFelt, "token", 100, BY_SITTING),
-        (Respond, "token", 100, BY_SITTING),
-        (Respond, "choice", 200, {**BY_SITTING, "token": ""}),
-        (ExportStudy, "format", 20, BY_STUDY),
-        (MergeStudy, "other", 100, BY_STUDY),
+        ("study", "study", 100, {}),
+        ("plan study", "design", 100, {}),
+        ("create study", "study", 64, {"design": "", "seed": 0}),
+        ("exposure", "participant", 100, BY_STUDY),
+        ("delete participant", "confirm", 100, BY_PERSON),
+        ("prepare sitting", "device", 100, {**BY_PERSON, "consent": AGREED}),
+        ("prepare sitting", "consent", 20_000, {**BY_PERSON, "device": ""}),
+        ("where", "sitting", 100, {}),
+        ("feel", "token", 100, {**BY_SITTING, "place": 0}),
+        ("felt", "token", 100, BY_SITTING),
+        ("respond", "token", 100, BY_SITTING),
+        ("respond", "choice", 200, {**BY_SITTING, "token": ""}),
+        ("export study", "format", 20, BY_STUDY),
+        ("merge study", "other", 100, BY_STUDY),
     ],
 )
 def test_texts_that_are_too_long_are_refused(
-    model: Any, field: str, most: int, others: dict[str, Any]
+    lab: Talk, kind: str, field: str, most: int, others: dict[str, Any]
 ) -> None:
-    require_refused_if_longer(model, field, most, others)
+    require_refused_if_longer(lab, kind, field, most, others)
 
 
 @pytest.mark.parametrize(
-    ("model", "field", "least", "most", "others"),
+    ("kind", "field", "least", "most", "others"),
     [
-        (CreateStudy, "seed", 0, 2**53, {"design": "", "study": ""}),
-        (FeelSurface, "place", 0, 9, {**BY_SITTING, "token": ""}),
-        (RehearseStudy, "participants", 1, 200, BY_STUDY),
-        (Respond, "response_time", 0, 86400, {**BY_SITTING, "token": ""}),
-        (Respond, "started_monotonic", 0, 10**12, {**BY_SITTING, "token": ""}),
-        (Respond, "ended_monotonic", 0, 10**12, {**BY_SITTING, "token": ""}),
+        ("create study", "seed", 0, 2**53, {"design": "", "study": ""}),
+        ("feel", "place", 0, 9, {**BY_SITTING, "token": ""}),
+        ("rehearse study", "participants", 1, 200, BY_STUDY),
+        ("respond", "response_time", 0, 86400, {**BY_SITTING, "token": ""}),
+        ("respond", "started_monotonic", 0, 10**12, {**BY_SITTING, "token": ""}),
+        ("respond", "ended_monotonic", 0, 10**12, {**BY_SITTING, "token": ""}),
     ],
 )
 def test_numbers_outside_their_range_are_refused(
-    model: Any, field: str, least: int, most: int, others: dict[str, Any]
+    lab: Talk, kind: str, field: str, least: int, most: int, others: dict[str, Any]
 ) -> None:
+    model = lab.model(kind)
     for inside in (least, most):
         assert getattr(model(id=1, type="t", **others, **{field: inside}), field) == inside
     for outside in (least - 1, most + 1):
@@ -542,10 +530,11 @@ def test_numbers_outside_their_range_are_refused(
             model(id=1, type="t", **others, **{field: outside})
 
 
-def test_a_consent_is_a_sentence_at_least() -> None:
+def test_a_consent_is_a_sentence_at_least(lab: Talk) -> None:
+    model = lab.model("prepare sitting")
     how: dict[str, Any] = {"id": 1, "type": "t", **BY_PERSON, "device": "none"}
-    assert PrepareSitting(**how, consent="x" * 20).acknowledged is False
+    assert model(**how, consent="x" * 20).acknowledged is False
     with pytest.raises(ValidationError):
-        PrepareSitting(**how, consent="x" * 19)
+        model(**how, consent="x" * 19)
     with pytest.raises(ValidationError):
-        PrepareSitting(**how, consent=AGREED, conditions={str(k): "" for k in range(21)})
+        model(**how, consent=AGREED, conditions={str(k): "" for k in range(21)})

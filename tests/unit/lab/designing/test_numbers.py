@@ -57,15 +57,17 @@ def test_a_body_of_another_kind_is_not_drawn(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_an_edit_is_made_on_the_way_only_where_there_is_one() -> None:
-    assert DesignPoint(STATOR).edited() == STATOR
-    assert DesignPoint(STATOR, path="drive.voltage").edited() == STATOR
-    assert DesignPoint(STATOR, value="99 V").edited() == STATOR
-    found = DesignPoint(STATOR, path="drive.voltage", value="99 V").edited()
+    assert DesignPoint(text=STATOR).edited() == STATOR
+    assert DesignPoint(text=STATOR, path="drive.voltage").edited() == STATOR
+    assert DesignPoint(text=STATOR, value="99 V").edited() == STATOR
+    found = DesignPoint(text=STATOR, path="drive.voltage", value="99 V").edited()
     assert found == edited(STATOR, "drive.voltage", "99 V")
 
 
 def test_a_stators_numbers_are_the_predictions_own() -> None:
-    found = designed(DesignPoint(STATOR, "100 V", "bare", "0.7 N"), "screening")
+    found = designed(
+        DesignPoint(text=STATOR, voltage="100 V", surface="bare", force="0.7 N"), "screening"
+    )
     display = display_of(STATOR)
     p = predict(display, voltage=100.0, normal_force=0.7, surface="bare")
     mode = p.mode
@@ -115,12 +117,12 @@ def test_a_stators_numbers_are_the_predictions_own() -> None:
 
 
 def test_a_plate_has_no_area_before_it_is_solved() -> None:
-    found = designed(DesignPoint(preset_text("biet2008-plate")), "screening")
+    found = designed(DesignPoint(text=preset_text("biet2008-plate")), "screening")
     assert found["active_area"] is None
 
 
 def test_the_line_of_a_stator_is_the_wave_round_its_mean_circumference() -> None:
-    line = designed(DesignPoint(STATOR), "screening")["line"]
+    line = designed(DesignPoint(text=STATOR), "screening")["line"]
     length, wave = math.pi * 53.57e-3, 18.7e-3
     np.testing.assert_allclose(line["position_m"], np.linspace(0.0, length, 241), rtol=1e-9)
     expected = np.cos(2 * math.pi * np.array(line["position_m"]) / wave)
@@ -191,13 +193,17 @@ def test_a_quality_is_a_theory_for_plates_only(
 ) -> None:
     asked: list[Any] = []
     monkeypatch.setattr(numbers, "predict", lambda display, **how: asked.append((display, how)))
-    predicted(display_of(text), quality, DesignPoint(text))
-    predicted(display_of(text), quality, DesignPoint(text, "0.1 kV", "bare", "300 mN"))
+    predicted(display_of(text), quality, DesignPoint(text=text))
+    predicted(
+        display_of(text),
+        quality,
+        DesignPoint(text=text, voltage="0.1 kV", surface="bare", force="300 mN"),
+    )
     nothing = {"voltage": None, "normal_force": None, "surface": None, "theory": theory}
     given = {"voltage": 100.0, "normal_force": 0.3, "surface": "bare", "theory": theory}
     assert asked == [(display_of(text), nothing), (display_of(text), given)]
     with pytest.raises(InputError, match="quality"):
-        predicted(display_of(text), "rough", DesignPoint(text))
+        predicted(display_of(text), "rough", DesignPoint(text=text))
 
 
 def test_a_curve_of_the_papers_model_is_left_out_where_it_does_not_hold() -> None:
@@ -228,7 +234,7 @@ def test_a_solved_plate_is_told_of_while_it_is_solved(monkeypatch: pytest.Monkey
     monkeypatch.setattr(numbers, "solid_mode", solid)
     monkeypatch.setattr(numbers, "tell", lambda *said: told.append(said))
     monkeypatch.setattr(numbers, "predicted", beam)
-    point = DesignPoint(GLASS, "10 V", path="drive.voltage", value="99 V")
+    point = DesignPoint(text=GLASS, voltage="10 V", path="drive.voltage", value="99 V")
     text = edited(GLASS, "drive.voltage", "99 V")
     found = designed(point, "solved")
     assert (found["text"], found["quality"], found["voltage_V"]) == (text, "solved", 10.0)
@@ -241,7 +247,7 @@ def test_a_solved_plate_is_told_of_while_it_is_solved(monkeypatch: pytest.Monkey
     monkeypatch.setattr(numbers, "load_of_mode", lambda *given: loads.append(given[0]))
     designed(point, "screening")
     assert loads == []
-    designed(DesignPoint(STATOR), "solved")
+    designed(DesignPoint(text=STATOR), "solved")
     assert len(solved) == 1
 
 
@@ -254,7 +260,7 @@ def test_a_band_lies_on_every_third_amplitude_of_the_curve(monkeypatch: pytest.M
         return (FrictionBand(amplitude, low, low + 0.2, level=0.9, samples=samples - 1),)
 
     monkeypatch.setattr(numbers, "friction_bands", banded)
-    point = DesignPoint(STATOR, "100 V")
+    point = DesignPoint(text=STATOR, voltage="100 V")
     found = numbers.banded(point, "screening")
     assert asked == [(display_of(STATOR), 100.0, 64)]
     curve = designed(point, "screening")["friction_curve"]
@@ -262,14 +268,14 @@ def test_a_band_lies_on_every_third_amplitude_of_the_curve(monkeypatch: pytest.M
     assert found["low"] == [None] + [0.3] * 16
     assert found["high"] == [None] + [0.5] * 16
     assert (found["level"], found["samples"]) == (0.9, 63)
-    point = DesignPoint(STATOR, "100 V", path="finger.contact_length", value="8 mm")
+    point = DesignPoint(text=STATOR, voltage="100 V", path="finger.contact_length", value="8 mm")
     numbers.banded(point, "screening")
     assert asked[1:] == [(display_of(point.edited()), 100.0, 64)]
 
 
 @pytest.mark.slow
 def test_a_solved_plate_says_what_its_amplifier_gives() -> None:
-    load = designed(DesignPoint(preset_text("biet2008-plate")), "solved")["drive_electronics"]
+    load = designed(DesignPoint(text=preset_text("biet2008-plate")), "solved")["drive_electronics"]
     assert load["channels"] == 7
     assert load["real_power_W"] == pytest.approx(load["matched_current_A"] * 15 / 2)
 
@@ -282,7 +288,7 @@ def test_a_solved_plate_that_was_screened_otherwise_says_why(
             vibration_amplitude=amplitude, mode=SimpleNamespace(resonance_frequency=frequency)
         )
 
-    display, point = display_of(preset_text("touchpad-glass")), DesignPoint("")
+    display, point = display_of(preset_text("touchpad-glass")), DesignPoint(text="")
     monkeypatch.setattr(numbers, "predicted", lambda *_: prediction(1.35e-6, 40e3))
     said = numbers._since_screening(display, prediction(5.77e-6, 39e3), point)
     assert "gave 1.35 µm at 40 kHz; the full solution gives 5.77 µm at 39 kHz" in said

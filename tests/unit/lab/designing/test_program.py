@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 from tests.pictures import coloured_bytes, picture_bytes
 
 from squeezefilm import load_display
@@ -34,7 +35,7 @@ pattern = { type = "image_file", file = "islands.png", pixel = "1 mm", outside =
 
 @functools.cache
 def felt(text: str = STATOR, preset: str = "sine-3mm") -> dict[str, Any]:
-    return feel(TextureOnDisplay(text, None, preset, "screening", NOWHERE))
+    return feel(TextureOnDisplay(display=text, preset=preset), NOWHERE)
 
 
 def test_a_stator_is_what_its_file_says() -> None:
@@ -112,7 +113,7 @@ def test_a_disc_has_no_wave_along_a_line(monkeypatch: pytest.MonkeyPatch) -> Non
     stator = predict(load_display("biet2008-stator"))
     monkeypatch.setattr(program, "predicted", lambda *_: stator)
     disc = preset_text("winfield2007-tpad")
-    found = feel(TextureOnDisplay(disc, None, "sine-3mm", "screening", NOWHERE))
+    found = feel(TextureOnDisplay(display=disc, preset="sine-3mm"), NOWHERE)
     assert found["wave"] is None
     assert (found["width_m"], found["height_m"]) == (25e-3, 25e-3)
 
@@ -121,18 +122,18 @@ def test_a_texture_comes_from_a_preset_or_from_a_text_with_pictures_beside_it(
     tmp_path: Path,
 ) -> None:
     (tmp_path / "islands.png").write_bytes(picture_bytes(np.array([[0.0, 1.0, 0.0]])))
-    found = feel(TextureOnDisplay(STATOR, PICTURE, None, "screening", tmp_path))
+    found = feel(TextureOnDisplay(display=STATOR, texture=PICTURE), tmp_path)
     assert found["title"] == "a texture of relative_friction"
     assert title_of('title = "Islands"\n' + PICTURE, tmp_path) == "Islands"
     assert title_of(PICTURE, tmp_path) == ""
     for elsewhere in (NOWHERE, tmp_path / "islands.png"):
         with pytest.raises(SqueezefilmError, match=r"islands\.png"):
-            feel(TextureOnDisplay(STATOR, PICTURE, None, "screening", elsewhere))
+            feel(TextureOnDisplay(display=STATOR, texture=PICTURE), elsewhere)
     for text, preset in ((None, None), (PICTURE, "sine-3mm")):
         with pytest.raises(InputError, match="say which texture: a preset or a text"):
-            feel(TextureOnDisplay(STATOR, text, preset, "screening", tmp_path))
-    with pytest.raises(InputError, match="quality = 'rough'"):
-        feel(TextureOnDisplay(STATOR, None, "bump", "rough", tmp_path))
+            feel(TextureOnDisplay(display=STATOR, texture=text, preset=preset), tmp_path)
+    with pytest.raises(ValidationError, match="quality"):
+        TextureOnDisplay(display=STATOR, preset="bump", quality="rough")  # type: ignore[arg-type]
 
 
 def test_the_same_display_and_texture_have_one_hash() -> None:
@@ -154,7 +155,7 @@ def test_a_display_that_changes_no_friction_renders_nothing(voltage: str, said: 
 
 @pytest.mark.parametrize("preset", ["sine-3mm", "speed-stretched"])
 def test_samples_are_given_the_friction_that_the_texture_asks_for(preset: str) -> None:
-    given = parity(TextureOnDisplay(STATOR, None, preset, "screening", NOWHERE), ticks=400)
+    given = parity(TextureOnDisplay(display=STATOR, preset=preset), NOWHERE, ticks=400)
     curve = felt(STATOR, preset)
     x = np.array(given["x_m"], dtype=float)
     y, v, t = (np.array(given[name]) for name in ("y_m", "v_m_per_s", "t_s"))
@@ -170,7 +171,7 @@ def test_samples_are_given_the_friction_that_the_texture_asks_for(preset: str) -
 
 
 def test_samples_lie_all_over_the_display_and_some_are_broken() -> None:
-    given = parity(TextureOnDisplay(PLATE, None, "sine-3mm", "screening", NOWHERE))
+    given = parity(TextureOnDisplay(display=PLATE, preset="sine-3mm"), NOWHERE)
     assert given["display"] == "biet2008-plate"
     x, y, v, t = (given[name] for name in ("x_m", "y_m", "v_m_per_s", "t_s"))
     assert len(x) == 2000
@@ -187,7 +188,7 @@ def test_samples_lie_all_over_the_display_and_some_are_broken() -> None:
     assert 1e-4 <= steps.min() < 1.2e-4
     assert 3.9e-3 < steps.max() <= 4e-3
     # The page may ask again.
-    assert parity(TextureOnDisplay(PLATE, None, "sine-3mm", "screening", NOWHERE))["x_m"] == x
+    assert parity(TextureOnDisplay(display=PLATE, preset="sine-3mm"), NOWHERE)["x_m"] == x
 
 
 def test_a_picture_has_rows_and_columns() -> None:
