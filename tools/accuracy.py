@@ -107,7 +107,7 @@ def claim_rows(results: tuple[ClaimResult, ...]) -> Iterator[Row]:
         if "measured" not in claim.statement or claim.relation != "equals":
             continue
         unit = si.Unit(claim.unit)
-        for printed, value in zip(claim.printed, result.value, strict=True):
+        for printed, value in zip(claim.printed, result.found.value, strict=True):
             said = (si.format_quantity(one, unit, 4) for one in (printed, value))
             yield claim.statement, *said, f"{value / printed - 1:+.0%}"
 

@@ -45,14 +45,14 @@ def test_every_claim_is_computed_and_every_computation_is_a_claim() -> None:
 def test_recomputed_values_of_the_specification(
     found: dict[str, ClaimResult], claim: str, values: list[float], digits: float
 ) -> None:
-    assert found[claim].value == pytest.approx(values, abs=digits)
+    assert found[claim].found.value == pytest.approx(values, abs=digits)
 
 
 def test_other_readings(found: dict[str, ClaimResult]) -> None:
-    assert found["frequency-criterion"].value == pytest.approx([21.37e3], abs=5)
-    assert found["frequency-criterion"].alternative == pytest.approx([20597], abs=0.5)
-    assert found["levitation-amplitude"].alternative == pytest.approx([5.46e-6], abs=5e-9)
-    assert found["two-micrometres-are-felt"].alternative == pytest.approx([0.532], abs=5e-4)
+    assert found["frequency-criterion"].found.value == pytest.approx([21.37e3], abs=5)
+    assert found["frequency-criterion"].found.alternative == pytest.approx([20597], abs=0.5)
+    assert found["levitation-amplitude"].found.alternative == pytest.approx([5.46e-6], abs=5e-9)
+    assert found["two-micrometres-are-felt"].found.alternative == pytest.approx([0.532], abs=5e-4)
 
 
 def _claim(**changes: object) -> Claim:
@@ -113,8 +113,8 @@ def test_a_claim_that_was_found_before_a_kill_is_not_computed_again(
 def test_the_solved_plate_stands_beside_the_papers_numbers(found: dict[str, ClaimResult]) -> None:
     """Converged references of the specification, for both data sets."""
     for claim in ("modal-frequency", "harmonic-frequency", "measured-frequency"):
-        assert found[claim].value == pytest.approx([33574], rel=1e-3)
-        assert found[claim].alternative == pytest.approx([33422], rel=1e-3)
+        assert found[claim].found.value == pytest.approx([33574], rel=1e-3)
+        assert found[claim].found.alternative == pytest.approx([33422], rel=1e-3)
     for claim in ("harmonic-amplitude", "measured-amplitude"):
-        assert found[claim].value == pytest.approx([2.44e-6], rel=0.01)
-        assert found[claim].alternative == pytest.approx([0.55e-6], rel=0.01)
+        assert found[claim].found.value == pytest.approx([2.44e-6], rel=0.01)
+        assert found[claim].found.alternative == pytest.approx([0.55e-6], rel=0.01)

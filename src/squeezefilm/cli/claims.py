@@ -40,7 +40,6 @@ def reproduce(
         return
     from squeezefilm.core.kit.folder import checkout
     from squeezefilm.validation.command import reproduce as run
-    from squeezefilm.validation.explanations import prototype_study
     from squeezefilm.validation.report.page import write_reproduction, write_validation_docs
     from squeezefilm.validation.report.terminal import show_claims
 
@@ -48,8 +47,7 @@ def reproduce(
         # Minutes of work lie before the writing.
         checkout()
     with working(as_json) as step:
-        study = prototype_study if out is not None or write_docs else None
-        result = run(prototype=study, progress=step)
+        result = run(prototype=out is not None or write_docs, progress=step)
         written = None
         if out is not None:
             written = write_reproduction(result, out, progress=step)

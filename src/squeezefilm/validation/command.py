@@ -27,6 +27,7 @@ from squeezefilm.design.analysis.published_claims import (
     Verdict,
     read_claims,
 )
+from squeezefilm.validation.explanations import PrototypeStudy, prototype_study
 from squeezefilm.validation.frozen import DIRECTION_VALUES
 from squeezefilm.validation.values import CLAIM_VALUES, ClaimValue, paper_design, value_of
 
@@ -121,26 +122,22 @@ _VALUES: Kept[ClaimValue] = Kept("claims", ClaimValue)
 
 @dataclass(frozen=True)
 class ClaimResult:
-    """A claim and what was found: the corrected value, what the printed formula or the printed
-    input gives (None where it does not differ), an alternative reading, and the verdict."""
+    """A claim, what was found for it, and the verdict."""
 
     claim: Claim
-    value: tuple[float, ...]
-    printed_formula_value: tuple[float, ...] | None
-    alternative: tuple[float, ...] | None
+    found: ClaimValue
     verdict: Verdict
-    note: str
 
 
 @dataclass(frozen=True)
 class Reproduction:
     """All claims recomputed, the errata, where the paper's design procedure leads, and the study of
-    its prototype (`validation.explanations.PrototypeStudy`; None where none was made)."""
+    its prototype (None where none was made)."""
 
     results: tuple[ClaimResult, ...]
     errata: tuple[Erratum, ...]
     design: PaperDesign
-    prototype: Any = None
+    prototype: PrototypeStudy | None = None
 
     @property
     def changed(self) -> tuple[ClaimResult, ...]:
@@ -153,21 +150,11 @@ class Reproduction:
         return {
             "claims": [
                 {
-                    "id": item.claim.id,
+                    **to_json(item.claim),
                     "model": item.claim.model or None,
-                    "where": item.claim.where,
-                    "statement": item.claim.statement,
-                    "unit": item.claim.unit,
-                    "printed": list(item.claim.printed),
-                    "relation": item.claim.relation,
-                    "printed_formula_value": to_json(item.printed_formula_value),
-                    "value": to_json(item.value),
-                    "alternative": to_json(item.alternative),
+                    **to_json(item.found),
                     "verdict": item.verdict,
                     "verdict_on_record": item.claim.verdict,
-                    "grounds": item.claim.grounds,
-                    "why": item.claim.why,
-                    "note": item.note,
                 }
                 for item in self.results
             ],
@@ -182,12 +169,11 @@ class Reproduction:
 def reproduce(
     claims: tuple[Claim, ...] | None = None,
     *,
-    prototype: Callable[[SayProgress | None], Any] | None = None,
+    prototype: bool = False,
     progress: SayProgress | None = None,
 ) -> Reproduction:
-    """Recompute every claim (those on record, or those given); with `prototype`, what studies the
-    paper's prototype (`validation.explanations.prototype_study`), also that. What was
-    found until it was stopped is kept on disk.
+    """Recompute every claim (those on record, or those given), and study the paper's `prototype`
+    where that is asked. What was found until it was stopped is kept on disk.
 
     Raises `ConfigError` for a claim that nothing computes.
     """
@@ -198,7 +184,7 @@ def reproduce(
         tell(f"claim {claim.name}")
         results.append(judge(claim, _found(claim)))
     tell("the paper's design procedure")
-    study = None if prototype is None else prototype(progress)
+    study = prototype_study(progress) if prototype else None
     return Reproduction(tuple(results), file.errata, paper_design(), study)
 
 
@@ -215,7 +201,7 @@ def _found(claim: Claim) -> ClaimValue:
 
 def judge(claim: Claim, value: ClaimValue) -> ClaimResult:
     """The verdict on a claim, from what was computed for it."""
-    return ClaimResult(claim=claim, verdict=_verdict(claim, value), **vars(value))
+    return ClaimResult(claim, value, _verdict(claim, value))
 
 
 def _verdict(claim: Claim, found: ClaimValue) -> Verdict:

@@ -12,7 +12,6 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.cli.claims import reproduce
-from squeezefilm.validation.explanations import prototype_study
 
 StandsIn = Callable[..., Any]
 
@@ -44,7 +43,7 @@ def claims(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
 def test_claims_are_shown_without_figures_unless_asked(claims: SimpleNamespace) -> None:
     done = run(reproduce.__name__)
     assert done.returncode == 0, done.stderr
-    assert claims.asked.named == {"prototype": None}
+    assert claims.asked.named == {"prototype": False}
     assert claims.shown.given == (claims.asked.answer,)
     assert (done.stdout, done.stderr) == ("", "  a step …\n")
     assert claims.page.calls == claims.checkout.calls == claims.docs.calls == []
@@ -52,12 +51,12 @@ def test_claims_are_shown_without_figures_unless_asked(claims: SimpleNamespace) 
 
 def test_a_page_and_the_docs_need_the_prototype(claims: SimpleNamespace, tmp_path: Path) -> None:
     done = run("reproduce", "--out", tmp_path)
-    assert claims.asked.calls[-1][1] == {"prototype": prototype_study}
+    assert claims.asked.calls[-1][1] == {"prototype": True}
     assert claims.page.given == (claims.asked.answer, tmp_path)
     assert done.stdout == f"report: {tmp_path / 'index.html'}\n"
     assert claims.checkout.calls == []
     done = run("reproduce", "--write-docs")
-    assert claims.asked.calls[-1][1] == {"prototype": prototype_study}
+    assert claims.asked.calls[-1][1] == {"prototype": True}
     assert len(claims.checkout.calls) == 1
     assert claims.docs.given == (claims.asked.answer,)
     assert "wrote docs/reference/validation.md\n" in done.stderr

@@ -83,11 +83,14 @@ footer {{ font-size: .9rem; padding-bottom: 2rem; }}
 """
 
 
-def page_head(title: str, images: str = "'self' file:") -> str:
-    """A page from its first line to the opening of its body.
+def page(
+    window: str, title: str, name: str, body: str, foot: str, images: str = "'self' file:"
+) -> str:
+    """A whole page, of HTML already: the title of its window, its own, a line below that, its
+    sections, its last lines.
 
-    `title` is HTML already, `images` says where pictures may be from: beside the page, "data:", or
-    "" for nowhere. Scripts and anything from elsewhere are refused by its policy.
+    `images` says where pictures may be from: beside the page, "data:", or "" for nowhere. Scripts
+    and anything from elsewhere are refused by its policy.
     """
     policy = "default-src 'none'; style-src 'unsafe-inline'"
     policy += f"; img-src {images}" if images else ""
@@ -97,20 +100,11 @@ def page_head(title: str, images: str = "'self' file:") -> str:
 <meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="{policy}">
 <meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{title}</title>
+<title>{window}</title>
 <style>{STYLE}
 figure img {{ display: block; width: 100%; height: auto; background: #fff; }}</style>
 </head>
-<body>"""
-
-
-def page(
-    window: str, title: str, name: str, body: str, foot: str, images: str = "'self' file:"
-) -> str:
-    """A whole page, of HTML already: the title of its window, its own, a line below that, its
-    sections, its last lines. `images` as in `page_head`.
-    """
-    return f"""{page_head(window, images)}
+<body>
 <header><h1>{title}</h1>
 <p class="name">{name}</p></header>
 <main>

@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterator
 from html import escape
 from pathlib import Path
 
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import checkout, json_text, markdown_table, write_folder
-from squeezefilm.core.kit.page_style import bullets, page_head
+from squeezefilm.core.kit.page_style import as_html, html_table, page, section, stamped
 from squeezefilm.core.results import write_whole
 from squeezefilm.design.analysis.paper_procedure import PaperDesign
 from squeezefilm.validation.command import ClaimResult, Reproduction
-from squeezefilm.validation.explanations import PrototypeStudy
-from squeezefilm.validation.report.prototype import (
-    Table,
-    comparison,
-    explanation_table,
-    identifiability,
-    prototype_markdown,
-    sentences,
-    separation_table,
-)
+from squeezefilm.validation.report.prototype import Item, Part, prototype_parts
 from squeezefilm.validation.report.published import (
     direction_table,
     directions,
@@ -47,10 +39,7 @@ What follows compares with what the paper printed, and says where and why the nu
 gives as it stands in the paper, where that differs from the corrected one.
 """
 
-_OBSERVED = "Directions of friction that others observed, model by model"
-_MISSED = "What measurements say and the models do not"
 _HEAD = ("where", "claim", "printed", "printed formula", "recomputed", "verdict")
-_ERRATA = ("equation", "printed", "corrected", "why")
 
 
 def write_validation_docs(result: Reproduction, root: Path | None = None) -> Path:
@@ -63,56 +52,72 @@ def write_validation_docs(result: Reproduction, root: Path | None = None) -> Pat
     return path
 
 
-def validation_markdown(result: Reproduction) -> str:
-    """The text of the page of validation: a table of all claims, their reasons, the errata."""
-    lines = [_HEADER, "## What the verdicts say", ""]
-    lines += markdown_table(verdict_table(result.results))
-    plain = plain_claims(result.results)
-    lines += ["", "## Claims", ""]
+def _parts(result: Reproduction) -> Iterator[Part]:
+    """Everything but the figures redrawn: claims, directions of friction, prototype, procedure."""
+    plain, asked = plain_claims(result.results), directions(result.results)
+    yield Part("What the verdicts say", [verdict_table(result.results)])
     claims = [
         (item.claim.where, item.claim.statement, *_found(item), f"**{item.verdict}**")
         for item in plain
     ]
-    lines += markdown_table((_HEAD, claims))
-    lines += ["", "### Why", ""]
-    for item in plain:
-        lines.append(
-            f"* **{item.claim.statement}** ({item.verdict}): {item.claim.why}." + _extra(item)
-        )
-    lines += _direction_lines(result)
-    if result.prototype is not None:
-        lines += prototype_markdown(result.prototype)
-    lines += ["", "## The paper's design procedure", ""]
-    lines += [f"* {sentence}" for sentence in design_sentences(result.design)]
-    lines += ["", "## Errata of the paper", ""]
-    errata = [(e.equation, _cell(e.printed), _cell(e.corrected), e.why) for e in result.errata]
-    lines += markdown_table((_ERRATA, errata))
-    return "\n".join([*lines, ""])
-
-
-def _direction_lines(result: Reproduction) -> list[str]:
-    """The directions of friction model by model, why, and what each model misses."""
-    asked = directions(result.results)
-    if not asked:
-        return []
-    lines = ["", f"## {_OBSERVED}", ""]
-    lines += [f"* {sentence}" for sentence in model_sentences()]
-    head, rows = direction_table(result.results)
-    lines += ["", *markdown_table((head, [(*row[:-1], f"**{row[-1]}**") for row in rows]))]
-    lines += ["", "### Why, model by model", ""]
-    for items in asked:
-        lines.append(f"* **{items[0].claim.statement}**")
-        lines += [
-            f"    * {item.claim.model} ({item.verdict}): {item.claim.why}." + _extra(item)
-            for item in items
+    yield Part("Claims", [(_HEAD, claims)])
+    why: list[Item] = [f"**{item.claim.statement}** {_reason(item)}" for item in plain]
+    yield Part("Why", [why], level=3)
+    if asked:
+        head, rows = direction_table(result.results)
+        table = head, [(*row[:-1], f"**{row[-1]}**") for row in rows]
+        models: list[Item] = [*model_sentences()]
+        yield Part("Directions of friction that others observed, model by model", [models, table])
+        by_model: list[Item] = [
+            (
+                f"**{items[0].claim.statement}**",
+                [f"{item.claim.model} {_reason(item)}" for item in items],
+            )
+            for items in asked
         ]
-    lines += ["", f"## {_MISSED}"]
-    for model, sentences_ in missed_lists():
-        lines += ["", f"`{model}`:", "", *(f"* {sentence}" for sentence in sentences_)]
-    return lines
+        yield Part("Why, model by model", [by_model], level=3)
+        missed = [block for name, texts in missed_lists() for block in (f"`{name}`:", [*texts])]
+        yield Part("What measurements say and the models do not", missed)
+    if result.prototype is not None:
+        yield from prototype_parts(result.prototype)
+    yield Part("The paper's design procedure", [design_sentences(result.design)])
+    errata = [(e.equation, e.printed, e.corrected, e.why) for e in result.errata]
+    yield Part("Errata of the paper", [(("equation", "printed", "corrected", "why"), errata)])
 
 
-def design_sentences(design: PaperDesign) -> list[str]:
+def _reason(item: ClaimResult) -> str:
+    """The verdict, why, another reading, and the note, which for a prediction is the prediction."""
+    said = [item.found.note] if item.found.note else []
+    if item.found.alternative is not None:
+        other = show_values(item.found.alternative, item.claim.unit)
+        said.insert(0, f"another reading gives {other}")
+    more = f" *({'; '.join(said)})*" if said else ""
+    return f"({item.verdict}): {item.claim.why}.{more}"
+
+
+def validation_markdown(result: Reproduction) -> str:
+    """The text of the page of validation: a table of all claims, their reasons, the errata."""
+    blocks = [_HEADER.strip()]
+    for part in _parts(result):
+        blocks.append(f"{'#' * part.level} {part.heading}")
+        for block in part.blocks:
+            if isinstance(block, str):
+                blocks.append(block)
+            elif isinstance(block, list):
+                blocks.append("\n".join(line for item in block for line in _markdown_item(item)))
+            elif isinstance(block, tuple):
+                head, rows = block
+                cells = [[cell.replace("|", "\\|") for cell in row] for row in rows]
+                blocks.append("\n".join(markdown_table((head, cells))))
+    return "\n\n".join(blocks) + "\n"
+
+
+def _markdown_item(item: Item) -> list[str]:
+    text, below = (item, ()) if isinstance(item, str) else item
+    return [f"* {text}", *(f"    * {line}" for line in below)]
+
+
+def design_sentences(design: PaperDesign) -> list[Item]:
     """The steps of the procedure of section 3.1, then its contradictions."""
     kilohertz, area = design.lowest_frequency / 1e3, design.area * 1e4
     size = f"{design.length * 1e3:.3g} × {design.width * 1e3:.3g} mm"
@@ -129,31 +134,18 @@ def design_sentences(design: PaperDesign) -> list[str]:
     ]
 
 
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|")
-
-
 def _found(item: ClaimResult) -> tuple[str, str, str]:
     """The printed value, what the printed formula gives, what was recomputed."""
-    return show_printed(item), _formula(item), show_values(item.value, item.claim.unit)
+    return show_printed(item), _formula(item), show_values(item.found.value, item.claim.unit)
 
 
 def _formula(item: ClaimResult) -> str:
-    values = item.printed_formula_value
-    if values is None or values == item.value:
+    values = item.found.printed_formula_value
+    if values is None or values == item.found.value:
         return "–"
     if item.claim.id.startswith("squeeze-number"):
         return " / ".join(f"{value:.4g} 1/m" for value in values)
     return show_values(values, item.claim.unit)
-
-
-def _extra(item: ClaimResult) -> str:
-    parts = []
-    if item.alternative is not None:
-        parts.append(f"another reading gives {show_values(item.alternative, item.claim.unit)}")
-    if item.note:
-        parts.append(item.note)
-    return f" *({'; '.join(parts)})*" if parts else ""
 
 
 def write_reproduction(
@@ -166,92 +158,54 @@ def write_reproduction(
     from squeezefilm.validation.report.figures import reproduction_figures
 
     tell = progress or (lambda _: None)
-    figures = [
-        f"<section><h2>{escape(title)}</h2>{_framed(svg)}</section>"
-        for title, svg in reproduction_figures(tell)
-    ]
-    if result.prototype is not None:
-        tell("the prototype")
-        figures += prototype_sections(result.prototype)
+    summary, title = result.summary(), "The paper's claims, recomputed"
+    body = "".join(_html(part) for part in _parts(result))
+    for heading, svg in reproduction_figures(tell):
+        body += section(escape(heading), _framed(svg), "figure")
+    source = (
+        "Source: Biet, Giraud, Lemaire-Semail, <em>The implementation of tactile feedback using "
+        "squeeze film effect devices</em>. Published friction against amplitude is compared by "
+        "<code>squeezefilm reproduce --data published</code>; the default model is fitted to it."
+    )
+    foot = stamped(summary["provenance"], "SHA-256 of the claims")
     files = {
-        "claims.json": json_text(result.summary()),
-        "reproduction.html": _page(result, figures),
+        "claims.json": json_text(summary),
+        "reproduction.html": page(title, title, source, body, foot, images=""),
     }
     write_folder(folder, files)
     return folder / "reproduction.html"
 
 
-def _page(result: Reproduction, figures: list[str]) -> str:
-    claims = [
-        (item.claim.where, item.claim.statement, *_found(item), item.verdict, _reason(item))
-        for item in plain_claims(result.results)
-    ]
-    errata = [(one.equation, one.printed, one.corrected, one.why) for one in result.errata]
-    title, design = "The paper's claims, recomputed", bullets(design_sentences(result.design))
-    return f"""{page_head(title, images="")}<header>
-<h1>{title}</h1>
-<p>Source: Biet, Giraud, Lemaire-Semail, <em>The implementation of tactile feedback using squeeze
-film effect devices</em>. Published friction against amplitude is compared by
-<code>squeezefilm reproduce --data published</code>; the default model is fitted to it.</p>
-</header><main>
-<section><h2>What the verdicts say</h2>{_table(verdict_table(result.results))}</section>
-<section><h2>Claims</h2>{_table(((*_HEAD, "why"), claims))}</section>
-{_direction_sections(result)}
-{"".join(figures)}
-<section><h2>The paper's design procedure</h2>{design}</section>
-<section><h2>Errata</h2>{_table((_ERRATA, errata))}</section></main></body></html>
-"""
+def _html(part: Part) -> str:
+    """A part as a section."""
+    parts = []
+    for block in part.blocks:
+        if isinstance(block, str):
+            parts.append(f"<p>{_marked(block)}</p>")
+        elif isinstance(block, list):
+            parts.append(f"<ul>{''.join(map(_html_item, block))}</ul>")
+        elif isinstance(block, tuple):
+            head, rows = block
+            cells = [[_marked(cell) for cell in row] for row in rows]
+            parts.append(html_table(escape(part.heading), map(escape, head), cells))
+        else:
+            parts.append(_framed(style.svg(block(), "drawn", part.heading)))
+    return section(escape(part.heading), "".join(parts))
 
 
-def _reason(item: ClaimResult) -> str:
-    """Reason, and the note, which for a prediction is the prediction."""
-    return f"{item.claim.why} ({item.note})" if item.note else item.claim.why
+def _html_item(item: Item) -> str:
+    if isinstance(item, str):
+        return f"<li>{_marked(item)}</li>"
+    text, below = item
+    return f"<li>{_marked(text)}<ul>{''.join(map(_html_item, below))}</ul></li>"
 
 
-def _direction_sections(result: Reproduction) -> str:
-    """HTML: the directions of friction model by model, and what each model misses."""
-    asked = directions(result.results)
-    if not asked:
-        return ""
-    head, rows = direction_table(result.results)
-    reasons = [_reason(item) for items in asked for item in items]
-    full = [(*row, reason) for row, reason in zip(rows, reasons, strict=True)]
-    missed = "".join(f"<h3>{escape(model)}</h3>{bullets(texts)}" for model, texts in missed_lists())
-    return (
-        f"<section><h2>{_OBSERVED}</h2>{bullets(model_sentences())}"
-        f"{_table(((*head, 'why'), full))}</section><section><h2>{_MISSED}</h2>{missed}</section>"
-    )
-
-
-def prototype_sections(study: PrototypeStudy) -> list[str]:
-    """HTML sections: the comparison, and what would identify the cause."""
-    parts = (
-        ("The plate: the paper, the solved plate, the prototype", _table(comparison(study))),
-        (
-            "What one frequency cannot tell",
-            bullets(sentences(study))
-            + _framed(style.svg(identifiability(study), "identifiability", "Identifiability"))
-            + _table(explanation_table(study))
-            + "<p>Distance of each pair, in units of what could be measured:</p>"
-            + _table(separation_table(study)),
-        ),
-    )
-    return [f"<section><h2>{escape(title)}</h2>{body}</section>" for title, body in parts]
+def _marked(text: str) -> str:
+    """Text with Markdown's marks of bold, italic and code as HTML."""
+    text = re.sub(r"\*\*(.+?)\*\*", r"<b>\1</b>", as_html(text))
+    return re.sub(r"`(.+?)`", r"<code>\1</code>", re.sub(r"\*(\(.+?\))\*", r"<em>\1</em>", text))
 
 
 def _framed(drawing: str) -> str:
     """A drawing (an SVG element) as a figure that scrolls."""
     return f'<figure><div class="scroll" tabindex="0">{drawing}</div></figure>'
-
-
-def _table(table: Table) -> str:
-    """Head and rows of plain texts as HTML."""
-    head, rows = table
-    top = "".join(f"<th>{escape(cell)}</th>" for cell in head)
-    body = "\n".join(
-        "<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows
-    )
-    return (
-        f'<div class="scroll" tabindex="0"><table><thead><tr>{top}</tr></thead>'
-        f"<tbody>{body}</tbody></table></div>"
-    )

@@ -3,13 +3,13 @@ what could explain the difference, and which measurement would tell the explanat
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from squeezefilm.core.kit import style
-from squeezefilm.core.kit.folder import markdown_table
 from squeezefilm.core.kit.numbers import changed
 from squeezefilm.validation.explanations import (
     AMPLITUDE_ACCURACY,
@@ -31,6 +31,17 @@ if TYPE_CHECKING:
 
 _TOLD_APART = 2.0
 Table = tuple[tuple[str, ...], Sequence[tuple[str, ...]]]
+Item = str | tuple[str, Sequence[str]]
+"""A member of a list, or one with a list of its own."""
+
+
+class Part(NamedTuple):
+    """A part of the page of validation, in Markdown and in HTML: a heading, and under it
+    paragraphs, lists, tables, and what draws a figure, which HTML has."""
+
+    heading: str
+    blocks: Sequence[str | list[Item] | Table | Callable[[], Figure]]
+    level: int = 2
 
 
 def comparison(study: PrototypeStudy) -> Table:
@@ -112,7 +123,7 @@ def separation_table(study: PrototypeStudy) -> Table:
     return ("pair", *MEASUREMENTS, "told apart by"), rows
 
 
-def sentences(study: PrototypeStudy) -> list[str]:
+def sentences(study: PrototypeStudy) -> list[Item]:
     """The conclusions in words; every number computed."""
     ours = study.from_d31
     missing = MEASURED_FREQUENCY / ours.frequency - 1
@@ -149,14 +160,23 @@ def sentences(study: PrototypeStudy) -> list[str]:
     ]
 
 
-def prototype_markdown(study: PrototypeStudy) -> list[str]:
-    """The section of docs/reference/validation.md, line by line."""
-    lines = ["", "## The plate: the paper, the solved plate, the prototype", ""]
-    lines += [*markdown_table(comparison(study)), "", "### What one frequency cannot tell", ""]
-    lines += [f"* {sentence}" for sentence in sentences(study)]
-    lines += ["", *markdown_table(explanation_table(study)), ""]
-    lines += ["Distance of each pair, in units of what could be measured:", ""]
-    return [*lines, *markdown_table(separation_table(study))]
+def prototype_parts(study: PrototypeStudy) -> list[Part]:
+    """The comparison, and what would identify the cause."""
+    apart = "Distance of each pair, in units of what could be measured:"
+    return [
+        Part("The plate: the paper, the solved plate, the prototype", [comparison(study)]),
+        Part(
+            "What one frequency cannot tell",
+            [
+                sentences(study),
+                partial(identifiability, study),
+                explanation_table(study),
+                apart,
+                separation_table(study),
+            ],
+            level=3,
+        ),
+    ]
 
 
 @style.drawn

@@ -226,7 +226,7 @@ def direction_table(results: Iterable[ClaimResult]) -> Table:
             item.claim.statement if item is items[0] else "",
             item.claim.model,
             show_printed(item),
-            show_values(item.value, item.claim.unit),
+            show_values(item.found.value, item.claim.unit),
             item.verdict,
         )
         for items in directions(results)

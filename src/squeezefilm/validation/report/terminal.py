@@ -79,18 +79,18 @@ def _style(row: Sequence[str]) -> str:
 
 def _claim_row(item: ClaimResult) -> tuple[str, ...]:
     unit = item.claim.unit
-    printed_formula = show_values(item.printed_formula_value, unit)
+    printed_formula = show_values(item.found.printed_formula_value, unit)
     return (
         item.claim.id,
         show_printed(item),
         printed_formula,
-        show_values(item.value, unit),
+        show_values(item.found.value, unit),
         item.verdict,
     )
 
 
 def _reasons(item: ClaimResult) -> list[str]:
-    return [f"why: {item.claim.why}", *([item.note] if item.note else [])]
+    return [f"why: {item.claim.why}", *([item.found.note] if item.found.note else [])]
 
 
 def _say(console: Console, texts: Iterable[str]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from squeezefilm.core.kit.page_style import STYLE, page_head
+from squeezefilm.core.kit.page_style import STYLE, page
 from squeezefilm.core.kit.style import PALETTE
 
 
@@ -35,9 +35,9 @@ def test_every_colour_used_is_defined_and_braces_close() -> None:
 
 
 def test_a_head_opens_a_page_that_loads_nothing_from_elsewhere() -> None:
-    head = page_head("a &lt; b")
+    head = page("a &lt; b", "", "", "", "").partition("<header>")[0]
     assert head.startswith('<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n')
-    assert head.endswith("</style>\n</head>\n<body>")
+    assert head.endswith("</style>\n</head>\n<body>\n")
     # The title is HTML already: not escaped a second time.
     assert "<title>a &lt; b</title>" in head
     assert (

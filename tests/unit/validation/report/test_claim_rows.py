@@ -14,6 +14,7 @@ from squeezefilm.validation.report.published import (
     show_values,
     verdict_table,
 )
+from squeezefilm.validation.values import ClaimValue
 
 
 def result(
@@ -30,7 +31,7 @@ def result(
         relation="at_most",
         model=model,
     )
-    return ClaimResult(claim, (1.0,), None, None, verdict, "")
+    return ClaimResult(claim, ClaimValue((1.0,)), verdict)
 
 
 def test_values_are_shown_with_their_unit() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import json
 import shutil
 from pathlib import Path
@@ -13,7 +12,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit.folder import checkout
-from squeezefilm.core.kit.page_style import bullets
+from squeezefilm.core.kit.page_style import as_html
 from squeezefilm.design.analysis.paper_procedure import PaperDesign
 from squeezefilm.design.analysis.published_claims import Claim, Erratum
 from squeezefilm.validation.command import ClaimResult, Reproduction
@@ -24,6 +23,8 @@ from squeezefilm.validation.report.page import (
     write_reproduction,
     write_validation_docs,
 )
+from squeezefilm.validation.report.prototype import Part
+from squeezefilm.validation.values import ClaimValue
 
 DESIGN = PaperDesign(
     lowest_frequency=20.56e3, longest_half_wavelength_euler=16e-3,
@@ -41,10 +42,7 @@ def result(number: int, *values: float, relation: Any = "equals", **changes: Any
         unit=changes.pop("unit", "m"), verdict="reproduces", why=f"why {number}",
         relation=relation, model=changes.pop("model", ""),
     )  # fmt: skip
-    given: dict[str, Any] = {
-        "printed_formula_value": None, "alternative": None, "verdict": "misprint", "note": "",
-    }  # fmt: skip
-    return ClaimResult(claim, values, **{**given, **changes})
+    return ClaimResult(claim, ClaimValue(values, **changes), "misprint")
 
 
 FOUND = Reproduction(
@@ -193,19 +191,28 @@ def test_the_page_has_claims_figures_procedure_and_errata(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     text = reproduction(tmp_path / "new", FOUND, monkeypatch)
-    cells = ("section 2", "statement 2 <b>", "> 2 µm", "3 µm", "2.5 µm", "misprint", "why 2")
-    row = "".join(f"<td>{html.escape(cell)}</td>" for cell in cells)
-    assert f"<tr>{row}</tr>\n<tr><td>section 3</td>" in text
-    assert text.count("<tr><td>section") == 5
-    assert "<tr><td>eq 7</td><td>a|b</td><td>a&amp;b|c</td><td>because &lt;i&gt;</td></tr>" in text
     assert (
-        '<section><h2>5 &lt; 6</h2><figure><div class="scroll" tabindex="0"><svg>x</svg></div>'
-        "</figure></section>" in text
+        '<tr><th scope="row">section 2</th><td>statement 2 &lt;b&gt;</td><td>&gt; 2 µm</td>'
+        "<td>3 µm</td><td>2.5 µm</td><td><b>misprint</b></td></tr>\n"
+        '<tr><th scope="row">section 3</th>' in text
     )
-    assert bullets(design_sentences(DESIGN)).replace("\u00a0", " ") in text
-    assert "<b>" not in text
+    assert text.count('<tr><th scope="row">section') == 5
+    assert (
+        '<tr><th scope="row">eq 7</th><td>a|b</td><td>a&amp;b|c</td><td>because &lt;i&gt;</td></tr>'
+        in text
+    )
+    assert (
+        '<section class="figure">\n<h2>5 &lt; 6</h2>\n<figure><div class="scroll" tabindex="0">'
+        "<svg>x</svg></div></figure>\n</section>" in text
+    )
+    assert (
+        "<li><b>statement 3 &lt;b&gt;</b> (misprint): why 3. <em>(another reading gives 4 µm; "
+        "as read)</em></li>" in text
+    )
+    for sentence in design_sentences(DESIGN):
+        assert f"<li>{as_html(str(sentence))}</li>".replace("\u00a0", " ") in text
     assert "Directions" not in text
-    places = [text.index(one) for one in ("<h2>Claims", "5 &lt; 6", "<h2>The paper", "<h2>Errata")]
+    places = [text.index(one) for one in ("<h2>Claims", "<h2>The paper", "<h2>Errata", "5 &lt; 6")]
     assert places == sorted(places)
     assert "the default model is fitted to it" in text
     # Nothing may be loaded from elsewhere.
@@ -219,13 +226,17 @@ def test_the_page_has_directions_where_they_were_asked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     text = reproduction(tmp_path, ASKED, monkeypatch)
-    cells = (
-        "Biet et al., section 6", "statement 6 <b>", "partial-levitation", "≤ 2 µm", "3 µm",
-        "misprint", "why 6 (slow)",
-    )  # fmt: skip
-    assert f"<tr>{''.join(f'<td>{html.escape(cell)}</td>' for cell in cells)}</tr>" in text
-    assert text.count("<tr><td>section") == 5
-    assert "<h2>What measurements say and the models do not</h2><h3>partial-levitation</h3>" in text
+    assert (
+        '<tr><th scope="row">Biet et al., section 6</th><td>statement 6 &lt;b&gt;</td>'
+        "<td>partial-levitation</td><td>≤ 2 µm</td><td>3 µm</td><td><b>misprint</b></td></tr>"
+        in text
+    )
+    assert (
+        "<li><b>statement 6 &lt;b&gt;</b><ul><li>partial-levitation (misprint): why 6. "
+        "<em>(slow)</em></li><li>intermittent-contact (misprint): why 7.</li></ul></li>" in text
+    )
+    missed = "<h2>What measurements say and the models do not</h2>\n<p><code>partial-levitation"
+    assert missed in text
     data = json.loads((tmp_path / "claims.json").read_text(encoding="utf-8"))
     assert [one["model"] for one in data["claims"]] == [
         *[None] * 5, "partial-levitation", "intermittent-contact",
@@ -236,10 +247,9 @@ def test_the_prototype_is_left_out_where_it_was_not_asked_for(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     study: Any = object()
-    monkeypatch.setattr(page, "prototype_sections", lambda one: [f"<p>{one is study}</p>"])
-    monkeypatch.setattr(page, "prototype_markdown", lambda one: ["", f"* {one is study}"])
-    monkeypatch.setattr(Reproduction, "summary", lambda _: {})
+    monkeypatch.setattr(page, "prototype_parts", lambda one: [Part("It", [f"{one is study}"])])
+    monkeypatch.setattr(Reproduction, "summary", lambda _: {"provenance": {}})
     with_it = Reproduction(FOUND.results, FOUND.errata, DESIGN, study)
-    assert "</section><p>True</p>" in reproduction(tmp_path, with_it, monkeypatch).replace("\n", "")
+    assert "<h2>It</h2>\n<p>True</p>" in reproduction(tmp_path, with_it, monkeypatch)
     assert "<p>True</p>" not in reproduction(tmp_path, FOUND, monkeypatch)
-    assert "why 5.\n\n* True\n\n## The paper's design procedure" in validation_markdown(with_it)
+    assert "why 5.\n\n## It\n\nTrue\n\n## The paper's" in validation_markdown(with_it)

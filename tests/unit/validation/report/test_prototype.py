@@ -18,12 +18,12 @@ from squeezefilm.validation.explanations import (
     PrototypeStudy,
     Separation,
 )
-from squeezefilm.validation.report.page import prototype_sections
+from squeezefilm.validation.report import page
 from squeezefilm.validation.report.prototype import (
     comparison,
     explanation_table,
     identifiability,
-    prototype_markdown,
+    prototype_parts,
     sentences,
     separation_table,
 )
@@ -130,9 +130,11 @@ def test_no_pair_alike_is_said() -> None:
     assert sentences(study)[3].endswith("1 more by the open-circuit shift, 0 by none of these.")
 
 
-def test_the_document_has_each_table_once() -> None:
-    lines = prototype_markdown(STUDY)
+def test_the_document_has_each_table_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(page, "_parts", lambda study: prototype_parts(study))
+    lines = page.validation_markdown(STUDY).splitlines()  # type: ignore[arg-type]
     assert [line for line in lines if line.startswith("#")] == [
+        "# Validation",
         "## The plate: the paper, the solved plate, the prototype",
         "### What one frequency cannot tell",
     ]  # fmt: skip
@@ -193,19 +195,17 @@ def test_the_page_has_the_figure_and_all_tables(monkeypatch: pytest.MonkeyPatch)
 
     # What a drawing looks like as SVG is the style's own business, and takes its time.
     monkeypatch.setattr(style, "svg", drawing)
-    first, third = prototype_sections(STUDY)
-    assert [one[1:] for one in drawn] == [("identifiability", "Identifiability")]
+    first, third = (page._html(part) for part in prototype_parts(STUDY))
+    assert [one[1:] for one in drawn] == [("drawn", "What one frequency cannot tell")]
     assert "<h2>The plate: the paper, the solved plate, the prototype</h2>" in first
-    assert (
-        '<figure><div class="scroll" tabindex="0"><svg>identifiability</svg></div></figure>'
-        in third
-    )
+    assert '<figure><div class="scroll" tabindex="0"><svg>drawn</svg></div></figure>' in third
     assert [one.count("<table>") for one in (first, third)] == [1, 2]
+    third = third.replace("\u00a0", " ").replace(' scope="col"', "").replace(' scope="row"', "")
     assert "<thead><tr><th>explanation</th><th>solved for</th><th>(8,0)</th>" in third
-    assert "<tr><td>first</td><td>its &lt;mass&gt;: 1.5 GPa</td><td>30.50 kHz</td>" in third
+    assert "<tr><th>first</th><td>its &lt;mass&gt;: 1.5 GPa</td><td>30.50 kHz</td>" in third
     assert third.index("<svg>") < third.index("<th>explanation") < third.index("Distance of each")
     assert third.index("Distance of each") < third.index("<th>pair</th>")
     assert third.count("<li>") == len(sentences(STUDY))
     for section in (first, third):
-        assert section.startswith("<section><h2>")
-        assert section.endswith("</section>")
+        assert section.startswith("<section>\n<h2>")
+        assert section.endswith("</section>\n")

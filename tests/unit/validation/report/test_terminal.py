@@ -9,6 +9,7 @@ from tests.unit.printed import printed
 from squeezefilm.design.analysis.published_claims import Claim, Verdict
 from squeezefilm.validation.command import ClaimResult
 from squeezefilm.validation.report.terminal import show_claims
+from squeezefilm.validation.values import ClaimValue
 
 
 def result(verdict: Verdict, **changes: Any) -> ClaimResult:
@@ -18,7 +19,7 @@ def result(verdict: Verdict, **changes: Any) -> ClaimResult:
         "relation": "at_least",
     }  # fmt: skip
     claim = Claim(**{**given, **changes})
-    return ClaimResult(claim, (2e-6, 3e-6), None, None, verdict, "a note")
+    return ClaimResult(claim, ClaimValue((2e-6, 3e-6), note="a note"), verdict)
 
 
 class Found:
