@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import typing
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -186,13 +186,21 @@ def _read(value: Any, name: str, marks: tuple[Any, ...]) -> Any:
 
     from squeezefilm.core.quantities import Unit, parse_quantity
 
-    # Where an option has another name than its argument, typer holds it as a default.
-    other = [mark.default for mark in marks if isinstance(mark, OptionInfo)] or [None]
-    option = other[0] if isinstance(other[0], str) else f"--{name.replace('_', '-')}"
     try:
         return parse_quantity(value, Unit(units[0]))
     except InputError as error:
-        raise InputError(f"{option}: {error}") from error
+        raise InputError(f"{option_of(name, marks)}: {error}") from error
+
+
+def option_of(name: str, marks: Iterable[Any]) -> str:
+    """An option as it is typed, by its argument's name and the marks beside its type."""
+    for mark in marks:
+        if isinstance(mark, OptionInfo):
+            # Where an option has another name than its argument, typer holds it as a default.
+            for said in (mark.default, *(mark.param_decls or ())):
+                if isinstance(said, str) and said.startswith("--"):
+                    return said
+    return f"--{name.replace('_', '-')}"
 
 
 def working(quiet: bool) -> AbstractContextManager[SayProgress]:

@@ -6,10 +6,8 @@ from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any, get_args, get_type_hints
 
-from typer.models import OptionInfo
-
 from squeezefilm.actuators.report import dispatch
-from squeezefilm.cli.app import answer, read_option, working
+from squeezefilm.cli.app import answer, option_of, read_option, working
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit.folder import require_folder
 from squeezefilm.core.kit.numbers import dotted
@@ -228,9 +226,9 @@ _TAKEN = ("target", "voltage", "out", "as_json")
 def analyze_actuator(asked: Any) -> None:
     """Analyse an actuator by `analyze`'s options. Raises `InputError` for those that only a display
     has."""
-    usual = type(asked)(asked.target)
+    usual, hints = type(asked)(asked.target), get_type_hints(type(asked), include_extras=True)
     other = [
-        _flag(type(asked), field.name)
+        option_of(field.name, get_args(hints[field.name]))
         for field in fields(asked)
         if field.name not in _TAKEN and getattr(asked, field.name) != getattr(usual, field.name)
     ]
@@ -249,13 +247,3 @@ def analyze_actuator(asked: Any) -> None:
             step("figures")
             written = analyzed.write(analyzed.analysis, asked.out)
     answer(asked.as_json, analyzed.analysis, analyzed.show, report=written)
-
-
-def _flag(options: type, name: str) -> str:
-    """The option as it is typed."""
-    for mark in get_args(get_type_hints(options, include_extras=True)[name]):
-        if isinstance(mark, OptionInfo):
-            for said in (mark.default, *(mark.param_decls or ())):
-                if isinstance(said, str) and said.startswith("--"):
-                    return said
-    return f"--{name.replace('_', '-')}"

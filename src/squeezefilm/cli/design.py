@@ -14,6 +14,7 @@ from squeezefilm.cli.app import (
     Target,
     answer,
     app,
+    given,
     print_json,
     to_be_solved,
     working,
@@ -104,13 +105,8 @@ def design(asked: DesignOptions) -> None:
     with working(asked.as_json) as step:
         request = SearchRequest(
             replace(load_requirements(asked.requirements), finger=asked.finger),
-            screened=asked.screened,
-            solved=asked.solved,
-            seed=asked.seed,
+            **given(asked, leave="requirements finger jobs quick as_json"),
             jobs=asked.jobs or os.cpu_count() or 1,
-            scheduler=asked.scheduler,
-            out=asked.out,
-            member=asked.member,
             progress=step,
         )
         found, stopped = search_until_stopped(request)
@@ -240,6 +236,10 @@ class SweepOptions:
     as_json: AsJson = False
 
 
+_NOT_OF_SWEEP = "targets vary ask answers finger jobs less more table compare as_json"
+"""Options that the request takes in another form, or not at all."""
+
+
 @app.command()
 @called_with(SweepOptions)
 def sweep(asked: SweepOptions) -> None:
@@ -278,13 +278,8 @@ def sweep(asked: SweepOptions) -> None:
             [with_finger(load_display(target), asked.finger) for target in asked.targets],
             vary=asked.vary or (),
             ask=asked.ask or (),
-            over=asked.over,
-            sample=asked.sample,
-            seed=asked.seed,
+            **given(asked, leave=_NOT_OF_SWEEP),
             jobs=asked.jobs or os.cpu_count() or 1,
-            scheduler=asked.scheduler,
-            out=asked.out,
-            fresh=asked.fresh,
             progress=step,
         )
         found, stopped = sweep_until_stopped(request)

@@ -55,55 +55,47 @@ def serve(
         ) from error
     with contextlib.ExitStack() as opened:
         listener = opened.enter_context(listening_socket(port))
-        _serve(folder, port, browser, lan, say, listener, opened)
+        bound = int(listener.getsockname()[1])
+        lab = _lab_at(folder, bound)
+        link = f"http://127.0.0.1:{bound}/?token={lab.keys.new_link()}"
+        secret = folder / f".lab-{bound}.pem"
+        most = room_for(1 if lan is None else 2)
+        servers = [(server_of(lab, door=partial(Door, most=most)), listener)]
+        if lan is not None:
+            from squeezefilm.lab.lan import lan_listener, lan_server
+
+            # A mistake here leaves the keys of a lab that was killed as they are.
+            beside = opened.enter_context(lan_listener(lan))
+            servers.append((lan_server(lab, beside, secret, most), beside))
+        # From here on an end, however early, leaves no key behind.
+        opened.callback(secret.unlink, missing_ok=True)
+        opened.callback(lab.keys.forget)
+        opened.callback(lab.close)
+        opened.enter_context(_ended_by_signals(servers[0][0]))
+        say(f"squeezefilm lab: {link}")
+        if bound != port:
+            say(f"port {port} was taken; this one is {bound}")
+        say(f"the link works once; files are saved in {folder.resolve()}; stop with Ctrl-C")
+        if lab.lan is not None:
+            say(f"tablets, participants only: {lab.lan.link}")
+            say(f"its certificate's SHA-256 fingerprint: {lab.lan.fingerprint}")
+        if browser:
+            with contextlib.suppress(webbrowser.Error):
+                webbrowser.open(link)
+        asyncio.run(_run(servers))
 
 
-def _serve(
-    folder: Path,
-    port: int,
-    browser: bool,
-    lan: str | None,
-    say: Callable[[str], None],
-    listener: socket.socket,
-    opened: contextlib.ExitStack,
-) -> None:
-    bound = int(listener.getsockname()[1])
-    hosts = frozenset({f"127.0.0.1:{bound}", f"localhost:{bound}"})
-    keys = Keys(folder / f".lab-{bound}.keys")
-    lab = Lab(folder, keys, Places(hosts, cookie=f"squeezefilm-{bound}"))
+def _lab_at(folder: Path, port: int) -> Lab:
+    """A lab that is reached at a port of this computer, with all its areas."""
+    hosts = frozenset({f"127.0.0.1:{port}", f"localhost:{port}"})
+    keys = Keys(folder / f".lab-{port}.keys")
+    lab = Lab(folder, keys, Places(hosts, cookie=f"squeezefilm-{port}"))
     DesignArea(lab)
     SearchArea(lab)
     FeelArea(lab)
     StudyArea(lab)
     DeviceArea(lab)
-    link = f"http://127.0.0.1:{bound}/?token={keys.new_link()}"
-    secret = folder / f".lab-{bound}.pem"
-    most = room_for(1 if lan is None else 2)
-    servers = [(server_of(lab, door=partial(Door, most=most)), listener)]
-    if lan is not None:
-        from squeezefilm.lab.lan import lan_listener, lan_server
-
-        # A mistake here leaves the keys of a lab that was killed as they are.
-        beside = opened.enter_context(lan_listener(lan))
-        servers.append((lan_server(lab, beside, secret, most), beside))
-    # From here on an end, however early, leaves no key behind.
-    try:
-        with _ended_by_signals(servers[0][0]):
-            say(f"squeezefilm lab: {link}")
-            if bound != port:
-                say(f"port {port} was taken; this one is {bound}")
-            say(f"the link works once; files are saved in {folder.resolve()}; stop with Ctrl-C")
-            if lab.lan is not None:
-                say(f"tablets, participants only: {lab.lan.link}")
-                say(f"its certificate's SHA-256 fingerprint: {lab.lan.fingerprint}")
-            if browser:
-                with contextlib.suppress(webbrowser.Error):
-                    webbrowser.open(link)
-            asyncio.run(_run(servers))
-    finally:
-        lab.close()
-        keys.forget()
-        secret.unlink(missing_ok=True)
+    return lab
 
 
 @contextlib.contextmanager

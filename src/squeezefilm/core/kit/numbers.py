@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import re
-import typing
 import unicodedata
 
 from squeezefilm.core import quantities as si
-
-if typing.TYPE_CHECKING:
-    pass
 
 Row = tuple[str, str, str]
 

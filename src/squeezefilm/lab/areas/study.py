@@ -14,7 +14,7 @@ from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.lab.keys import CODE_LIFE
 from squeezefilm.lab.studying.devices import MeasuredDevice, StudyDevices, require_device
 from squeezefilm.lab.studying.jobs import analysis_of, rehearsed, report_of
-from squeezefilm.lab.studying.studies import Studies
+from squeezefilm.lab.studying.studies import PrepareSitting, Studies
 from squeezefilm.lab.wire import Answer, Handler, Name, Request
 from squeezefilm.lab.worker import PAGE
 from squeezefilm.study.conduct.run import Response
@@ -35,17 +35,6 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 _LONGEST_SESSION = 3600.0
-
-
-class PrepareSitting(Request):
-    """A sitting: what a `SessionConditions` has, and the consent's text."""
-
-    study: Name
-    participant: Name
-    device: Name
-    consent: str = Field(min_length=20, max_length=20_000)
-    conditions: dict[str, str | float | None] = Field(default_factory=dict, max_length=20)
-    acknowledged: bool = False
 
 
 class Respond(Request):
@@ -173,7 +162,7 @@ class StudyArea:
     async def _prepare(self, asked: PrepareSitting) -> Answer:
         display = await self.thread.do(Studies.display_of, asked.study, asked.participant)
         require_device(asked.device, display)
-        answer = await self.thread.do(partial(Studies.prepare, **asked.own))
+        answer = await self.thread.do(Studies.prepare, asked)
         await self._release_ended()
         return {"type": "study", **answer}
 

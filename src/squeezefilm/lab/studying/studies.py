@@ -23,7 +23,7 @@ from squeezefilm.lab.studying.sittings import (
     described,
     shown_sitting,
 )
-from squeezefilm.lab.wire import FileName, Name, Seed
+from squeezefilm.lab.wire import FileName, Name, Request, Seed
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.again import why_begun_again
 from squeezefilm.study.conduct.run import Response, StudyRun
@@ -51,6 +51,17 @@ CONSENT = (
     "{minutes} minutes, with breaks. You may stop at any time, without giving a reason, and ask "
     "for your data to be deleted. Your answers are kept under a number, not under your name."
 )
+
+
+class PrepareSitting(Request):
+    """A sitting: what a `SessionConditions` has, and the consent's text."""
+
+    study: Name
+    participant: Name
+    device: Name
+    consent: str = Field(min_length=20, max_length=20_000)
+    conditions: dict[str, str | float | None] = Field(default_factory=dict, max_length=20)
+    acknowledged: bool = False
 
 
 class Studies:
@@ -135,35 +146,20 @@ class Studies:
         self.store(name).enrol()
         return self.status(name)
 
-    def prepare(
-        self,
-        study: str,
-        participant: str,
-        device: str,
-        consent: str,
-        conditions: dict[str, Any],
-        acknowledged: bool,
-    ) -> dict[str, Any]:
+    def prepare(self, asked: PrepareSitting) -> dict[str, Any]:
         """A sitting for a participant, to be consented to on the participant's page."""
-        store = self.store(study)
-        store.require_participant(participant)
-        self.display_of(study, participant)
-        if device != "none" and not acknowledged:
+        self.store(asked.study).require_participant(asked.participant)
+        self.display_of(asked.study, asked.participant)
+        if asked.device != "none" and not asked.acknowledged:
             raise InputError(
                 "the exposure to airborne ultrasound was not acknowledged; read it and accept it, "
                 "or lower the display's voltage"
             )
         # Checked now, so that a mistake is the experimenter's and not the participant's to see.
-        conditions_of(conditions, consent, consented=False)
-        sitting = self.sittings.new(
-            study=study,
-            participant=participant,
-            device=device,
-            consent_text=consent,
-            conditions=conditions,
-            acknowledged=acknowledged,
-        )
-        return {"sitting": sitting.id, **self.status(study)}
+        conditions_of(asked.conditions, asked.consent, consented=False)
+        fields = asked.own
+        sitting = self.sittings.new(consent_text=fields.pop("consent"), **fields)
+        return {"sitting": sitting.id, **self.status(asked.study)}
 
     def display_of(self, name: str, participant: str) -> str:
         """The display a participant's next trial is on. Raises `InputError` if there is none."""

@@ -13,7 +13,7 @@ from squeezefilm.core.kit.page_style import as_html, html_table, page, section, 
 from squeezefilm.core.results import write_whole
 from squeezefilm.design.analysis.paper_procedure import PaperDesign
 from squeezefilm.validation.command import ClaimResult, Reproduction
-from squeezefilm.validation.report.prototype import Item, Part, prototype_parts
+from squeezefilm.validation.report.prototype import Block, Item, Part, prototype_parts
 from squeezefilm.validation.report.published import (
     direction_table,
     directions,
@@ -76,7 +76,9 @@ def _parts(result: Reproduction) -> Iterator[Part]:
             for items in asked
         ]
         yield Part("Why, model by model", [by_model], level=3)
-        missed = [block for name, texts in missed_lists() for block in (f"`{name}`:", [*texts])]
+        missed: list[Block] = []
+        for name, texts in missed_lists():
+            missed += [f"`{name}`:", [*texts]]
         yield Part("What measurements say and the models do not", missed)
     if result.prototype is not None:
         yield from prototype_parts(result.prototype)

@@ -33,14 +33,15 @@ _TOLD_APART = 2.0
 Table = tuple[tuple[str, ...], Sequence[tuple[str, ...]]]
 Item = str | tuple[str, Sequence[str]]
 """A member of a list, or one with a list of its own."""
+Block = str | list[Item] | Table | Callable[[], "Figure"]
+"""A paragraph, a list, a table, or what draws a figure, which HTML has."""
 
 
 class Part(NamedTuple):
-    """A part of the page of validation, in Markdown and in HTML: a heading, and under it
-    paragraphs, lists, tables, and what draws a figure, which HTML has."""
+    """A part of the page of validation, in Markdown and in HTML: a heading and what is under it."""
 
     heading: str
-    blocks: Sequence[str | list[Item] | Table | Callable[[], Figure]]
+    blocks: Sequence[Block]
     level: int = 2
 
 
