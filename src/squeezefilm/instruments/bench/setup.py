@@ -11,10 +11,9 @@ from squeezefilm.core.compiled import announce
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims
-from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
 from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.tick import make_tick
-from squeezefilm.instruments.session.play.plan import PlayPlan, TextureTile, tile_of
+from squeezefilm.instruments.session.play.plan import PlayPlan, tile_of
 from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.played_texture import lowered
 from squeezefilm.physics.chain.prediction import Prediction, predict
@@ -29,13 +28,13 @@ from squeezefilm.physics.texture_files.texture_file import TextureFile
 OUTPUT_DELAY: si.Second = 6e-3
 """Time from a tick to its command at the plate: the player's pause, a block's length, the link and
 what its jitter may be (assumed; commands that come later than this are counted, and not played)."""
-_FINEST_PITCH: si.Metre = 1e-6
 _SEARCHED, _SEARCH_SHARE = 8.0, 0.1
 """Half-bandwidths above the resonance from which a search comes; of the voltage in it."""
 _PICKUP_NOISE: si.Volt = 1e-3
 """Noise of each quadrature in a tick (assumed); the loops learn less at amplitudes near it. A sweep
 that averages over more than a tick shows less, which is not believed."""
-_LONGEST_TILE_WAY: si.Metre = 0.1
+_TILE_WAY: tuple[si.Metre, si.Metre] = (0.0, 0.1)
+"""Where a tile lies for a finger whose way is not known."""
 
 
 @dataclass(frozen=True)
@@ -153,6 +152,9 @@ def play_setup(
         relative_friction=FrictionTable.of_inverse(p.inverse),
         output_delay=OUTPUT_DELAY,
     )
+    tile = None
+    if mode == "tile":
+        tile = tile_of(loop.program, device.way or _TILE_WAY, speed=p.speed, law=p.friction)
     announce(make_tick, "real-time loop", 20)
     plan = PlayPlan(
         loop=loop,
@@ -160,7 +162,7 @@ def play_setup(
         frequency=p.frequency,
         twin=device.twin,
         mode=mode,  # type: ignore[arg-type] # checked with a message by PlayPlan
-        tile=_tile(loop, device.way, p) if mode == "tile" else None,
+        tile=tile,
         sensor_latency=device.sensor.latency,
         amplitude_per_pickup=device.amplitude_per_pickup,
         hold=held,
@@ -192,15 +194,3 @@ def _held(
         noise=max(noise, _PICKUP_NOISE),
     )
     return (plate, aims), plate.ratio * per_pickup
-
-
-def _tile(loop: LoopPlan, way: tuple[si.Metre, si.Metre] | None, p: Prediction) -> TextureTile:
-    first, last = (0.0, _LONGEST_TILE_WAY) if way is None else way
-    if not last > first:
-        raise InputError(f"a tile from {first:g} m to {last:g} m covers nothing; exchange them")
-    # Whole micrometres, which is what the device counts in.
-    pitch = max(1, int(np.ceil((last - first) / ((LONGEST_TILE - 1) * _FINEST_PITCH))))
-    origin = int(np.floor(first / _FINEST_PITCH))
-    size = min(LONGEST_TILE, int(np.ceil((last - first) / (pitch * _FINEST_PITCH))) + 1)
-    first, pitch_of = origin * _FINEST_PITCH, pitch * _FINEST_PITCH
-    return tile_of(loop.program, first, pitch_of, size, speed=p.speed, law=p.friction)

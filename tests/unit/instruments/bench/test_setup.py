@@ -9,44 +9,12 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.bench import setup
-from squeezefilm.instruments.bench.setup import _held, _tile
+from squeezefilm.instruments.bench.setup import _held
 from squeezefilm.instruments.control.gains import IdentifiedPlate
-from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
 
-LOOP: Any = SimpleNamespace(program="program")
 PREDICTED: Any = SimpleNamespace(
-    speed=0.07,
-    friction="law",
     mode=SimpleNamespace(resonance_frequency=30e3, quality_factor=100.0, amplitude_per_volt=50e-9),
 )
-
-
-@pytest.mark.parametrize(
-    "way", [None, (0.0, 0.1), (0.0204, 0.0306), (-0.05, 0.05), (0.01, 0.010001), (1e-3, 1.51e-3)]
-)
-def test_a_tile_covers_the_way_as_finely_as_it_can(
-    way: tuple[float, float] | None, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    asked: list[Any] = []
-    monkeypatch.setattr(setup, "tile_of", lambda *given, **more: asked.append((given, more)))
-    _tile(LOOP, way, PREDICTED)
-    (program, origin, pitch, size), more = asked[0]
-    assert (program, more) == ("program", {"speed": 0.07, "law": "law"})
-    first, last = way or (0.0, 0.1)
-    for length in (origin, pitch):
-        assert length * 1e6 == pytest.approx(round(length * 1e6))
-    assert first - 1e-6 < origin <= first + 1e-12
-    assert 2 <= size <= LONGEST_TILE
-    # Up to the last micrometre, and no finer pitch would reach it.
-    assert last - 1e-6 <= origin + (size - 1) * pitch + 1e-12
-    assert origin + (size - 2) * pitch < last + 1e-9
-    assert pitch <= 1.001e-6 or (LONGEST_TILE - 1) * (pitch - 1e-6) < last - first
-
-
-@pytest.mark.parametrize("way", [(0.1, 0.0), (0.02, 0.02)])
-def test_a_way_to_nowhere_has_no_tile(way: tuple[float, float]) -> None:
-    with pytest.raises(InputError, match="covers nothing"):
-        _tile(LOOP, way, PREDICTED)
 
 
 @pytest.mark.parametrize(("highest", "begins"), [(40e3, 30e3 + 8 * 150), (30.5e3, 30.5e3)])

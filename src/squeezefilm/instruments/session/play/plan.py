@@ -108,10 +108,7 @@ def _percent(share: float) -> str:
     return f"{100 * share:+.1f} %" if math.isfinite(share) else "–"
 
 
-_METRE = si.Unit("m")
 _MICROMETRE: si.Metre = 1e-6
-# What a position may miss a whole number of micrometres by.
-_ROUNDING = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -138,38 +135,36 @@ class TextureTile:
         Raises:
             InputError: an amplitude above the drive's largest.
         """
-        si.require("amplitude", self.amplitude, _METRE, at_most=drive.largest_amplitude)
+        si.require("amplitude", self.amplitude, si.Unit("m"), at_most=drive.largest_amplitude)
         return np.asarray(self.amplitude / drive.amplitude_per_volt)
 
 
 def tile_of(
     program: Program,
-    origin: si.Metre,
-    pitch: si.Metre,
-    size: int,
+    way: tuple[si.Metre, si.Metre],
     *,
     speed: si.MetrePerSecond = EXPLORING_SPEED,
     law: RelativeFriction | None = None,
 ) -> TextureTile:
-    """A steady texture sampled into a device's tile.
+    """A steady texture sampled into a device's tile, as finely as it holds it.
 
     A tile knows no speed, no time and no y, and the device plays it without compensation. Where
     the friction of the display depends on the finger's speed it is made for one.
 
     Args:
         program: the lowered texture.
-        origin: of the first amplitude (m), a whole number of micrometres within ±2 km.
-        pitch: from one to the next (m), a whole number of micrometres, at least 1 µm.
-        size: how many; 2 to 512.
+        way: places that it covers, from and to (m).
         speed: of the finger for which friction becomes amplitude (m/s), above 0.
         law: amplitude and speed → relative friction of the display, to state the error at others.
 
     Raises:
-        InputError: a texture that may depend on speed, direction, time or y, or a place, pitch or
-            size that the device cannot take.
+        InputError: a texture that may depend on speed, direction, time or y, or a way to nowhere.
         UnreachableError: a texture that wants what the display cannot reach on the tile.
     """
     si.require("speed", speed, si.Unit("m/s"), above=0.0, at_most=FASTEST)
+    first, last = way
+    if not last > first:
+        raise InputError(f"a tile from {first:g} m to {last:g} m covers nothing; exchange them")
     moving = sorted(program.wanted_depends_on - {"x"})
     if moving:
         raise InputError(
@@ -177,29 +172,15 @@ def tile_of(
             "alone; play it in mode stream",
             quantity="program",
         )
-    if not isinstance(size, int) or not 2 <= size <= LONGEST_TILE:
-        raise InputError(
-            f"size = {size!r} cannot be used: a tile holds 2 to {LONGEST_TILE} amplitudes",
-            quantity="size",
-        )
-    si.require("origin", origin, _METRE, at_least=-2e3, at_most=2e3)
-    si.require("pitch", pitch, _METRE, at_least=_MICROMETRE, at_most=1.0)
-    for name, value in (("origin", origin), ("pitch", pitch)):
-        steps = value / _MICROMETRE
-        if abs(steps - round(steps)) > _ROUNDING * max(1.0, abs(steps)):
-            raise InputError(
-                f"{name} = {si.format_quantity(value, _METRE)} is no whole number of micrometres, "
-                "which the device counts in; round it",
-                quantity=name,
-            )
-    places: si.FloatArray = round(origin / _MICROMETRE) + round(pitch / _MICROMETRE) * np.arange(
-        float(size)
-    )
-    amplitude = _amplitudes(program, places, speed)
+    # Whole micrometres, which is what the device counts in.
+    pitch = max(1, math.ceil((last - first) / ((LONGEST_TILE - 1) * _MICROMETRE)))
+    origin = math.floor(first / _MICROMETRE)
+    size = min(LONGEST_TILE, math.ceil((last - first) / (pitch * _MICROMETRE)) + 1)
+    amplitude = _amplitudes(program, origin + pitch * np.arange(float(size)), speed)
     return TextureTile(
         program=program,
-        origin=origin,
-        pitch=pitch,
+        origin=origin * _MICROMETRE,
+        pitch=pitch * _MICROMETRE,
         amplitude=amplitude,
         made_for=None if law is None else MadeForSpeed.of(law, amplitude, speed),
     )

@@ -22,7 +22,7 @@ from squeezefilm.instruments.device.wire.messages import (
 )
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, tile_of
+from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, TextureTile, tile_of
 from squeezefilm.instruments.session.play.player import FADE, LOOP_LIMIT, Player
 
 PlanOf = Callable[..., LoopPlan]
@@ -149,7 +149,7 @@ def test_a_plan_must_fit_its_limits_and_its_mode(play_of: PlayOf, plan_of: PlanO
     for frequency in (19.99e3, 60.01e3):
         with pytest.raises(InputError, match="frequency"):
             play_of(frequency=frequency)
-    tile = tile_of(plan_of().program, 0.0, 1e-3, 3)
+    tile = tile_of(plan_of().program, (0.0, 2e-3))
     for changes in ({"mode": "tile"}, {"tile": tile}):
         with pytest.raises(InputError, match="mode tile needs a tile"):
             play_of(**changes)
@@ -171,8 +171,9 @@ def test_beginning_a_stream_opens_reports_arms_and_starts(play_of: PlayOf) -> No
 
 
 def test_beginning_a_tile_loads_it_and_follows(play_of: PlayOf, plan_of: PlanOf) -> None:
-    # 0.8 um in grooves of 1 mm from 0, 0.1 um on ridges: 80 V and 10 V.
-    tile = tile_of(plan_of().program, 0.5e-3, 1e-3, 3)
+    # At 100 V per um: 80 V and 10 V.
+    amplitude = np.array([0.8e-6, 0.1e-6, 0.8e-6])
+    tile = TextureTile(plan_of().program, 0.5e-3, 1e-3, amplitude, None)
     bench = Bench(play_of(mode="tile", tile=tile))
     bench.player.begin()
     kinds = [call[0] for call in bench.calls]

@@ -8,6 +8,7 @@ import pytest
 from squeezefilm.core.errors import InputError, UnreachableError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.device.machine.playing import Tile
+from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
 from squeezefilm.instruments.session.loop.plan import LinearDrive
 from squeezefilm.instruments.session.play.plan import tile_of
 from squeezefilm.physics.render.program.inverse import FrictionInverse
@@ -20,6 +21,8 @@ from squeezefilm.physics.render.texture.noise import NoiseField
 from squeezefilm.physics.render.texture.pattern import Pattern
 from squeezefilm.physics.render.texture.shapes import Bump, SineWave, SquareWave
 
+WAY = (0.0, 5e-3)
+
 
 def _program(texture: Composable) -> Program:
     return lower(texture, largest_amplitude=1e-6)
@@ -27,16 +30,17 @@ def _program(texture: Composable) -> Program:
 
 def test_a_tile_holds_the_textures_own_amplitudes() -> None:
     sine = Amplitude(SineWave(4e-3), 0.0, 1e-6)
-    tile = tile_of(_program(sine), -2e-3, 50e-6, 401)
-    x = -2e-3 + 50e-6 * np.arange(401)
+    tile = tile_of(_program(sine), (-2e-3, 18e-3))
+    assert tile.pitch == pytest.approx(40e-6)
+    x = tile.origin + tile.pitch * np.arange(tile.amplitude.size)
     np.testing.assert_allclose(tile.amplitude, sine(x, 0.0, 0.0, 0.0), atol=1e-18)
 
 
 def test_a_device_reads_from_it_what_the_texture_wants() -> None:
     square = Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6)
-    tile = tile_of(_program(square), 0.0, 20e-6, 512)
+    tile = tile_of(_program(square), (0.0, 10e-3))
     volts = tile.voltage(LinearDrive(1e-8, 100.0))
-    device = Tile(0, 20, 512, [round(v * 1e6) for v in volts])
+    device = Tile(0, 20, volts.size, [round(v * 1e6) for v in volts])
     for x in range(0, 10_000, 20):
         wanted = float(square(x * 1e-6 + 1e-9, 0.0, 0.0, 0.0))
         assert device.level(x) == pytest.approx(wanted * 1e14, rel=1e-9)
@@ -55,19 +59,36 @@ def test_a_device_reads_from_it_what_the_texture_wants() -> None:
 )
 def test_what_is_not_steady_along_x_is_refused(pattern: Pattern, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        tile_of(_program(Amplitude(pattern, 0.0, 1e-6)), 0.0, 50e-6, 100)
+        tile_of(_program(Amplitude(pattern, 0.0, 1e-6)), WAY)
 
 
-def test_the_devices_units_and_size_are_kept() -> None:
+@pytest.mark.parametrize(
+    "way", [(0.0, 0.1), (0.0204, 0.0306), (-0.05, 0.05), (0.01, 0.010001), (1e-3, 1.51e-3)]
+)
+def test_a_tile_covers_the_way_as_finely_as_it_can(way: tuple[float, float]) -> None:
+    first, last = way
+    tile = tile_of(_program(Amplitude(SquareWave(2e-3), 0.0, 1e-6)), way)
+    origin, pitch, size = tile.origin, tile.pitch, tile.amplitude.size
+    for length in (origin, pitch):
+        assert length * 1e6 == pytest.approx(round(length * 1e6))
+    assert first - 1e-6 < origin <= first + 1e-12
+    assert 2 <= size <= LONGEST_TILE
+    # Up to the last micrometre, and no finer pitch would reach it.
+    assert last - 1e-6 <= origin + (size - 1) * pitch + 1e-12
+    assert origin + (size - 2) * pitch < last + 1e-9
+    assert pitch <= 1.001e-6 or (LONGEST_TILE - 1) * (pitch - 1e-6) < last - first
+
+
+@pytest.mark.parametrize("way", [(0.1, 0.0), (0.02, 0.02)])
+def test_a_way_to_nowhere_has_no_tile(way: tuple[float, float]) -> None:
+    with pytest.raises(InputError, match="covers nothing"):
+        tile_of(_program(Amplitude(SquareWave(2e-3), 0.0, 1e-6)), way)
+
+
+def test_a_drive_that_is_too_weak_for_a_tile_is_refused() -> None:
     program = _program(Amplitude(SquareWave(2e-3), 0.0, 1e-6))
-    with pytest.raises(InputError, match="2 to 512"):
-        tile_of(program, 0.0, 50e-6, 513)
-    with pytest.raises(InputError, match="whole number of micrometres"):
-        tile_of(program, 0.0, 50.5e-6, 100)
-    with pytest.raises(InputError, match="pitch"):
-        tile_of(program, 0.0, 0.0, 100)
     with pytest.raises(InputError, match="amplitude"):
-        tile_of(program, 0.0, 50e-6, 100).voltage(LinearDrive(1e-8, 10.0))
+        tile_of(program, WAY).voltage(LinearDrive(1e-8, 10.0))
 
 
 def _law(amplitude: FloatArray, speed: FloatArray) -> FloatArray:
@@ -87,9 +108,9 @@ def test_a_tile_of_friction_is_made_for_one_speed_and_says_what_others_cost() ->
     program = lower(texture, inverse=_inverse())
     assert program.wanted_depends_on == {"x"}
     for speed in (0.04, 0.16):
-        tile = tile_of(program, 0.0, 50e-6, 201, speed=speed, law=_law)
-        places = 50e-6 * np.arange(201)
-        met = _law(tile.amplitude, np.full(201, speed))
+        tile = tile_of(program, WAY, speed=speed, law=_law)
+        places = tile.pitch * np.arange(tile.amplitude.size)
+        met = _law(tile.amplitude, np.full(places.size, speed))
         np.testing.assert_allclose(met, texture(places, 0.0, speed, 0.0), atol=1e-3)
         made = tile.made_for
         assert made is not None
@@ -97,17 +118,17 @@ def test_a_tile_of_friction_is_made_for_one_speed_and_says_what_others_cost() ->
         least = np.max(tile.amplitude)
         for error, pace in ((made.error_at_half, speed / 2), (made.error_at_double, 2 * speed)):
             assert error == pytest.approx(float(_law(least, pace) - _law(least, speed)), rel=0.05)
-    assert tile_of(program, 0.0, 50e-6, 201).made_for is None
+    assert tile_of(program, WAY).made_for is None
     with pytest.raises(InputError, match="speed"):
-        tile_of(program, 0.0, 50e-6, 201, speed=0.0)
+        tile_of(program, WAY, speed=0.0)
 
 
 def test_a_texture_that_asks_for_the_speed_is_no_tile_even_where_friction_does_too() -> None:
     gated = RelativeFriction(SpeedGate(above=0.01), 0.5, 0.9)
     with pytest.raises(InputError, match="depend on speed,"):
-        tile_of(lower(gated, inverse=_inverse()), 0.0, 50e-6, 100)
+        tile_of(lower(gated, inverse=_inverse()), WAY)
 
 
 def test_a_texture_out_of_reach_makes_no_tile() -> None:
-    with pytest.raises(UnreachableError, match="100 of 100"):
-        tile_of(_program(Amplitude.constant(2e-6)), 0.0, 50e-6, 100)
+    with pytest.raises(UnreachableError, match=r"at (50\d) of \1"):
+        tile_of(_program(Amplitude.constant(2e-6)), WAY)
