@@ -28,7 +28,7 @@ from squeezefilm.core.kit.page_style import (
 )
 from squeezefilm.instruments.report.terminal import play_rows, play_warnings
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.lateness import Lateness, class_ends
+from squeezefilm.instruments.session.loop.lateness import class_ends
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -143,28 +143,27 @@ def amplitude(session: PlayedSession) -> Figure:
 @style.drawn
 def lateness(session: PlayedSession) -> Figure:
     """Figure of how late ticks were made, and how long samples wait for their command."""
-    said = session.last("loop").get("lateness")
-    if not said or not said["made"]:
+    late = session.last("loop").get("lateness")
+    if not late or not late["made"]:
         return style.message_figure("The loop could not say how late it was", "It made no tick.")
-    ticks = Lateness.from_json(said)
-    due = ticks.made + ticks.lost
-    lost = f"{100 * ticks.lost / max(due, 1):.2g} % of {due} ticks were lost"
-    if not ticks.lost:
+    rate, counts, due = late["rate_Hz"], np.array(late["counts"]), late["made"] + late["lost"]
+    lost = f"{100 * late['lost'] / due:.2g} % of {due} ticks were lost"
+    if not late["lost"]:
         lost = f"None of {due} ticks was lost"
     figure = style.new_figure(
-        f"{lost}; half are made within {shown(ticks.p50, S, 2)}, 99.9 % within "
-        f"{shown(ticks.p99_9, S, 2)}",
-        f"loop at {shown(ticks.rate, HZ, 3)}; a tick is lost when the next is due before it began",
+        f"{lost}; half are made within {shown(late['p50_s'], S, 2)}, 99.9 % within "
+        f"{shown(late['p99_9_s'], S, 2)}",
+        f"loop at {shown(rate, HZ, 3)}; a tick is lost when the next is due before it began",
         3.8,
     )
     left, right = figure.subplots(1, 2)
     # The first class, whatever is below 100 ns, is drawn as wide as the next.
     ends = 1e6 * class_ends()[:-1]
     edges = np.concatenate([[ends[0] ** 2 / ends[1]], ends])
-    left.stairs(ticks.counts[:-1], edges, fill=True, color=style.BLUE)
-    used = np.flatnonzero(ticks.counts[:-1])
-    left.set_xlim(edges[max(int(used[0]) - 2, 0)], max(2e6 / ticks.rate, 1.5 * edges[used[-1] + 1]))
-    left.axvline(1e6 / ticks.rate, **style.REFERENCE, label="a period")
+    left.stairs(counts[:-1], edges, fill=True, color=style.BLUE)
+    used = np.flatnonzero(counts[:-1])
+    left.set_xlim(edges[max(int(used[0]) - 2, 0)], max(2e6 / rate, 1.5 * edges[used[-1] + 1]))
+    left.axvline(1e6 / rate, **style.REFERENCE, label="a period")
     left.set(xscale="log", yscale="log", xlabel="lateness (µs)", ylabel="ticks")
     left.set_ylim(0.7, None)
     style.plain_log(left.xaxis, left.yaxis)

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import to_json
 
 CLASSES_PER_DECADE = 20
@@ -36,7 +34,6 @@ def class_ends() -> si.SecondArray:
     return np.append(_FIRST_NS * 1e-9 * 10.0**decades, math.inf)
 
 
-@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class Lateness:
     """Lateness of ticks, and the number of those that were not made at all.
@@ -50,25 +47,13 @@ class Lateness:
         longest: greatest time by which the loop was late at any moment (s), those that cost ticks
             included.
         counts: ticks made in each class, see `class_ends`.
-
-    Raises:
-        InputError: counts of another shape, below 0 or with another sum than `made`.
     """
 
-    rate: Annotated[si.Hertz, si.Above(0.0)]
+    rate: si.Hertz
     made: int
     lost: int
-    longest: Annotated[si.Second, si.AtLeast(0.0)]
-    counts: Annotated[NDArray[np.int64], si.Unit("1")]
-
-    def __post_init__(self) -> None:
-        if self.counts.shape != (CLASSES,) or np.any(self.counts < 0):
-            raise InputError(f"counts must be {CLASSES} numbers at least 0")
-        if int(np.sum(self.counts)) != self.made or self.lost < 0:
-            raise InputError(
-                f"made = {self.made} and lost = {self.lost} do not fit counts of "
-                f"{int(np.sum(self.counts))} ticks"
-            )
+    longest: si.Second
+    counts: NDArray[np.int64]
 
     @property
     def share_made(self) -> si.Dimensionless:
@@ -80,11 +65,7 @@ class Lateness:
         """The lateness (s) that a share of the ticks made did not exceed; NaN if none was made.
 
         The upper end of its class, at most 12 % too high; never above `longest`.
-
-        Raises:
-            InputError: a share not above 0 or above 1.
         """
-        si.require("share", share, above=0.0, at_most=1.0)
         if self.made == 0:
             return math.nan
         place = int(np.searchsorted(np.cumsum(self.counts), math.ceil(share * self.made)))
@@ -115,17 +96,3 @@ class Lateness:
             "p99_9_s": self.p99_9,
         }
         return {**values, **to_json(figures)}
-
-    @classmethod
-    def from_json(cls, values: Mapping[str, Any]) -> Lateness:
-        """Lateness that `to_json` wrote. Raises `InputError` for anything else."""
-        try:
-            return cls(
-                rate=float(values["rate_Hz"]),
-                made=int(values["made"]),
-                lost=int(values["lost"]),
-                longest=float(values["longest_s"]),
-                counts=np.array(values["counts"], dtype=np.int64),
-            )
-        except (KeyError, TypeError, ValueError) as error:
-            raise InputError(f"this is no lateness as a session writes it: {error!r}") from error

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import json
 import math
 
 import numpy as np
 import pytest
 
-from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.session.loop.lateness import (
     CLASSES,
     Lateness,
@@ -43,14 +41,12 @@ def test_a_quantile_is_never_too_low_and_at_most_one_class_too_high(share: float
     assert true * (1 - 1e-12) <= found <= true * 10 ** (1 / 20) * (1 + 1e-12)
 
 
-def test_figures_and_their_json_come_back() -> None:
+def test_figures_are_in_its_json() -> None:
     lateness = _of(np.array([50.0, 2e3, 3e6]), lost=2)
     assert lateness.share_made == 3 / 5
     text = lateness.to_json()
     assert text["p99_9_s"] == lateness.p99_9 == 3e-3
     assert text["rate_Hz"] == 1000.0
-    again = Lateness.from_json(json.loads(json.dumps(text)))
-    assert again.to_json() == text
 
 
 def test_before_the_first_tick_nothing_is_a_number() -> None:
@@ -58,15 +54,3 @@ def test_before_the_first_tick_nothing_is_a_number() -> None:
     assert math.isnan(nothing.p50)
     assert math.isnan(nothing.share_made)
     assert nothing.to_json()["p50_s"] is None
-
-
-def test_what_does_not_fit_is_refused() -> None:
-    counts = np.zeros(CLASSES, dtype=np.int64)
-    with pytest.raises(InputError, match="do not fit"):
-        Lateness(1e3, 1, 0, 0.0, counts)
-    with pytest.raises(InputError, match="at least 0"):
-        Lateness(1e3, 0, 0, 0.0, counts[:-1])
-    with pytest.raises(InputError, match="no lateness"):
-        Lateness.from_json({"rate_Hz": 1e3})
-    with pytest.raises(InputError, match="share"):
-        Lateness(1e3, 0, 0, 0.0, counts).quantile(0.0)
