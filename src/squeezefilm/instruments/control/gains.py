@@ -5,16 +5,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, get_type_hints
 
 import numpy as np
 from scipy.optimize import least_squares
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.instruments.control.plate_loop import LOCKED, ONE, LoopGains, LoopState
+from squeezefilm.instruments.control.plate_loop import LOCKED, ONE, SHARE, LoopGains, LoopState
 
-_SHARE = 1 << 24
 _TURN = 1 << 32
 _SWEEP_STEPS = 3  # of a half-bandwidth while the plate answers, in time constants
 _FASTEST_SWEEP = 20e3  # Hz/s
@@ -222,16 +221,16 @@ def loop_gains(plate: IdentifiedPlate, aims: LoopAims) -> LoopGains:
     load = 1 - math.exp(-2 * math.pi * aims.load_bandwidth * step)
     sweep = min(plate.half_bandwidth / (_SWEEP_STEPS * plate.time_constant), _FASTEST_SWEEP)
     gains = LoopGains(
-        keep=round(keep * _SHARE),
-        take=_SHARE - round(keep * _SHARE),
+        keep=round(keep * SHARE),
+        take=SHARE - round(keep * SHARE),
         turnover=round(ONE / (1 - keep)),
-        ratio=round(plate.ratio * _SHARE),
+        ratio=round(plate.ratio * SHARE),
         inverse=round(ONE / plate.ratio),
         correction=round((keep - pole) / (1 - keep) * ONE),
         half_bandwidth=round(plate.half_bandwidth * 1e3),
-        track_share=round(track * _SHARE),
-        rate_share=round(track**2 / 4 * _SHARE),
-        load_share=round(load * _SHARE),
+        track_share=round(track * SHARE),
+        rate_share=round(track**2 / 4 * SHARE),
+        load_share=round(load * SHARE),
         lowest_frequency=round(aims.lowest_frequency * 1e3),
         highest_frequency=round(aims.highest_frequency * 1e3),
         sweep=max(1, round(sweep * step * 256e3)),
@@ -258,37 +257,15 @@ def loop_gains(plate: IdentifiedPlate, aims: LoopAims) -> LoopGains:
     return gains
 
 
-_ANY = (1 << 31) - 1
 _MENDED = {
     "half_bandwidth": (1e3, " Hz", "it is frequency/(2 quality_factor): take a plate that rings"),
     "highest_frequency": (1e3, " Hz", "lower it"),
     "search_level": (1e6, " V", "raise search_voltage"),
 }
 """Gains that can leave their bounds: counts in a unit, the unit, what to do."""
-_BOUNDS = {
-    "keep": (0, _SHARE),
-    "take": (1, _SHARE),
-    "turnover": (ONE, _ANY),
-    "ratio": (1, 4 * _SHARE),
-    "inverse": (1, _ANY),
-    "correction": (-_ANY - 1, _ANY),
-    "half_bandwidth": (1, 1 << 24),
-    "track_share": (0, _SHARE),
-    "rate_share": (0, _SHARE),
-    "load_share": (0, _SHARE),
-    "lowest_frequency": (1, _ANY),
-    "highest_frequency": (1, _ANY),
-    "sweep": (1, _ANY),
-    "turn": (-_ANY - 1, _ANY),
-    "reference": (1, _ANY),
-    "turn_per_mhz": (-_ANY - 1, _ANY),
-    "lowest_level": (0, 0),
-    "highest_level": (1, _ANY),
-    "search_level": (1, _ANY),
-    "floor": (1, 1 << 24),
-    "soft": (0, 1 << 24),
-    "heaviest": (0, 64 * ONE),
-    "patience": (4, 1 << 20),
+_BOUNDS: dict[str, tuple[int, int]] = {
+    name: hint.__metadata__[0]
+    for name, hint in get_type_hints(LoopGains, include_extras=True).items()
 }
 
 
@@ -303,7 +280,7 @@ def within_bounds(
     pairs = zip(gains, _BOUNDS.values(), strict=True)
     return (
         all(low <= value <= high for value, (low, high) in pairs)
-        and gains.keep + gains.take == _SHARE
+        and gains.keep + gains.take == SHARE
         and lowest_frequency <= gains.lowest_frequency <= gains.reference
         and gains.reference <= gains.highest_frequency <= highest_frequency
         and gains.search_level <= gains.highest_level <= highest_level
@@ -314,7 +291,7 @@ def within_bounds(
 def tracking_bandwidth(gains: LoopGains, interval: Annotated[si.Second, si.Above(0.0)]) -> si.Hertz:
     """ω/2π (Hz) of the frequency's loop, whose error follows a drift r (Hz/s) as 4 r/ω² s² e^…:
     at most 4 r/(e ω), and 0 once it is steady."""
-    return -math.log(1 - gains.track_share / _SHARE) / (2 * math.pi * interval)
+    return -math.log(1 - gains.track_share / SHARE) / (2 * math.pi * interval)
 
 
 @si.checked_numbers

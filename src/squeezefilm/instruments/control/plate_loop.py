@@ -29,7 +29,7 @@ mHz, voltages in µV, both finer where said.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from squeezefilm.core.compiled import compiled
 
@@ -80,11 +80,18 @@ SEARCHING, PROBING, LOCKED, NOT_FOUND, WRONG_SIGN = range(5)
 LEVEL_HELD, FREQUENCY_HELD = 1, 2
 """Flags of a command that a limit held back."""
 ONE = 1 << 16
+SHARE = 1 << 24
 MOST_PICKUP = 1 << 24  # µV
 _MOST = MOST_PICKUP << 4
 _FINE = 8  # bits of a mHz
 _LARGEST_LOAD = 64 * ONE
 _LEAST_LOAD = -(ONE // 2)
+
+
+_ANY = (1 << 31) - 1
+Share = Annotated[int, (0, SHARE)]
+Signed = Annotated[int, (-_ANY - 1, _ANY)]
+Positive = Annotated[int, (1, _ANY)]
 
 
 class LoopGains(NamedTuple):
@@ -97,32 +104,32 @@ class LoopGains(NamedTuple):
     step. `turn` (2^32 a turn) is the pickup's phase at `reference`, `turn_per_mhz` (2^40 a turn)
     its slope. `lowest_level`, `highest_level`, `search_level`, `floor` and `soft` are in µV:
     a pickup below `floor` tells nothing, one at `soft` is believed half. `patience` is how many
-    steps something must be wrong.
+    steps something must be wrong. Each has the least and the most that a device counts.
     """
 
-    keep: int
-    take: int
-    turnover: int
-    ratio: int
-    inverse: int
-    correction: int
-    half_bandwidth: int
-    track_share: int
-    rate_share: int
-    load_share: int
-    lowest_frequency: int
-    highest_frequency: int
-    sweep: int
-    turn: int
-    reference: int
-    turn_per_mhz: int
-    lowest_level: int
-    highest_level: int
-    search_level: int
-    floor: int
-    soft: int
-    heaviest: int
-    patience: int
+    keep: Share
+    take: Annotated[int, (1, SHARE)]
+    turnover: Annotated[int, (ONE, _ANY)]
+    ratio: Annotated[int, (1, 4 * SHARE)]
+    inverse: Positive
+    correction: Signed
+    half_bandwidth: Annotated[int, (1, 1 << 24)]
+    track_share: Share
+    rate_share: Share
+    load_share: Share
+    lowest_frequency: Positive
+    highest_frequency: Positive
+    sweep: Positive
+    turn: Signed
+    reference: Positive
+    turn_per_mhz: Signed
+    lowest_level: Annotated[int, (0, 0)]
+    highest_level: Positive
+    search_level: Positive
+    floor: Annotated[int, (1, 1 << 24)]
+    soft: Annotated[int, (0, 1 << 24)]
+    heaviest: Annotated[int, (0, 64 * ONE)]
+    patience: Annotated[int, (4, 1 << 20)]
 
 
 class LoopState(NamedTuple):
