@@ -53,7 +53,6 @@ JUDGING = "the record"
 STROKE = "60 mm/s over 4 cm"
 DURATION: si.Second = 4.0
 _MARGIN: si.Metre = 2e-3
-_REPLAY_PERIOD: si.Second = 1e-3
 _LIFT: si.Second = 0.2
 _STROKED: si.Second = 6.0
 """For which a person strokes a real device's sensor."""
@@ -351,13 +350,11 @@ def _eyes(sensor: str) -> SensorModel:
 
 
 def _replay(sensor: str) -> Callable[[Callable[[], si.Second]], ReplaySensor] | None:
-    """Make the sensor that plays a recorded motion by the loop's clock, at 1 kHz."""
+    """Make the sensor that plays a recorded motion by the loop's clock."""
     if not sensor.startswith("replay:"):
         return None
     path = read_trajectory(sensor.removeprefix("replay:"))
-    time = np.arange(0.0, path.duration, _REPLAY_PERIOD)
-    x, y = path.place(time)
-    return lambda clock: ReplaySensor(time, x, y, clock=clock)
+    return lambda clock: ReplaySensor(path.place, path.duration, clock)
 
 
 @contextlib.contextmanager
