@@ -13,7 +13,7 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.machine.device import Machine
-from squeezefilm.instruments.device.serial_ports import SerialDrive
+from squeezefilm.instruments.device.ports import SerialDrive
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import State
 from squeezefilm.instruments.device.wire.link import Link

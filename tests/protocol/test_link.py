@@ -13,8 +13,7 @@ from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.limits import DeviceLimits
-from squeezefilm.instruments.device.ports import Drive
-from squeezefilm.instruments.device.serial_ports import SerialDrive
+from squeezefilm.instruments.device.ports import Drive, SerialDrive
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.device.wire.link import Link

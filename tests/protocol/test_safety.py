@@ -10,8 +10,8 @@ import pytest
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.device.machine.limits import level_of
+from squeezefilm.instruments.device.ports import Use, require_safe_drive
 from squeezefilm.instruments.device.wire.messages import limits_message
-from squeezefilm.instruments.device.wire.safety import Use, require_safe_drive
 
 from .adversary import LIMITS
 

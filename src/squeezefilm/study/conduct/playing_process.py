@@ -33,10 +33,9 @@ from squeezefilm.instruments.bench.play import device_stream
 from squeezefilm.instruments.bench.resonance_sweep import sweep_resonance
 from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
 from squeezefilm.instruments.device.host import DeviceHost
-from squeezefilm.instruments.device.serial_ports import SerialDrive
+from squeezefilm.instruments.device.ports import SerialDrive, require_safe_drive
 from squeezefilm.instruments.device.wire.frames import State
 from squeezefilm.instruments.device.wire.link import Link
-from squeezefilm.instruments.device.wire.safety import require_safe_drive
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.play.plan import Ending, PlayView

@@ -25,16 +25,14 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import DeviceError, LoopError
 from squeezefilm.core.results import to_json
 from squeezefilm.instruments.device.host import DeviceHost
-from squeezefilm.instruments.device.ports import Sensor
+from squeezefilm.instruments.device.ports import Sensor, SerialDrive, Use, require_safe_drive
 from squeezefilm.instruments.device.priority import (
     PLAYERS_PRIORITY,
     collect_garbage_first,
     real_time_granted,
 )
-from squeezefilm.instruments.device.serial_ports import SerialDrive
 from squeezefilm.instruments.device.wire.frames import Fault
 from squeezefilm.instruments.device.wire.link import Link
-from squeezefilm.instruments.device.wire.safety import Use, require_safe_drive
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.instruments.session.loop.ring import ring_put_all, taken
