@@ -38,7 +38,7 @@ from squeezefilm.instruments.session.loop import shared
 from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.process import PRIORITY, LoopProcess, lateness_in
-from squeezefilm.instruments.session.loop.ring import ring_put_all, store_release, taken
+from squeezefilm.instruments.session.loop.shared import ring_put_all, store_release, taken
 from squeezefilm.instruments.session.loop.worker import Orders, run_loop
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ

@@ -12,9 +12,8 @@ from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.pacing import due_ns, make_due_tick
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
 from squeezefilm.instruments.session.loop.process import lateness_in, sample_block
-from squeezefilm.instruments.session.loop.ring import ring_put_all, taken
 from squeezefilm.instruments.session.loop.rows import MUTED
-from squeezefilm.instruments.session.loop.shared import private_views
+from squeezefilm.instruments.session.loop.shared import private_views, ring_put_all, taken
 
 
 @compiled()

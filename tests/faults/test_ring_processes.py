@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from squeezefilm.instruments.session.loop import shared
-from squeezefilm.instruments.session.loop.ring import ring_take
+from squeezefilm.instruments.session.loop.shared import ring_take
 
 WRITER = """
 import mmap, sys
 import numpy as np
 from squeezefilm.instruments.session.loop import shared
-from squeezefilm.instruments.session.loop.ring import ring_put_all
+from squeezefilm.instruments.session.loop.shared import ring_put_all
 
 total = int(sys.argv[2])
 with open(sys.argv[1], "r+b") as file:

@@ -8,7 +8,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from squeezefilm.instruments.session.loop.ring import (
+from squeezefilm.instruments.session.loop.shared import (
     COUNTERS_SIZE,
     DROPPED,
     ring_put,

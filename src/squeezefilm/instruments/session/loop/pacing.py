@@ -23,7 +23,7 @@ from squeezefilm.instruments.session.loop import clock, shared
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.lateness import lateness_class
-from squeezefilm.instruments.session.loop.ring import load_acquire, store_release
+from squeezefilm.instruments.session.loop.shared import load_acquire, store_release
 from squeezefilm.instruments.session.loop.tick import make_tick
 
 MARGIN: si.Second = 50e-6

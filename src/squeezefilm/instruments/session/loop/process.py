@@ -27,14 +27,14 @@ from squeezefilm.core.errors import InputError, LoopError, SqueezefilmWarning
 from squeezefilm.instruments.session.loop import shared
 from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.loop.ring import (
+from squeezefilm.instruments.session.loop.rows import COMMAND_TIME, SAMPLE_COLUMNS
+from squeezefilm.instruments.session.loop.shared import (
     DROPPED,
     load_acquire,
     ring_put_all,
     store_release,
     taken,
 )
-from squeezefilm.instruments.session.loop.rows import COMMAND_TIME, SAMPLE_COLUMNS
 from squeezefilm.instruments.session.loop.worker import Orders
 
 PRIORITY = 50

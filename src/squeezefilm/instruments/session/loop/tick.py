@@ -15,8 +15,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.ring import DROPPED, ring_put, ring_take
-from squeezefilm.instruments.session.loop.shared import SAMPLES
+from squeezefilm.instruments.session.loop.shared import DROPPED, SAMPLES, ring_put, ring_take
 from squeezefilm.physics.render.motion import kernel as motion_kernel
 from squeezefilm.physics.render.motion.kernel import motion_at, motion_step
 from squeezefilm.physics.render.program import layout

@@ -26,7 +26,7 @@ from squeezefilm.instruments.session.loop.pacing import (
     silence,
 )
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.instruments.session.loop.ring import load_acquire, store_release
+from squeezefilm.instruments.session.loop.shared import load_acquire, store_release
 
 # Linux: <sys/prctl.h> and <sys/mman.h>.
 _PR_SET_TIMERSLACK = 29

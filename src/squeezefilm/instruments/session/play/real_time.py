@@ -35,9 +35,8 @@ from squeezefilm.instruments.device.wire.frames import Fault
 from squeezefilm.instruments.device.wire.link import Link
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.loop.process import LoopProcess
-from squeezefilm.instruments.session.loop.ring import ring_put_all, taken
 from squeezefilm.instruments.session.loop.rows import SAMPLE_COLUMNS
-from squeezefilm.instruments.session.loop.shared import private_views
+from squeezefilm.instruments.session.loop.shared import private_views, ring_put_all, taken
 from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, PlayView
 from squeezefilm.instruments.session.play.player import FADE, Player
 from squeezefilm.instruments.session.play.usability import Usability

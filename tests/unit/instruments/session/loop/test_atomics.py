@@ -10,7 +10,7 @@ import numba
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop.ring import (
+from squeezefilm.instruments.session.loop.shared import (
     COUNTERS_SIZE,
     load_acquire,
     ring_put,

@@ -22,7 +22,7 @@ from squeezefilm.instruments.session.loop.pacing import (
     silence,
 )
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.instruments.session.loop.ring import ring_take
+from squeezefilm.instruments.session.loop.shared import ring_take
 from squeezefilm.physics.render.resonator import kernel as compensation_kernel
 
 PlanOf = Callable[..., LoopPlan]

@@ -19,7 +19,7 @@ from squeezefilm.instruments.session.loop import process, shared
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.process import LoopProcess
-from squeezefilm.instruments.session.loop.ring import ring_put_all, ring_take
+from squeezefilm.instruments.session.loop.shared import ring_put_all, ring_take
 
 Plans = Callable[..., LoopPlan]
 # Called as the worker is: -m MODULE DESCRIPTOR, with the orders on standard input.

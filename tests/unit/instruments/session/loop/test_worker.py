@@ -20,7 +20,7 @@ import pytest
 from squeezefilm.instruments.session.loop import clock, shared, worker
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.loop.ring import ring_take
+from squeezefilm.instruments.session.loop.shared import ring_take
 from squeezefilm.instruments.session.loop.worker import Orders, main, memory_locked, run_loop
 
 PlanOf = Callable[..., LoopPlan]
