@@ -1,11 +1,11 @@
 """Pacing of ticks: on their deadlines, late ones counted, lost ones never made up for.
 
-Tick k is due k/rate after the loop began. The loop sleeps until a margin before that and spins
-through the rest, so that a sleep which ends late by less than the margin costs nothing; the margin
-is at most `MOST_SPIN` of a period, so at least half of every period is slept. Without real-time
-priority it does not spin: the kernel counts spinning as work, and on a busy machine lets the loop
-wait the longer for it (measured at 5 kHz beside five other programs on two processors: 95 % of
-ticks made without spinning, 83 % with).
+Tick k is due k/rate after the loop began, by CLOCK_MONOTONIC. The loop sleeps until a margin before
+that and spins through the rest, so that a sleep which ends late by less than the margin costs
+nothing; the margin is at most `MOST_SPIN` of a period, so at least half of every period is slept.
+Without real-time priority it does not spin: the kernel counts spinning as work, and on a busy
+machine lets the loop wait the longer for it (measured at 5 kHz beside five other programs on two
+processors: 95 % of ticks made without spinning, 83 % with).
 
 A loop that comes after the next tick was due makes one tick, the latest that is due; the others are
 counted as lost. So no burst follows a stop, however long it was.
@@ -13,24 +13,92 @@ counted as lost. So no burst follows a stop, however long it was.
 
 from __future__ import annotations
 
+import ctypes
 import os
+import sys
 import time
 from typing import Any
 
+import numba
+import numpy as np
+from numba import types
+
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.instruments.session.loop import clock, shared
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.loop import shared
 from squeezefilm.instruments.session.loop.lateness import lateness_class
 from squeezefilm.instruments.session.loop.shared import load_acquire, store_release
 from squeezefilm.instruments.session.loop.tick import make_tick
+
+# On 64-bit Linux a compiled loop calls `clock_gettime` and `clock_nanosleep` (to a point in time,
+# TIMER_ABSTIME) of the C library themselves, by name, so that numba can cache it. Elsewhere, and
+# where numba's compiler is off, `COMPILED_CLOCK` is False: the loop is then paced by Python
+# (`portable_loop`), whose lateness is that of `time.sleep`, which under load of the same
+# process means that it cannot keep 1 kHz. Both clocks are what `time.monotonic_ns` reads on Linux.
+_MONOTONIC, _THREAD_CPU_TIME, _ABSOLUTE = 1, 3, 1
+_SECOND_NS = 1_000_000_000
+
+
+def _has_symbols(*names: str) -> bool:
+    # Where numba's compiler will look for them: among what this process has loaded.
+    library = ctypes.CDLL(None)
+    return all(hasattr(library, name) for name in names)
+
+
+COMPILED_CLOCK: bool = (
+    sys.platform == "linux"
+    and sys.maxsize > 2**32
+    and not numba.config.DISABLE_JIT  # type: ignore[attr-defined]
+    and _has_symbols("clock_gettime", "clock_nanosleep", "getppid")
+)
+"""True where compiled code can read the clock and sleep here."""
+
+_clock_gettime: Any = types.ExternalFunction("clock_gettime", types.intc(types.intc, types.uintp))
+_clock_nanosleep: Any = types.ExternalFunction(
+    "clock_nanosleep", types.intc(types.intc, types.intc, types.uintp, types.uintp)
+)
+_getppid: Any = types.ExternalFunction("getppid", types.intc())
+
+
+def new_timespec() -> si.Array:
+    """Room for one `struct timespec`, which the functions here work in: int64, shape (2,)."""
+    return np.zeros(2, dtype=np.int64)
+
+
+@compiled()
+def monotonic_ns(timespec: si.Array) -> int:
+    """CLOCK_MONOTONIC (ns). Needs `COMPILED_CLOCK`."""
+    _clock_gettime(_MONOTONIC, timespec.ctypes.data)
+    return int(timespec[0] * _SECOND_NS + timespec[1])
+
+
+@compiled()
+def thread_cpu_ns(timespec: si.Array) -> int:
+    """Processor time of the calling thread (ns). Needs `COMPILED_CLOCK`."""
+    _clock_gettime(_THREAD_CPU_TIME, timespec.ctypes.data)
+    return int(timespec[0] * _SECOND_NS + timespec[1])
+
+
+@compiled()
+def sleep_until_ns(timespec: si.Array, when: int) -> None:
+    """Sleep until CLOCK_MONOTONIC is `when` (ns); a signal ends it. Needs `COMPILED_CLOCK`."""
+    timespec[0] = when // _SECOND_NS
+    timespec[1] = when % _SECOND_NS
+    _clock_nanosleep(_MONOTONIC, _ABSOLUTE, timespec.ctypes.data, 0)
+
+
+@compiled()
+def parent_id() -> int:
+    """The process that started this one, or who took it over. Needs `COMPILED_CLOCK`."""
+    return int(_getppid())
+
 
 MARGIN: si.Second = 50e-6
 """Time before a deadline at which the loop wakes, where half a period allows it."""
 MOST_SPIN: si.Dimensionless = 0.5
 """The largest share of a period that may be spun through."""
-_SECOND_NS = 1e9
 _PARENT_LOOKED_AT_NS = 5_000_000
 
 
@@ -88,33 +156,33 @@ def silence(arrays: Any, control: si.Array, now: int, timeout: int) -> None:
 def compiled_loop(
     arrays: Any, memory: Any, timespec: si.Array, margin: int, timeout: int, parent: int
 ) -> None:
-    """Tick until the host says stop or the parent is gone; needs `clock.COMPILED_CLOCK`.
+    """Tick until the host says stop or the parent is gone; needs `COMPILED_CLOCK`.
 
     `margin` and `timeout` are in ns; `parent` is the process whose end ends the loop, 0 for none.
     """
     control, period = memory.control, arrays.settings[at.DT]
     epoch = load_acquire(control, shared.EPOCH)
-    begun, looked = clock.thread_cpu_ns(timespec), 0
+    begun, looked = thread_cpu_ns(timespec), 0
     while load_acquire(control, shared.STOP) == 0:
         due = due_ns(control[shared.NEXT], period)
-        now = clock.monotonic_ns(timespec) - epoch
+        now = monotonic_ns(timespec) - epoch
         if now < due - margin:
-            clock.sleep_until_ns(timespec, epoch + due - margin)
-            now = clock.monotonic_ns(timespec) - epoch
+            sleep_until_ns(timespec, epoch + due - margin)
+            now = monotonic_ns(timespec) - epoch
         # A signal may have ended the sleep early; never spin through more than the margin.
         if due - margin <= now < due:
             woken = now
             while now < due:
-                now = clock.monotonic_ns(timespec) - epoch
+                now = monotonic_ns(timespec) - epoch
             control[shared.SPUN] += due - woken
         silence(arrays, control, now, timeout)
         make_due_tick(arrays, memory, now)
         if now - looked > _PARENT_LOOKED_AT_NS:
             looked = now
-            control[shared.CPU] = clock.thread_cpu_ns(timespec) - begun
-            if parent != 0 and clock.parent_id() != parent:
+            control[shared.CPU] = thread_cpu_ns(timespec) - begun
+            if parent != 0 and parent_id() != parent:
                 break
-    control[shared.CPU] = clock.thread_cpu_ns(timespec) - begun
+    control[shared.CPU] = thread_cpu_ns(timespec) - begun
 
 
 def portable_loop(arrays: Any, memory: Any, timeout: int, parent: int) -> None:

@@ -17,11 +17,13 @@ import time
 from dataclasses import dataclass
 
 from squeezefilm.instruments.device.priority import collect_garbage_first, real_time_granted
-from squeezefilm.instruments.session.loop import clock, shared
+from squeezefilm.instruments.session.loop import shared
 from squeezefilm.instruments.session.loop.pacing import (
+    COMPILED_CLOCK,
     compiled_loop,
     make_due_tick,
     margin_ns,
+    new_timespec,
     portable_loop,
     silence,
 )
@@ -65,9 +67,9 @@ def run_loop(orders: Orders, memory: shared.Shared) -> None:
     Returns when the host said stop, or when the parent is gone.
     """
     plan, control = orders.plan, memory.control
-    timespec = clock.new_timespec()
+    timespec = new_timespec()
     timeout = round(plan.host_timeout * 1e9)
-    compiled = orders.compiled_clock and clock.COMPILED_CLOCK
+    compiled = orders.compiled_clock and COMPILED_CLOCK
     # Compile, or load what was compiled, on memory and states of its own.
     rehearsal = shared.private_views()
     if compiled:

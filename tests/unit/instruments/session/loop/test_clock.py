@@ -9,8 +9,8 @@ import time
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop import clock
-from squeezefilm.instruments.session.loop.clock import (
+from squeezefilm.instruments.session.loop import pacing
+from squeezefilm.instruments.session.loop.pacing import (
     monotonic_ns,
     new_timespec,
     parent_id,
@@ -18,17 +18,17 @@ from squeezefilm.instruments.session.loop.clock import (
     thread_cpu_ns,
 )
 
-needs_compiled_clock = pytest.mark.skipif(not clock.COMPILED_CLOCK, reason="no compiled clock")
+needs_compiled_clock = pytest.mark.skipif(not pacing.COMPILED_CLOCK, reason="no compiled clock")
 
 
 def test_linux_has_a_compiled_clock() -> None:
-    assert clock.COMPILED_CLOCK is (sys.platform == "linux" and sys.maxsize > 2**32)
+    assert pacing.COMPILED_CLOCK is (sys.platform == "linux" and sys.maxsize > 2**32)
 
 
 def test_every_symbol_must_be_there() -> None:
-    assert clock._has_symbols("malloc", "free")
-    assert not clock._has_symbols("malloc", "no_such_function_anywhere")
-    assert not clock._has_symbols("no_such_function_anywhere", "malloc")
+    assert pacing._has_symbols("malloc", "free")
+    assert not pacing._has_symbols("malloc", "no_such_function_anywhere")
+    assert not pacing._has_symbols("no_such_function_anywhere", "malloc")
 
 
 def test_a_timespec_is_two_words() -> None:

@@ -172,10 +172,10 @@ def looped(
         monkeypatch.setattr(pacing, "os", clock)
         portable_loop(arrays, memory, timeout, parent)
         return
-    monkeypatch.setattr(pacing.clock, "monotonic_ns", clock.monotonic_ns)
-    monkeypatch.setattr(pacing.clock, "thread_cpu_ns", clock.thread_time_ns)
-    monkeypatch.setattr(pacing.clock, "sleep_until_ns", clock.sleep_until_ns)
-    monkeypatch.setattr(pacing.clock, "parent_id", clock.getppid)
+    monkeypatch.setattr(pacing, "monotonic_ns", clock.monotonic_ns)
+    monkeypatch.setattr(pacing, "thread_cpu_ns", clock.thread_time_ns)
+    monkeypatch.setattr(pacing, "sleep_until_ns", clock.sleep_until_ns)
+    monkeypatch.setattr(pacing, "parent_id", clock.getppid)
     compiled_loop.py_func(arrays, memory, None, margin, timeout, parent)  # type: ignore[attr-defined]
 
 

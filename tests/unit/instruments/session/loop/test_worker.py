@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop import clock, shared, worker
+from squeezefilm.instruments.session.loop import pacing, shared, worker
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.shared import ring_take
@@ -27,7 +27,7 @@ PlanOf = Callable[..., LoopPlan]
 # Of no process: whoever has this parent is an orphan.
 NOBODY = 2**22 + 1
 
-needs_compiled_clock = pytest.mark.skipif(not clock.COMPILED_CLOCK, reason="no compiled clock")
+needs_compiled_clock = pytest.mark.skipif(not pacing.COMPILED_CLOCK, reason="no compiled clock")
 BOTH_CLOCKS = [pytest.param(True, marks=needs_compiled_clock), False]
 
 
@@ -147,7 +147,7 @@ def test_the_clock_gets_times_in_nanoseconds_after_a_rehearsal_elsewhere(
         calls.append((views, *rest))
         phases.append(int(memory.control[shared.PHASE]))
 
-    monkeypatch.setattr(clock, "COMPILED_CLOCK", True)
+    monkeypatch.setattr(worker, "COMPILED_CLOCK", True)
     monkeypatch.setattr(worker, "compiled_loop", looped)
     run_loop(Orders(plan_of(host_timeout=30e-3), priority, 7, compiled_clock=True), memory)
     rehearsal, real = calls
@@ -163,7 +163,7 @@ def test_the_clock_gets_times_in_nanoseconds_after_a_rehearsal_elsewhere(
 def test_where_the_clock_cannot_be_compiled_python_paces(
     plan_of: PlanOf, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(clock, "COMPILED_CLOCK", False)
+    monkeypatch.setattr(worker, "COMPILED_CLOCK", False)
     memory = shared.private_views()
     memory.control[shared.STOP] = 1
     run_loop(Orders(plan_of(), None, 0, compiled_clock=True), memory)
