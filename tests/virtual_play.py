@@ -21,7 +21,7 @@ from squeezefilm.instruments.device.wire.link import Link
 from squeezefilm.instruments.session.play.plan import PlayPlan
 from squeezefilm.instruments.session.play.player import Player
 from squeezefilm.instruments.session.play.real_time import PAUSE, PlayOutcome, played
-from squeezefilm.instruments.session.record.trace_writer import TraceWriter
+from squeezefilm.instruments.session.record.trace_file import TraceWriter
 from squeezefilm.instruments.twin.device import TwinDevice
 
 

@@ -45,7 +45,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "design/plate/report/page.py": {"read_bytes": "a draft in a folder of its own"},
     "study/report/terminal.py": {"path.open": WRITES},
     "instruments/session/record/trace.py": {"mmap.mmap": "over the descriptor that `opened` gave"},
-    "instruments/session/record/trace_writer.py": {"os.open": WRITES},
+    "instruments/session/record/trace_file.py": {"os.open": WRITES},
     "instruments/session/loop/process.py": {"mmap.mmap": "memory shared with its own child"},
     "instruments/session/loop/worker.py": {
         "mmap.mmap": "memory shared with its parent",

@@ -237,7 +237,7 @@ def test_a_session_that_broke_at_once_is_told_and_shown(display: Display, tmp_pa
     from squeezefilm.instruments.bench.play import PlayResult
     from squeezefilm.instruments.report.page import write_play
     from squeezefilm.instruments.session.loop.rows import COLUMNS
-    from squeezefilm.instruments.session.record.trace_writer import TraceWriter
+    from squeezefilm.instruments.session.record.trace_file import TraceWriter
 
     setup = prepared(display)
     with TraceWriter(tmp_path / "trace.sqft", COLUMNS, {"drive": "serial:none"}) as writer:

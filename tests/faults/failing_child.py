@@ -20,7 +20,7 @@ from tests.faults.study_child import Device, Script, begin
 
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.instruments.session.record.trace import read_trace
-from squeezefilm.instruments.session.record.trace_writer import TraceWriter
+from squeezefilm.instruments.session.record.trace_file import TraceWriter
 from squeezefilm.lab.studying.studies import Studies
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.conduct.terminal_run import conduct

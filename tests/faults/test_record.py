@@ -15,14 +15,14 @@ import pytest
 from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.instruments.session.record import trace_file
 from squeezefilm.instruments.session.record.trace import Trace, read_trace
-from squeezefilm.instruments.session.record.trace_writer import TraceWriter
+from squeezefilm.instruments.session.record.trace_file import TraceWriter
 
 COLUMNS = ("tick", "x_m", "level_V")
 
 WRITER = """
 import os, sys
 import numpy as np
-from squeezefilm.instruments.session.record.trace_writer import TraceWriter
+from squeezefilm.instruments.session.record.trace_file import TraceWriter
 
 path, seed = sys.argv[1], int(sys.argv[2])
 random = np.random.default_rng(seed)
@@ -180,7 +180,7 @@ LIMITED = """
 import resource, sys
 import numpy as np
 from squeezefilm.core.errors import RecordError
-from squeezefilm.instruments.session.record.trace_writer import TraceWriter
+from squeezefilm.instruments.session.record.trace_file import TraceWriter
 
 resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, resource.RLIM_INFINITY))
 writer = TraceWriter(sys.argv[1], ("tick", "x_m", "level_V"), {})

@@ -37,7 +37,7 @@ from squeezefilm.instruments.session.play.plan import (
     held_columns,
 )
 from squeezefilm.instruments.session.play.usability import TickCount, Usability
-from squeezefilm.instruments.session.record.trace_writer import TraceWriter
+from squeezefilm.instruments.session.record.trace_file import TraceWriter
 
 RESTING_SAMPLE: si.Second = 20e-3
 """A sensor slower than the reports repeats its last place; such repeats are fed this seldom."""

@@ -40,7 +40,7 @@ from squeezefilm.instruments.session.loop.shared import private_views, ring_put_
 from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, PlayView
 from squeezefilm.instruments.session.play.player import FADE, Player
 from squeezefilm.instruments.session.play.usability import Usability
-from squeezefilm.instruments.session.record.trace_writer import TraceWriter
+from squeezefilm.instruments.session.record.trace_file import TraceWriter
 
 PAUSE: si.Second = 1e-3
 """Time between two looks of the player at its device."""

@@ -16,7 +16,7 @@ from squeezefilm.core.formats.traces import table_from_csv
 from squeezefilm.core.results import stamp
 from squeezefilm.instruments.session.record import trace_file
 from squeezefilm.instruments.session.record.trace import export_trace, read_trace
-from squeezefilm.instruments.session.record.trace_writer import TraceWriter
+from squeezefilm.instruments.session.record.trace_file import TraceWriter
 
 COLUMNS = ("time_s", "x_m")
 
@@ -256,13 +256,13 @@ def test_a_name_that_the_disk_did_not_confirm_is_a_record_that_did_not_begin(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from squeezefilm.core.errors import RecordError
-    from squeezefilm.instruments.session.record import trace_writer
+    from squeezefilm.instruments.session.record import trace_file
 
     def refuse(_: Path) -> None:
         raise OSError(5, "Input/output error")
 
     with monkeypatch.context() as patched:
-        patched.setattr(trace_writer, "sync_folder", refuse)
+        patched.setattr(trace_file, "sync_folder", refuse)
         with pytest.raises(RecordError, match="Input/output error"):
             TraceWriter(tmp_path / "one.sqft", COLUMNS, {})
     assert list(tmp_path.iterdir()) == []
