@@ -19,7 +19,7 @@ from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Deframer, Fault, Frame, Reason, State
 
 if TYPE_CHECKING:
-    from squeezefilm.instruments.device.wire.streams import ByteStream
+    from squeezefilm.instruments.device.wire.streams import SerialStream
 
 KEEP_ALIVE: si.Second = 20e-3
 """Between frames that feed the watchdog."""
@@ -46,7 +46,7 @@ class Conversation:
     for a device with a processor of its own.
     """
 
-    stream: ByteStream
+    stream: SerialStream
     clock: Callable[[], si.Second]
     wait: Callable[[si.Second], None]
     waited: Callable[[], si.Second] | None = None

@@ -265,25 +265,13 @@ def _way(
 
 @dataclass(frozen=True, slots=True, repr=False)
 class _Recorded:
-    """A texture by its name, and a motion by its samples, as a fidelity report shows them."""
+    """A texture or a motion that is over: what a fidelity report tells of it."""
 
     name: str
-    spatial_period: si.Metre | None
-    duration: si.Second
-    time: si.SecondArray
-    x: si.MetreArray
+    spatial_period: si.Metre | None = None
 
     def __repr__(self) -> str:
         return self.name
-
-    def __call__(
-        self, x: si.MetreLike, _: si.MetreLike, v: si.MetrePerSecondLike, t: si.SecondLike, /
-    ) -> si.MetreArray:
-        raise InputError("a recorded texture has been asked already; ask the one it was made from")
-
-    def position(self, t: si.SecondLike, /) -> si.MetreArray:
-        """Position of the finger (m)."""
-        return np.asarray(np.interp(t, self.time, self.x))
 
 
 def _judge(setup: PlaySetup, way: PlayedWay) -> Judged:
@@ -295,11 +283,11 @@ def _judge(setup: PlaySetup, way: PlayedWay) -> Judged:
         period = None
     time, x = way.time[kept], way.x[kept]
     start = float(time[0])
-    recorded = _Recorded(setup.name, period, float(time[-1]) - start, time - start, x)
-    motion = _Recorded("a finger as recorded", None, float(time[-1]) - start, time - start, x)
+    texture: Any = _Recorded(setup.name, period)
+    motion: Any = _Recorded("a finger as recorded")
     plan = setup.plan.loop
     stroke = RenderedStroke(
-        texture=recorded,
+        texture=texture,
         trajectory=motion,
         envelope=plan.envelope,
         compensation=plan.compensation,

@@ -305,12 +305,6 @@ def test_what_is_judged_is_the_way_as_it_was_made(
     )  # fmt: skip
     # 20 mm are ten periods of 2 mm.
     assert stroke.texture.spatial_period == 2e-3
-    assert stroke.trajectory.spatial_period is None
-    duration = way.time[kept[-1]] - way.time[kept[0]]
-    assert stroke.texture.duration == stroke.trajectory.duration == pytest.approx(duration)
-    assert stroke.trajectory.position(0.1) == pytest.approx(x[kept[0]] + 0.005, abs=1e-9)
-    with pytest.raises(InputError, match="asked already"):
-        stroke.texture(0.0, 0.0, 0.05, 0.0)
 
 
 @pytest.mark.parametrize(("length", "has"), [(9.9e-3, False), (10.1e-3, True)])

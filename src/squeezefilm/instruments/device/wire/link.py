@@ -20,7 +20,7 @@ from squeezefilm.instruments.device.device_clock import DeviceClock
 from squeezefilm.instruments.device.machine.playing import until
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Deframer, Fault, Frame, Reason, State
-from squeezefilm.instruments.device.wire.streams import ByteStream
+from squeezefilm.instruments.device.wire.streams import SerialStream
 
 KEEP_ALIVE_PERIOD: si.Second = 15e-3
 """Silence of the host after which a keep alive is due; the watchdog waits 50 ms."""
@@ -100,7 +100,7 @@ class Link:
 
     def __init__(
         self,
-        stream: ByteStream,
+        stream: SerialStream,
         clock: Callable[[], si.Second] = time.monotonic,
         wait: Callable[[si.Second], None] = time.sleep,
     ) -> None:

@@ -1,4 +1,4 @@
-"""Bytes to a device and back: what a link needs of a port, and the serial port.
+"""Bytes to a device and back, by a serial port.
 
 A device on USB shows up as a serial port; a twin's pseudo-terminal is one too. Nothing here waits:
 what a port does not take at once is kept and sent with the next call.
@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import os
 import select
-from typing import Protocol
 
 from squeezefilm.core.errors import DeviceError, InputError, optional
 
@@ -17,22 +16,6 @@ BAUD_RATE = 921_600
 """Bits per second where a port has a real line; USB and pseudo-terminals do not look at it."""
 _MOST_UNSENT = 1 << 16
 _MOST_READ = 1 << 16
-
-
-class ByteStream(Protocol):
-    """A stream of bytes in both directions that never waits."""
-
-    def read(self) -> bytes:
-        """Whatever has arrived, nothing if nothing has. Raises `DeviceError` if it is gone."""
-        ...
-
-    def write(self, data: bytes) -> None:
-        """Send bytes. Raises `DeviceError` if the device is gone or takes no more."""
-        ...
-
-    def close(self) -> None:
-        """Let go of the port; more than once is allowed."""
-        ...
 
 
 class SerialStream:
@@ -87,7 +70,7 @@ class SerialStream:
             )
 
     def close(self) -> None:
-        """Let go of the port."""
+        """Let go of the port; more than once is allowed."""
         # An unplugged port may fail to close as well; there is nothing left to let go of.
         with contextlib.suppress(OSError):
             self._serial.close()

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -28,6 +28,7 @@ from squeezefilm.instruments.device.wire.messages import (
     Reading,
 )
 from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.instruments.session.loop.rows import flag_meanings
 from squeezefilm.instruments.session.play.plan import (
     Ending,
@@ -51,22 +52,6 @@ _STOP_LIMIT: si.Second = 0.5
 _MICRO = 1e-6
 
 
-class Loop(Protocol):
-    """A loop that makes commands, see `LoopProcess`."""
-
-    def feed(self, samples: si.FloatArray) -> int:
-        """Give finger samples."""
-
-    def take_commands(self) -> si.FloatArray:
-        """The commands since the last call."""
-
-    def take_rows(self) -> si.FloatArray:
-        """The rows since the last call."""
-
-    def mute(self) -> None:
-        """Play nothing from the next tick on."""
-
-
 class Player:
     """A session on a device. Call `begin`, then `step` about every millisecond, then `end`.
 
@@ -83,7 +68,7 @@ class Player:
     def __init__(
         self,
         plan: PlayPlan,
-        loop: Loop,
+        loop: LoopProcess,
         host: DeviceHost,
         writer: TraceWriter,
         clock: Callable[[], si.Second],
