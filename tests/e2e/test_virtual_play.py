@@ -12,9 +12,9 @@ from tests import virtual_play as bench
 from tests.virtual_play import virtual_play
 
 from squeezefilm.instruments.bench.played_session import PlayedSession, judge_session
-from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
+from squeezefilm.instruments.bench.setup import HowToPlay, PlaySetup, play_setup
 from squeezefilm.instruments.control.gains import identified_plate
-from squeezefilm.instruments.session.play.plan import Ending
+from squeezefilm.instruments.session.play.plan import Ending, KnownDevice
 from squeezefilm.instruments.session.play.player import Player
 from squeezefilm.instruments.session.play.real_time import PlayOutcome
 from squeezefilm.instruments.session.record.trace import read_trace
@@ -46,7 +46,7 @@ def prepared(display: Display, mode: str = "stream", **known: object) -> PlaySet
         amplitude_per_pickup=1 / settings().pickup.sensitivity,
         **known,  # type: ignore[arg-type]
     )
-    return play_setup(display, load_texture("biet2008-square-4mm"), device=device, mode=mode)
+    return play_setup(display, load_texture("biet2008-square-4mm"), device, HowToPlay(mode=mode))
 
 
 def played(
@@ -83,7 +83,7 @@ def test_loops_hold_what_is_played_and_the_record_says_how(
         response = free.ratio / (1 + 1j * np.linspace(-4, 4, 81))
         disturbed = response + 0.005 * free.ratio * np.random.default_rng(1).standard_normal(81)
         known = dataclasses.replace(known, identified=identified_plate(f, disturbed))
-    setup = play_setup(display, load_texture("biet2008-square-4mm"), device=known, hold=True)
+    setup = play_setup(display, load_texture("biet2008-square-4mm"), known, HowToPlay(hold=True))
     assert setup.plan.hold is not None
     # What is played is compensated for the loops' slowness, and not for the plate's.
     envelope = setup.plan.loop.envelope

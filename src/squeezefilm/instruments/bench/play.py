@@ -29,11 +29,11 @@ from squeezefilm.instruments.bench.check import WATCHED, check_device
 from squeezefilm.instruments.bench.conversation import Conversation
 from squeezefilm.instruments.bench.loop_check import DeviceCheck, check_loop, waited_time
 from squeezefilm.instruments.bench.played_session import PlayedSession, judge_session, tile_summary
-from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
+from squeezefilm.instruments.bench.setup import HowToPlay, PlaySetup, play_setup
 from squeezefilm.instruments.control.gains import IdentifiedPlate, identified_plate
 from squeezefilm.instruments.device.ports import ReplaySensor
 from squeezefilm.instruments.device.wire.streams import open_stream
-from squeezefilm.instruments.session.play.plan import PlayView
+from squeezefilm.instruments.session.play.plan import KnownDevice, PlayView
 from squeezefilm.instruments.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.instruments.session.record.trace import read_trace
 from squeezefilm.instruments.twin.plant_kernel import COLUMNS
@@ -84,7 +84,7 @@ class PlayResult(Result):
 
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
-class PlayRequest:
+class PlayRequest(HowToPlay):
     """Arguments of `play_texture`."""
 
     target: str | Path | Display
@@ -92,16 +92,10 @@ class PlayRequest:
     _: KW_ONLY
     drive: str = "twin"
     sensor: str = "device"
-    mode: str = "stream"
     stroke: str = STROKE
     duration: si.Second = DURATION
-    rate: si.Hertz = 5e3
-    voltage: si.Volt | None = None
-    surface: str | None = None
-    compensation: str = "none"
     amplitude_per_pickup: si.MetrePerVolt | None = None
     bench_only: bool = False
-    hold: bool = False
     sweep: str | Path | None = None
     out: str | Path | None = None
     seed: int = 0
@@ -165,17 +159,7 @@ def play_texture(asked: PlayRequest) -> PlayResult:
             f"{kept / TRACE_NAME} exists; a record is never written over: give another folder"
         )
     tell("the display at its largest amplitude")
-    setup = play_setup(
-        display,
-        texture,
-        device=device,
-        voltage=asked.voltage,
-        surface=asked.surface,
-        rate=asked.rate,
-        compensation=asked.compensation,
-        mode=asked.mode,
-        hold=asked.hold,
-    )
+    setup = play_setup(display, texture, device, asked)
     with _folder(kept) as folder:
         truth = folder / TRUTH_NAME if device.twin else None
         outcome = _played(asked, setup, settings, folder / TRACE_NAME, truth)

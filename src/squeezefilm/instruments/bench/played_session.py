@@ -120,7 +120,7 @@ class PlayedSession(Result):
             "envelope_time_constant_s": plan.loop.envelope.rise_time_constant,
             "limits": to_json(plan.limits),
             "assumed_limits": list(self.setup.assumed_limits),
-            "sensor": to_json(self.setup.sensor),
+            "sensor": to_json(plan.device.sensor),
             "rows": len(self.trace.rows),
             "end": to_json(dict(self.last("end"))),
             "loop": to_json(dict(self.last("loop"))),
@@ -191,7 +191,7 @@ def recorded_way(setup: PlaySetup, trace: Trace) -> PlayedWay:
         # A reading's amplitude belongs to the moment of its stamp, not to the ticks that carry it.
         stamps = rows[:, column.ROW_SAMPLE_TIME]
         new = np.flatnonzero(np.isfinite(stamps) & (np.diff(stamps, prepend=np.nan) != 0) & known)
-        when = stamps[new] + setup.plan.sensor_latency
+        when = stamps[new] + setup.plan.device.sensor.latency
         rising = np.flatnonzero(np.diff(when, prepend=-math.inf) > 0)
         when, amplitude = when[rising], rows[new[rising], column.AMPLITUDE]
         place = np.interp(when, time[known], x[known])
@@ -205,8 +205,9 @@ def recorded_way(setup: PlaySetup, trace: Trace) -> PlayedWay:
         amplitude = np.full(friction.shape, np.nan)
         there = np.isfinite(friction) & np.isfinite(pace)
         if np.any(there):
-            held = np.clip(friction[there], setup.inverse.least_friction_at(pace[there]), 1.0)
-            amplitude[there] = setup.inverse.amplitude_for(held, pace[there])
+            inverse = setup.prediction.inverse
+            held = np.clip(friction[there], inverse.least_friction_at(pace[there]), 1.0)
+            amplitude[there] = inverse.amplitude_for(held, pace[there])
         source = "the loop's estimate of the finger and the envelope's model (no pickup)"
     return _way(setup, when, place, pace, amplitude, friction, source)
 
@@ -292,7 +293,7 @@ def _judge(setup: PlaySetup, way: PlayedWay) -> Judged:
         envelope=plan.envelope,
         compensation=plan.compensation,
         control_rate=plan.rate,
-        sensor=setup.sensor,
+        sensor=setup.plan.device.sensor,
         estimator=plan.estimator,
         seed=0,
         time=time - start,

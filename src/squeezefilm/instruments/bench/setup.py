@@ -13,14 +13,12 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims
 from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.tick import make_tick
-from squeezefilm.instruments.session.play.plan import PlayPlan, tile_of
+from squeezefilm.instruments.session.play.plan import NOTHING_KNOWN, KnownDevice, PlayPlan, tile_of
 from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.played_texture import lowered
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel
-from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.physics.render.resonator.envelope import envelope_time_constant
 from squeezefilm.physics.texture_files.texture_file import TextureFile
@@ -37,27 +35,29 @@ _TILE_WAY: tuple[si.Metre, si.Metre] = (0.0, 0.1)
 """Where a tile lies for a finger whose way is not known."""
 
 
-@dataclass(frozen=True)
-class KnownDevice:
-    """Facts about the device that plays.
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class HowToPlay:
+    """What may be chosen of how a texture is played.
 
     Attributes:
-        sensor: what the finger is seen with.
-        amplitude_per_pickup: of its pickup (m/V), if known.
-        way: x that a tile covers (m), from and to; 0 to 10 cm, or what 512 amplitudes span.
-        twin: whether it is a twin, where an assumed insulation counts.
-        identified: its plate by a sweep, and the noise of each quadrature of its pickup (V), where
-            that is more than is assumed; as predicted without.
+        mode: "stream": the host's loop renders; "tile": the device does, by itself.
+        rate: of the loop (Hz).
+        voltage: the most to use (V), less than the drive's own.
+        surface: of the display.
+        compensation: of the resonator's slowness, "none" or "inverse".
+        hold: whether the device's loops shall hold resonance and amplitude. Levels are then those
+            of the free plate, and what the plate's slowness is compensated for is the loops'.
     """
 
-    sensor: SensorModel = LVDT_10_KHZ
-    amplitude_per_pickup: si.MetrePerVolt | None = None
-    way: tuple[si.Metre, si.Metre] | None = None
-    twin: bool = False
-    identified: tuple[IdentifiedPlate, si.Volt] | None = None
+    mode: str = "stream"
+    rate: si.Hertz = 5e3
+    voltage: si.Volt | None = None
+    surface: str | None = None
+    compensation: str = "none"
+    hold: bool = False
 
 
-_NOTHING_KNOWN = KnownDevice()
+_AS_USUAL = HowToPlay()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,24 +66,23 @@ class PlaySetup:
 
     Attributes:
         display, texture, prediction: the inputs, and the display at its largest voltage.
-        inverse: the display's friction law, by which amplitudes become friction again.
-        sensor: what the finger is seen with, as the estimator believes it.
         plan: for the player.
-        assumed_limits: names of the drive's limits that the display does not give.
     """
 
     display: Display
     texture: TextureFile
     prediction: Prediction
-    inverse: FrictionInverse
-    sensor: SensorModel
     plan: PlayPlan
-    assumed_limits: tuple[str, ...]
 
     @property
     def name(self) -> str:
         """Name of the texture."""
         return self.texture.title or f"a texture of {self.texture.texture.quantity}"
+
+    @property
+    def assumed_limits(self) -> tuple[str, ...]:
+        """Names of the drive's limits that the display does not give."""
+        return self.display.drive.assumed_limits
 
     def friction(
         self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
@@ -93,42 +92,24 @@ class PlaySetup:
         known = np.isfinite(amplitude) & np.isfinite(speed)
         relative = np.full(np.shape(amplitude), np.nan)
         if np.any(known):
-            relative[known] = self.inverse.friction_at(amplitude[known], speed[known])
+            relative[known] = self.prediction.inverse.friction_at(amplitude[known], speed[known])
         return relative
 
 
 def play_setup(
     display: Display,
     texture: TextureFile,
-    *,
-    device: KnownDevice = _NOTHING_KNOWN,
-    voltage: si.Volt | None = None,
-    surface: str | None = None,
-    rate: si.Hertz = 5e3,
-    compensation: str = "none",
-    mode: str = "stream",
-    hold: bool = False,
+    device: KnownDevice = NOTHING_KNOWN,
+    how: HowToPlay = _AS_USUAL,
 ) -> PlaySetup:
-    """The plan for a texture on a display.
-
-    Args:
-        display: what plays; its drive's limits are the device's.
-        texture: what is to be felt.
-        device: what is known of it.
-        voltage: the most to use (V), less than the drive's own.
-        surface: of the display.
-        rate: of the loop (Hz).
-        compensation: "none" or "inverse".
-        mode: "stream" or "tile".
-        hold: whether the device's loops shall hold resonance and amplitude. Levels are then those
-            of the free plate, and what the plate's slowness is compensated for is the loops'.
+    """The plan for a texture on a display, whose drive's limits are the device's.
 
     Raises:
         InputError: a display that does not vibrate, limits that do not fit, an unknown
             compensation or mode, a texture that no tile can hold, or a device that shall hold and
             whose pickup is not known.
     """
-    p = predict(display, voltage=voltage, surface=surface)
+    p = predict(display, voltage=how.voltage, surface=how.surface)
     largest = p.vibration_amplitude
     if p.voltage is None or largest <= 0.0 or p.relative_friction >= 1.0:
         raise InputError(
@@ -139,36 +120,33 @@ def play_setup(
     loaded = p.touch.mode or p.mode
     tau = float(envelope_time_constant(loaded.quality_factor, loaded.resonance_frequency))
     held, per_volt = None, largest / p.voltage
-    if hold:
+    if how.hold:
         held, per_volt = _held(p, device, limits)
         tau = held[1].amplitude_time
     loop = LoopPlan(
         program=lowered(texture, p, p.inverse),
-        rate=rate,
+        rate=how.rate,
         envelope=DrivenEnvelope(tau, tau, largest),
         drive=LinearDrive(per_volt, largest / per_volt),
         estimator=MotionEstimator.for_sensor(device.sensor),
-        compensation=compensation,  # type: ignore[arg-type] # checked with a message by LoopPlan
+        compensation=how.compensation,  # type: ignore[arg-type] # checked with a message by LoopPlan
         relative_friction=FrictionTable.of_inverse(p.inverse),
         output_delay=OUTPUT_DELAY,
     )
     tile = None
-    if mode == "tile":
+    if how.mode == "tile":
         tile = tile_of(loop.program, device.way or _TILE_WAY, speed=p.speed, law=p.friction)
     announce(make_tick, "real-time loop", 20)
     plan = PlayPlan(
         loop=loop,
         limits=limits,
         frequency=p.frequency,
-        twin=device.twin,
-        mode=mode,  # type: ignore[arg-type] # checked with a message by PlayPlan
+        mode=how.mode,  # type: ignore[arg-type] # checked with a message by PlayPlan
         tile=tile,
-        sensor_latency=device.sensor.latency,
-        amplitude_per_pickup=device.amplitude_per_pickup,
+        device=device,
         hold=held,
     )
-    assumed = display.drive.assumed_limits
-    return PlaySetup(display, texture, p, p.inverse, device.sensor, plan, assumed)
+    return PlaySetup(display, texture, p, plan)
 
 
 def _held(

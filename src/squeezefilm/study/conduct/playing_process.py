@@ -31,14 +31,14 @@ from squeezefilm.core.formats.traces import Table, csv_text
 from squeezefilm.core.results import stamp
 from squeezefilm.instruments.bench.play import device_stream
 from squeezefilm.instruments.bench.resonance_sweep import sweep_resonance
-from squeezefilm.instruments.bench.setup import KnownDevice, PlaySetup, play_setup
+from squeezefilm.instruments.bench.setup import HowToPlay, PlaySetup, play_setup
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.ports import SerialDrive, require_safe_drive
 from squeezefilm.instruments.device.wire.frames import State
 from squeezefilm.instruments.device.wire.link import Link
 from squeezefilm.instruments.device.wire.streams import open_stream
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.play.plan import Ending, PlayView
+from squeezefilm.instruments.session.play.plan import Ending, KnownDevice, PlayView
 from squeezefilm.instruments.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.instruments.session.record.trace import Trace, read_trace
 from squeezefilm.instruments.twin.settings import TwinSettings
@@ -223,12 +223,8 @@ class Bench:
 
     def _setup(self, surface: TextureFile) -> PlaySetup:
         twin = self._orders.drive == "twin"
-        return play_setup(
-            self._loaded(),
-            surface,
-            device=KnownDevice(LVDT_10_KHZ, self._amplitude_per_pickup, twin=twin),
-            rate=self._orders.rate,
-        )
+        device = KnownDevice(LVDT_10_KHZ, self._amplitude_per_pickup, twin=twin)
+        return play_setup(self._loaded(), surface, device, HowToPlay(rate=self._orders.rate))
 
     def _streaming(self, finger: str) -> str:
         """The drive's stream; a twin with that finger is started unless it is there."""

@@ -15,6 +15,7 @@ import pytest
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.bench import play as module
 from squeezefilm.instruments.bench.play import JUDGING, PlayResult, device_stream, play_texture
+from squeezefilm.instruments.bench.setup import HowToPlay
 from squeezefilm.instruments.session.play.plan import Ending
 from squeezefilm.instruments.session.play.real_time import PlayOutcome
 from squeezefilm.instruments.twin.settings import TwinSettings
@@ -41,8 +42,9 @@ class Bench:
             monkeypatch.setattr(module, name, getattr(self, f"_{name}"))
         monkeypatch.setattr(module, "read_trace", lambda path: ("read", path))
 
-    def _play_setup(self, display: Any, texture: Any, *, device: Any, **how: Any) -> Any:
-        self.setup.append({"display": display.name, **how, **vars(device)})
+    def _play_setup(self, display: Any, texture: Any, device: Any, how: Any) -> Any:
+        chosen = {field.name: getattr(how, field.name) for field in dataclasses.fields(HowToPlay)}
+        self.setup.append({"display": display.name, **chosen, **vars(device)})
         return SimpleNamespace(
             display=display, texture=texture, plan=PLAN, name="a grating",
             assumed_limits=("slew",),

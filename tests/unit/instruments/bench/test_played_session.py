@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -29,6 +30,7 @@ from squeezefilm.physics.render.texture.shapes import SquareWave
 SQUARE = Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6)
 REACH = 2e-6
 LATENCY = 4e-3
+SENSOR = dataclasses.replace(LVDT_10_KHZ, latency=LATENCY)
 
 
 def friction_of(amplitude: Any, speed: Any = None) -> Any:
@@ -44,9 +46,11 @@ def setup() -> Any:
         estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
     )  # fmt: skip
     return SimpleNamespace(
-        plan=SimpleNamespace(loop=plan, sensor_latency=LATENCY, mode="stream", tile=None),
-        friction=friction_of, sensor=LVDT_10_KHZ, name="a grating",
-        inverse=FrictionInverse.from_function(friction_of, REACH),
+        plan=SimpleNamespace(
+            loop=plan, device=SimpleNamespace(sensor=SENSOR), mode="stream", tile=None
+        ),
+        friction=friction_of, name="a grating",
+        prediction=SimpleNamespace(inverse=FrictionInverse.from_function(friction_of, REACH)),
         texture=SimpleNamespace(texture=SQUARE),
     )  # fmt: skip
 
@@ -363,12 +367,17 @@ def test_a_summary_says_what_was_to_be_played_and_what_became_of_it(
         surface=SimpleNamespace(name="bare"), voltage=15.0, warnings=("careful",)
     )
     plan = SimpleNamespace(
-        mode="stream", frequency=40e3, loop=setup.plan.loop, limits={"voltage_V": 20.0}, tile=None
+        mode="stream",
+        frequency=40e3,
+        loop=setup.plan.loop,
+        limits={"voltage_V": 20.0},
+        tile=None,
+        device=SimpleNamespace(sensor={"name": "LVDT"}),
     )
     said = SimpleNamespace(
         name="a grating", display=SimpleNamespace(name="one", whose_finger="mine"),
         prediction=prediction, plan=plan,
-        assumed_limits=("slew",), sensor={"name": "LVDT"},
+        assumed_limits=("slew",),
     )  # fmt: skip
     object.__setattr__(session, "setup", said)
     found = session.summary()

@@ -10,7 +10,8 @@ from squeezefilm.instruments.session.play.real_time import fault_sentence
 
 
 def player(fault: Fault, held_up: float, twin: bool) -> Any:
-    return SimpleNamespace(fault=fault, held_up=held_up, plan=SimpleNamespace(twin=twin))
+    plan = SimpleNamespace(device=SimpleNamespace(twin=twin))
+    return SimpleNamespace(fault=fault, held_up=held_up, plan=plan)
 
 
 @pytest.mark.parametrize(

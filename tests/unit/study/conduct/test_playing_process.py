@@ -114,8 +114,8 @@ class Around:
         yield name
         self.ended.append(name)
 
-    def _setup(self, *how: Any, device: Any, **more: Any) -> Any:
-        self.setups.append((how, {**more, **vars(device)}))
+    def _setup(self, display: Any, surface: Any, device: Any, how: Any) -> Any:
+        self.setups.append(((display, surface), {"rate": how.rate, **vars(device)}))
         return SimpleNamespace(plan="the plan", display=DISPLAY, assumed_limits=("slew",))
 
     def _play(self, *how: Any, **more: Any) -> PlayOutcome:

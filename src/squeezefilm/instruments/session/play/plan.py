@@ -24,6 +24,7 @@ from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.rows import COLUMNS
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.render.fidelity.rendered_stroke import RelativeFriction
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel
 from squeezefilm.physics.render.program.layout import FASTEST
 from squeezefilm.physics.render.program.lowering import Program
 from squeezefilm.physics.render.program.renderer import MadeForSpeed, render
@@ -200,6 +201,29 @@ def _amplitudes(program: Program, places: si.FloatArray, speed: si.MetrePerSecon
     return amplitudes.amplitude
 
 
+@si.checked_numbers
+@dataclass(frozen=True)
+class KnownDevice:
+    """Facts about the device that plays.
+
+    Attributes:
+        sensor: what the finger is seen with.
+        amplitude_per_pickup: of its pickup (m/V), if known.
+        way: x that a tile covers (m), from and to; 0 to 10 cm, or what 512 amplitudes span.
+        twin: whether it is a twin, where an assumed insulation counts.
+        identified: its plate by a sweep, and the noise of each quadrature of its pickup (V), where
+            that is more than is assumed; as predicted without.
+    """
+
+    sensor: SensorModel = LVDT_10_KHZ
+    amplitude_per_pickup: si.MetrePerVolt | None = None
+    way: tuple[si.Metre, si.Metre] | None = None
+    twin: bool = False
+    identified: tuple[IdentifiedPlate, si.Volt] | None = None
+
+
+NOTHING_KNOWN = KnownDevice()
+
 PlayMode = Literal["stream", "tile"]
 
 
@@ -219,9 +243,8 @@ class PlayPlan:
             plays at its own sensor while the loop only watches.
         tile: the texture for mode "tile".
         report_period: of the device's readings (s); at least 0.2 ms.
-        sensor_latency: of the device's sensor (s), by which its places are older than their stamp.
-        amplitude_per_pickup: vibration amplitude per signal of the pickup (m/V); None if unknown.
-        twin: whether the device is a twin, whose watchdog counts its own time.
+        device: what is known of it. Its places are older than their stamp by its sensor's latency,
+            and a twin's watchdog counts its own time.
         hold: the identified plate and what its loops shall do, where the device has loops; None
             for a carrier and levels as they are asked for.
 
@@ -235,9 +258,7 @@ class PlayPlan:
     mode: PlayMode = "stream"
     tile: TextureTile | None = None
     report_period: Annotated[si.Second, si.AtLeast(0.0002), si.AtMost(0.02)] = REPORT_PERIOD
-    sensor_latency: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(1.0)] = 0.0
-    amplitude_per_pickup: si.MetrePerVolt | None = None
-    twin: bool = False
+    device: KnownDevice = NOTHING_KNOWN
     hold: tuple[IdentifiedPlate, LoopAims] | None = None
 
     def __post_init__(self) -> None:

@@ -257,7 +257,7 @@ class Player:
                 "the device has no finger sensor; give one as sensor replay:FILE, or connect it"
             )
         return (
-            stamp - self.plan.sensor_latency,
+            stamp - self.plan.device.sensor.latency,
             reading.x * _MICRO,
             reading.y * _MICRO,
             float(reading.touching),
@@ -268,7 +268,7 @@ class Player:
         """The device's output level and the amplitude by its pickup, NaN where not known."""
         if reading is None:
             return math.nan, math.nan
-        amplitude, per_volt = math.nan, self.plan.amplitude_per_pickup
+        amplitude, per_volt = math.nan, self.plan.device.amplitude_per_pickup
         if per_volt is not None and reading.flags & PICKUP_PRESENT:
             amplitude = per_volt * reading.pickup * _MICRO
         return reading.level * _MICRO, amplitude

@@ -133,7 +133,7 @@ def run_play(
         with _collected():
             loop.start()
             try:
-                with contextlib.nullcontext() if plan.twin else _preferred():
+                with contextlib.nullcontext() if plan.device.twin else _preferred():
                     with _stopping(host):
                         ending, message = played(
                             player, clock, lambda: time.sleep(PAUSE), duration, interrupted, show
@@ -204,7 +204,7 @@ def fault_sentence(player: Player) -> str:
     if fault is not Fault.WATCHDOG:
         return _FAULTS.get(fault, f"the device faulted: {fault.name.lower()}")
     heard = "the device heard nothing for 50 ms"
-    if player.plan.twin:
+    if player.plan.device.twin:
         heard = "the twin heard nothing for 50 ms of its own time"
     why = (
         f"this program was held up for {1e3 * player.held_up:.0f} ms. Close other programs, or "

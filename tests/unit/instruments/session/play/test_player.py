@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable
 from types import SimpleNamespace
@@ -22,8 +23,15 @@ from squeezefilm.instruments.device.wire.messages import (
 )
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.instruments.session.play.plan import Ending, PlayPlan, TextureTile, tile_of
+from squeezefilm.instruments.session.play.plan import (
+    Ending,
+    KnownDevice,
+    PlayPlan,
+    TextureTile,
+    tile_of,
+)
 from squeezefilm.instruments.session.play.player import FADE, LOOP_LIMIT, Player
+from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 
 PlanOf = Callable[..., LoopPlan]
 LIMITS = Limits(120.0, 1e6, 120.0, 0.0, 20e3, 60e3, insulation="glass")
@@ -126,12 +134,17 @@ class Bench:
 def play_of(plan_of: PlanOf) -> Callable[..., PlayPlan]:
     def made(**changes: Any) -> PlayPlan:
         fields: dict[str, Any] = {"loop": plan_of(), "limits": LIMITS, "frequency": FREQUENCY}
+        fields["device"] = dataclasses.replace(device_of(), amplitude_per_pickup=None)
         return PlayPlan(**{**fields, **changes})
 
     return made
 
 
 PlayOf = Callable[..., PlayPlan]
+
+
+def device_of(latency: float = 0.0) -> KnownDevice:
+    return KnownDevice(dataclasses.replace(LVDT_10_KHZ, latency=latency), 2e-6)
 
 
 def begun(plan: PlayPlan, **how: Any) -> Bench:
@@ -190,7 +203,7 @@ def test_beginning_a_tile_loads_it_and_follows(play_of: PlayOf, plan_of: PlanOf)
 
 
 def test_a_reading_becomes_a_sample_on_the_loops_clock(play_of: PlayOf) -> None:
-    bench = begun(play_of(sensor_latency=4e-3, amplitude_per_pickup=2e-6))
+    bench = begun(play_of(device=device_of(latency=4e-3)))
     bench.step(x=1500, flags=SENSOR_PRESENT | PICKUP_PRESENT)
     bench.step(x=1600, touching=0)
     first, second = np.concatenate(bench.fed)
@@ -239,7 +252,7 @@ class Sensor:
 
 def test_another_sensor_replaces_the_devices_own(play_of: PlayOf) -> None:
     sensor = Sensor((9.0, 1e-3, 2e-3, True), (9.1, 3e-3, 4e-3, False))
-    bench = Bench(play_of(amplitude_per_pickup=2e-6), sensor=sensor)
+    bench = Bench(play_of(device=device_of()), sensor=sensor)
     bench.player.begin()
     bench.step(flags=PICKUP_PRESENT)
     (block,) = bench.fed

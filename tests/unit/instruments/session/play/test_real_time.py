@@ -52,7 +52,8 @@ class Bench:
         self.steps = 0
         self.at: dict[int, Any] = {}
         self.begins_with: BaseException | None = None
-        self.plan: Any = SimpleNamespace(loop=plan, limits="limits", twin=True, columns=())
+        self.plan: Any = SimpleNamespace(loop=plan, limits="limits", columns=())
+        self.plan.device = SimpleNamespace(twin=True)
         self.ending: Ending | None = None
         self.unheld = ""
         self.fault, self.held_up = Fault.NONE, 0.0
@@ -312,7 +313,7 @@ def test_priority_is_asked_for_and_given_back_unless_it_is_a_twin(
     monkeypatch.setattr(real_time, "real_time_granted", asked)
     bench.run()
     assert granted == [True, False]
-    bench.plan.twin = False
+    bench.plan.device.twin = False
     for given_back in (1, 0):
         bench.done.clear()
         bench.run()
