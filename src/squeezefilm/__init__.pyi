@@ -6,13 +6,20 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
     from contextlib import AbstractContextManager
-    from numpy.typing import ArrayLike
     from pathlib import Path
+    from typing import Any, Literal
+
+    from numpy.typing import ArrayLike
+
     from squeezefilm.core.distributions import Distribution
     from squeezefilm.core.errors import SqueezefilmError as SqueezefilmError
     from squeezefilm.core.presets import (
         display_names as display_names,
+    )
+    from squeezefilm.core.presets import (
         study_names as study_names,
+    )
+    from squeezefilm.core.presets import (
         texture_names as texture_names,
     )
     from squeezefilm.core.presets.materials import materials as materials
@@ -52,6 +59,8 @@ if TYPE_CHECKING:
     from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
     from squeezefilm.measure.recordings.read import (
         check_recording as check_recording,
+    )
+    from squeezefilm.measure.recordings.read import (
         read_recording as read_recording,
     )
     from squeezefilm.physics.chain.pad_law import FrictionModel
@@ -62,7 +71,11 @@ if TYPE_CHECKING:
     from squeezefilm.physics.display import (
         Display,
         NamedDisplay,
+    )
+    from squeezefilm.physics.display import (
         load_display as load_display,
+    )
+    from squeezefilm.physics.display import (
         save_display as save_display,
     )
     from squeezefilm.physics.film.periodic.profile import GapFunction, GapProfile
@@ -72,15 +85,22 @@ if TYPE_CHECKING:
     from squeezefilm.physics.render.motion.stroke import Stroke as _Stroke
     from squeezefilm.physics.render.texture.coordinate import Coordinate, Length, Place
     from squeezefilm.physics.render.texture.gates import speed as speed
-    from squeezefilm.physics.render.texture.image import Image as _Image, Share
+    from squeezefilm.physics.render.texture.image import Image as _Image
+    from squeezefilm.physics.render.texture.image import Share
     from squeezefilm.physics.render.texture.levels import (
         Amplitude as _Amplitude,
+    )
+    from squeezefilm.physics.render.texture.levels import (
         FrictionShare,
-        RelativeFriction as _RelativeFriction,
         VibrationAmplitude,
+    )
+    from squeezefilm.physics.render.texture.levels import (
+        RelativeFriction as _RelativeFriction,
     )
     from squeezefilm.physics.render.texture.noise import (
         Noise as _Noise,
+    )
+    from squeezefilm.physics.render.texture.noise import (
         Octaves,
         Persistence,
         Seed,
@@ -89,20 +109,34 @@ if TYPE_CHECKING:
     from squeezefilm.physics.render.texture.pattern import Pattern
     from squeezefilm.physics.render.texture.shapes import (
         Band as _Band,
+    )
+    from squeezefilm.physics.render.texture.shapes import (
         Bump as _Bump,
+    )
+    from squeezefilm.physics.render.texture.shapes import (
         SineWave as _SineWave,
+    )
+    from squeezefilm.physics.render.texture.shapes import (
         SquareWave as _SquareWave,
     )
     from squeezefilm.physics.texture_files.texture_file import (
         NamedTexture,
+    )
+    from squeezefilm.physics.texture_files.texture_file import (
         load_texture as load_texture,
+    )
+    from squeezefilm.physics.texture_files.texture_file import (
         save_texture as save_texture,
     )
     from squeezefilm.physics.texture_files.trajectories import NamedMotion
     from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
     from squeezefilm.study.adaptive.bayesian import (
         AdaptiveDesign as _AdaptiveDesign,
+    )
+    from squeezefilm.study.adaptive.bayesian import (
         BayesianAdaptive as BayesianAdaptive,
+    )
+    from squeezefilm.study.adaptive.bayesian import (
         Interest,
     )
     from squeezefilm.study.conduct.playback import Playable, Playback
@@ -112,9 +146,13 @@ if TYPE_CHECKING:
     from squeezefilm.study.psychometric.fit import PsychometricFit
     from squeezefilm.study.psychometric.function import (
         Axis,
-        PsychometricFunction as _PsychometricFunction,
-        PsychometricPrior as PsychometricPrior,
         Shape,
+    )
+    from squeezefilm.study.psychometric.function import (
+        PsychometricFunction as _PsychometricFunction,
+    )
+    from squeezefilm.study.psychometric.function import (
+        PsychometricPrior as PsychometricPrior,
     )
     from squeezefilm.study.record.store import StudyStore
     from squeezefilm.study.simulated.answers import SimulatedStudy
@@ -122,10 +160,13 @@ if TYPE_CHECKING:
     from squeezefilm.study.tasks.analyze import StudyAnalysis, Tell
     from squeezefilm.subjects import (
         plot as plot,
+    )
+    from squeezefilm.subjects import (
         write_mode as write_mode,
+    )
+    from squeezefilm.subjects import (
         write_report as write_report,
     )
-    from typing import Any, Literal
     def replaced(display: NamedDisplay | str | Path, values: Mapping[str, float | str]) -> Display:
         """The display with other values at dotted paths: ``{"actuator.thickness": "1.5 mm"}``."""
     def with_finger(display: NamedDisplay | str | Path, finger: str | Path = ...) -> Display:
