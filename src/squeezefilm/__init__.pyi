@@ -13,15 +13,9 @@ if TYPE_CHECKING:
 
     from squeezefilm.core.distributions import Distribution
     from squeezefilm.core.errors import SqueezefilmError as SqueezefilmError
-    from squeezefilm.core.presets import (
-        display_names as display_names,
-    )
-    from squeezefilm.core.presets import (
-        study_names as study_names,
-    )
-    from squeezefilm.core.presets import (
-        texture_names as texture_names,
-    )
+    from squeezefilm.core.presets import display_names as display_names
+    from squeezefilm.core.presets import study_names as study_names
+    from squeezefilm.core.presets import texture_names as texture_names
     from squeezefilm.core.presets.materials import materials as materials
     from squeezefilm.core.progress import Pace, SayProgress
     from squeezefilm.core.quantities import (
@@ -57,27 +51,16 @@ if TYPE_CHECKING:
     from squeezefilm.measure.calibration.blind import BlindPrediction, Score
     from squeezefilm.measure.calibration.folder import FolderCalibration
     from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
-    from squeezefilm.measure.recordings.read import (
-        check_recording as check_recording,
-    )
-    from squeezefilm.measure.recordings.read import (
-        read_recording as read_recording,
-    )
+    from squeezefilm.measure.recordings.read import check_recording as check_recording
+    from squeezefilm.measure.recordings.read import read_recording as read_recording
     from squeezefilm.physics.chain.pad_law import FrictionModel
     from squeezefilm.physics.chain.pad_place import FacePlace
     from squeezefilm.physics.chain.prediction import Prediction
     from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
     from squeezefilm.physics.chain.wanted_voltage import WantedFriction, WantedVoltage
-    from squeezefilm.physics.display import (
-        Display,
-        NamedDisplay,
-    )
-    from squeezefilm.physics.display import (
-        load_display as load_display,
-    )
-    from squeezefilm.physics.display import (
-        save_display as save_display,
-    )
+    from squeezefilm.physics.display import Display, NamedDisplay
+    from squeezefilm.physics.display import load_display as load_display
+    from squeezefilm.physics.display import save_display as save_display
     from squeezefilm.physics.film.periodic.profile import GapFunction, GapProfile
     from squeezefilm.physics.perception.observer import NamedObserver
     from squeezefilm.physics.plate.working_mode import PlateTheory
@@ -87,86 +70,41 @@ if TYPE_CHECKING:
     from squeezefilm.physics.render.texture.gates import speed as speed
     from squeezefilm.physics.render.texture.image import Image as _Image
     from squeezefilm.physics.render.texture.image import Share
-    from squeezefilm.physics.render.texture.levels import (
-        Amplitude as _Amplitude,
-    )
-    from squeezefilm.physics.render.texture.levels import (
-        FrictionShare,
-        VibrationAmplitude,
-    )
-    from squeezefilm.physics.render.texture.levels import (
-        RelativeFriction as _RelativeFriction,
-    )
-    from squeezefilm.physics.render.texture.noise import (
-        Noise as _Noise,
-    )
-    from squeezefilm.physics.render.texture.noise import (
-        Octaves,
-        Persistence,
-        Seed,
-        Spacing,
-    )
+    from squeezefilm.physics.render.texture.levels import Amplitude as _Amplitude
+    from squeezefilm.physics.render.texture.levels import FrictionShare, VibrationAmplitude
+    from squeezefilm.physics.render.texture.levels import RelativeFriction as _RelativeFriction
+    from squeezefilm.physics.render.texture.noise import Noise as _Noise
+    from squeezefilm.physics.render.texture.noise import Octaves, Persistence, Seed, Spacing
     from squeezefilm.physics.render.texture.pattern import Pattern
-    from squeezefilm.physics.render.texture.shapes import (
-        Band as _Band,
-    )
-    from squeezefilm.physics.render.texture.shapes import (
-        Bump as _Bump,
-    )
-    from squeezefilm.physics.render.texture.shapes import (
-        SineWave as _SineWave,
-    )
-    from squeezefilm.physics.render.texture.shapes import (
-        SquareWave as _SquareWave,
-    )
-    from squeezefilm.physics.texture_files.texture_file import (
-        NamedTexture,
-    )
-    from squeezefilm.physics.texture_files.texture_file import (
-        load_texture as load_texture,
-    )
-    from squeezefilm.physics.texture_files.texture_file import (
-        save_texture as save_texture,
-    )
+    from squeezefilm.physics.render.texture.shapes import Band as _Band
+    from squeezefilm.physics.render.texture.shapes import Bump as _Bump
+    from squeezefilm.physics.render.texture.shapes import SineWave as _SineWave
+    from squeezefilm.physics.render.texture.shapes import SquareWave as _SquareWave
+    from squeezefilm.physics.texture_files.texture_file import NamedTexture
+    from squeezefilm.physics.texture_files.texture_file import load_texture as load_texture
+    from squeezefilm.physics.texture_files.texture_file import save_texture as save_texture
     from squeezefilm.physics.texture_files.trajectories import NamedMotion
     from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
-    from squeezefilm.study.adaptive.bayesian import (
-        AdaptiveDesign as _AdaptiveDesign,
-    )
-    from squeezefilm.study.adaptive.bayesian import (
-        BayesianAdaptive as BayesianAdaptive,
-    )
-    from squeezefilm.study.adaptive.bayesian import (
-        Interest,
-    )
+    from squeezefilm.study.adaptive.bayesian import AdaptiveDesign as _AdaptiveDesign
+    from squeezefilm.study.adaptive.bayesian import BayesianAdaptive as BayesianAdaptive
+    from squeezefilm.study.adaptive.bayesian import Interest
     from squeezefilm.study.conduct.playback import Playable, Playback
     from squeezefilm.study.conduct.terminal_run import Examiner
     from squeezefilm.study.design.plan import StudyPlan
     from squeezefilm.study.design.study_design import NamedDesign
     from squeezefilm.study.psychometric.fit import PsychometricFit
-    from squeezefilm.study.psychometric.function import (
-        Axis,
-        Shape,
-    )
+    from squeezefilm.study.psychometric.function import Axis, Shape
     from squeezefilm.study.psychometric.function import (
         PsychometricFunction as _PsychometricFunction,
     )
-    from squeezefilm.study.psychometric.function import (
-        PsychometricPrior as PsychometricPrior,
-    )
+    from squeezefilm.study.psychometric.function import PsychometricPrior as PsychometricPrior
     from squeezefilm.study.record.store import StudyStore
     from squeezefilm.study.simulated.answers import SimulatedStudy
     from squeezefilm.study.simulated.chain_tables import ChainTables
     from squeezefilm.study.tasks.analyze import StudyAnalysis, Tell
-    from squeezefilm.subjects import (
-        plot as plot,
-    )
-    from squeezefilm.subjects import (
-        write_mode as write_mode,
-    )
-    from squeezefilm.subjects import (
-        write_report as write_report,
-    )
+    from squeezefilm.subjects import plot as plot
+    from squeezefilm.subjects import write_mode as write_mode
+    from squeezefilm.subjects import write_report as write_report
     def replaced(display: NamedDisplay | str | Path, values: Mapping[str, float | str]) -> Display:
         """The display with other values at dotted paths: ``{"actuator.thickness": "1.5 mm"}``."""
     def with_finger(display: NamedDisplay | str | Path, finger: str | Path = ...) -> Display:
