@@ -60,6 +60,16 @@ class ConfigError(InputError):
         return ": ".join([*parts, self.message])
 
 
+@contextlib.contextmanager
+def errors_of(file: str | Path) -> Iterator[None]:
+    """Let a `ConfigError` that names no file name this one."""
+    try:
+        yield
+    except ConfigError as error:
+        error.file = error.file or str(file)
+        raise
+
+
 class MissingPackageError(InputError):
     """A package that is not installed with squeezefilm alone."""
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, ClassVar, cast
 
 from squeezefilm.core.config import load_text
-from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.core.errors import ConfigError, InputError, errors_of
 from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import Result, to_json, write_whole
 from squeezefilm.measure.recordings.assembled import assembled
@@ -355,20 +355,21 @@ def _data_of(path: Path, said: Described) -> Path:
 def _table(file: Path, description: Description) -> RawTable:
     """The table in a file, by what the file is."""
     suffix = file.suffix.lower()
-    if suffix in SUFFIXES:
-        at = getattr(description.said, "frequency", None)
-        return read_universal(file, at if description.kind in _SCANS else None)
-    if suffix == ".mat":
-        return read_matlab(file)
-    if suffix in (".xls", ".xlsx", ".ods"):
-        raise ConfigError("is a spreadsheet; save its table as CSV", file=file)
-    if TOUCHSTONE.fullmatch(suffix):
-        return read_touchstone(file)
-    if suffix == ".wav":
-        return read_wav(file)
-    if is_4294a(file):
-        return read_4294a(file)
-    return read_text_table(file, description.said)
+    with errors_of(file):
+        if suffix in SUFFIXES:
+            at = getattr(description.said, "frequency", None)
+            return read_universal(file, at if description.kind in _SCANS else None)
+        if suffix == ".mat":
+            return read_matlab(file)
+        if suffix in (".xls", ".xlsx", ".ods"):
+            raise ConfigError("is a spreadsheet; save its table as CSV")
+        if TOUCHSTONE.fullmatch(suffix):
+            return read_touchstone(file)
+        if suffix == ".wav":
+            return read_wav(file)
+        if is_4294a(file):
+            return read_4294a(file)
+        return read_text_table(file, description.said)
 
 
 def _undescribed(path: Path, text: str, besides: str) -> ConfigError:

@@ -53,23 +53,20 @@ def read_4294a(path: Path) -> RawTable:
     has another count of points than the head says, and traces of different frequencies.
     """
     text, notes = decoded(path)
-    head, traces = _read(text.split("\n"), path)
+    head, traces = _read(text.split("\n"))
     if not traces:
-        raise ConfigError(
-            'holds no trace; the export has lines "TRACE: A" with rows below', file=path
-        )
+        raise ConfigError('holds no trace; the export has lines "TRACE: A" with rows below')
     points = head.get("NUMBER of POINTS", "")
     for trace in traces:
         if points.isdigit() and len(trace.rows) != int(points):
             raise ConfigError(
                 f"trace {trace.letter} has {len(trace.rows)} points, and the head says {points}: "
                 "the file is cut short or was changed; export it again",
-                file=path,
                 line=trace.lines[-1] if trace.lines else None,
             )
     first = traces[0]
     if not first.lines:
-        raise ConfigError(f"trace {first.letter} has no points; export it again", file=path)
+        raise ConfigError(f"trace {first.letter} has no points; export it again")
     frequency = first.rows[:, 0]
     columns, names = [frequency], ["Frequency"]
     for trace in traces:
@@ -78,7 +75,6 @@ def read_4294a(path: Path) -> RawTable:
             raise ConfigError(
                 f"trace {trace.letter} is at other frequencies than trace {first.letter}; export "
                 "both of one sweep",
-                file=path,
                 line=trace.lines[0] if trace.lines else None,
             )
         columns += list(numbers[:, 1:].T)
@@ -88,7 +84,7 @@ def read_4294a(path: Path) -> RawTable:
         for key, value in head.items()
         if key in ("OSC LEVEL", "DC BIAS", "SWEEP TYPE")
     ]
-    table = RawTable(
+    return RawTable(
         file=path,
         format=f"4294A export, {head.get('MEASURE PARAMETER', 'parameter not said')}",
         names=tuple(names),
@@ -100,8 +96,6 @@ def read_4294a(path: Path) -> RawTable:
         instrument="4294A",
         specified=(40.0, 110e6),
     )
-    table.require_finite()
-    return table
 
 
 def _described(head: dict[str, str], names: Sequence[str]) -> tuple[Held, ...]:
@@ -131,7 +125,7 @@ def _held(meant: Sequence[tuple[str, str]], columns: Sequence[str]) -> tuple[Hel
     return (("frequency", "Frequency", "Hz"), *((name, at, unit) for (name, unit), at in pairs))
 
 
-def _read(lines: Sequence[str], path: Path) -> tuple[dict[str, str], list[_Trace]]:
+def _read(lines: Sequence[str]) -> tuple[dict[str, str], list[_Trace]]:
     """Words of the head, and the traces."""
     head: dict[str, str] = {}
     traces: list[tuple[str, list[tuple[int, str]]]] = []
@@ -145,10 +139,10 @@ def _read(lines: Sequence[str], path: Path) -> tuple[dict[str, str], list[_Trace
                 head[match[1]] = match[2].strip()
         elif traces and not line.lstrip().startswith('"'):
             traces[-1][1].append((number, line))
-    return head, [_trace(letter, rows, path) for letter, rows in traces]
+    return head, [_trace(letter, rows) for letter, rows in traces]
 
 
-def _trace(letter: str, rows: Sequence[tuple[int, str]], path: Path) -> _Trace:
+def _trace(letter: str, rows: Sequence[tuple[int, str]]) -> _Trace:
     count = len(rows[0][1].split()) if rows else 0
     notation = Notation(None, ".", count, tuple(range(count)))
-    return _Trace(letter, values_in(rows, notation, path), [number for number, _ in rows])
+    return _Trace(letter, values_in(rows, notation), [number for number, _ in rows])

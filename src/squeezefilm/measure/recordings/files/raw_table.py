@@ -37,6 +37,8 @@ class RawTable:
     says its columns hold, `sure` where its head names the `instrument`, which is `specified` from
     and to these frequencies (Hz); `reference` (Ω) is that of its waves. `moved` is the motion that
     each column holds ("velocity", ""), where the file says that.
+
+    Raises `ConfigError` for a table without a row, and at the place of what is no finite number.
     """
 
     file: Path
@@ -53,6 +55,20 @@ class RawTable:
     instrument: str = ""
     specified: tuple[float, float] | None = None
     moved: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        if not self.values.size:
+            raise self.error("holds no numbers; give a file with a table of them")
+        bad = np.argwhere(~np.isfinite(self.values))
+        if bad.size:
+            row, column = (int(index) for index in bad[0])
+            value = self.values[row, column]
+            raise self.error(
+                f"{value} is no finite number; leave the whole row out where nothing was measured "
+                f"({len(bad)} such in this file)",
+                row,
+                column,
+            )
 
     def error(self, message: str, row: int | None = None, column: int | None = None) -> ConfigError:
         """An error at a row and a column (both from 0), with the line and the column from 1."""
@@ -105,21 +121,6 @@ class RawTable:
         """The columns by number and name, for messages."""
         shown = (f"{k} '{name}'" if name else f"{k}" for k, name in enumerate(self.names, 1))
         return ", ".join(shown)
-
-    def require_finite(self) -> None:
-        """Refuse a table that holds no row, or what is no finite number, with its place."""
-        if not self.values.size:
-            raise self.error("holds no numbers; give a file with a table of them")
-        bad = np.argwhere(~np.isfinite(self.values))
-        if bad.size:
-            row, column = (int(index) for index in bad[0])
-            value = self.values[row, column]
-            raise self.error(
-                f"{value} is no finite number; leave the whole row out where nothing was measured "
-                f"({len(bad)} such in this file)",
-                row,
-                column,
-            )
 
 
 def parted(name: str) -> tuple[str, str]:

@@ -30,13 +30,12 @@ def read_matlab(path: Path) -> RawTable:
     if b"MATLAB 7.3" in data[:128] or data[:8] == b"\x89HDF\r\n\x1a\n":
         raise ConfigError(
             "is a MATLAB file of version 7.3 (HDF5), which is not read; write it again in MATLAB: "
-            f"S = load('{path.name}'); save('{path.name}', '-struct', 'S', '-v7')",
-            file=path,
+            f"S = load('{path.name}'); save('{path.name}', '-struct', 'S', '-v7')"
         )
     (there, labels), arrays = read_isolated(_numbers, path.name, data=data, file=path)
     if not arrays:
         held = ", ".join(there) or "none"
-        raise ConfigError(f"holds no variable with a row of numbers; it holds: {held}", file=path)
+        raise ConfigError(f"holds no variable with a row of numbers; it holds: {held}")
     columns = list(zip(labels, arrays, strict=True))
     lengths = [column.size for column in arrays]
     length = max(set(lengths), key=lambda length: (lengths.count(length), length))
@@ -45,9 +44,7 @@ def read_matlab(path: Path) -> RawTable:
     notes = (f"variables of another length were left out: {', '.join(left)}",) if left else ()
     names = tuple(name for name, _ in kept)
     values = np.stack([column for _, column in kept], axis=1)
-    table = RawTable(path, "MATLAB file", names, values, notes=notes)
-    table.require_finite()
-    return table
+    return RawTable(path, "MATLAB file", names, values, notes=notes)
 
 
 def _numbers(data: bytes, name: str) -> Read:
@@ -126,23 +123,20 @@ def read_wav(path: Path) -> RawTable:
     except Exception as error:
         raise ConfigError(
             f"is cut short, or no WAV file of PCM or floats ({error or 'it ends early'}); save it "
-            "again as PCM of 16 or 24 bit",
-            file=path,
+            "again as PCM of 16 or 24 bit"
         ) from None
     if rate <= 0:
-        raise ConfigError(f"has {rate} samples a second; save it again", file=path)
+        raise ConfigError(f"has {rate} samples a second; save it again")
     values = samples.reshape(samples.shape[0], -1).astype(float)
     if samples.dtype == np.uint8:
         values = values / 2**7 - 1  # Eight bits alone are without a sign.
     elif samples.dtype.kind == "i":
         values /= 2.0 ** (8 * samples.dtype.itemsize - 1)
     names = ("Time (s)", *(f"Channel {k + 1}" for k in range(values.shape[1])))
-    table = RawTable(
+    return RawTable(
         file=path,
         format=f"WAV file, {samples.dtype} at {rate} Hz, over full scale",
         names=names,
         values=np.column_stack([np.arange(values.shape[0]) / rate, values]),
         described=(("time", 1, "s"), *(("signal", name, "1") for name in names[1:])),
     )
-    table.require_finite()
-    return table

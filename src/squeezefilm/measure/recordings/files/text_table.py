@@ -112,8 +112,7 @@ def decoded(path: Path) -> tuple[str, list[str]]:
     elif b"\0" in data[:4096]:
         raise ConfigError(
             "holds bytes that no text has; give a text, a Universal File (.uff, .unv) or a MATLAB "
-            "file (.mat)",
-            file=path,
+            "file (.mat)"
         )
     else:
         encoding = "utf-8-sig"
@@ -124,7 +123,7 @@ def decoded(path: Path) -> tuple[str, list[str]]:
         notes.append("the file is no UTF-8 text and was read as Latin-1")
     if "\0" in text:
         line = text.count("\n", 0, text.index("\0")) + 1
-        raise ConfigError("holds a NUL, which no text has", file=path, line=line)
+        raise ConfigError("holds a NUL, which no text has", line=line)
     return text.replace("\r\n", "\n").replace("\r", "\n"), notes
 
 
@@ -136,25 +135,22 @@ def read_text_table(path: Path, said: Described | None = None) -> RawTable:
     """
     text, notes = decoded(path)
     instrument = recognised(text)
-    try:
-        lines = table_lines(text.split("\n"), instrument)
-        times = None if instrument is None else times_of(text, instrument)
-    except ConfigError as error:
-        raise ConfigError(str(error), file=path) from None
+    lines = table_lines(text.split("\n"), instrument)
+    times = None if instrument is None else times_of(text, instrument)
     numbered = [
         (number, line)
         for number, line in enumerate(lines, 1)
         if line.strip() and not line.lstrip().startswith(_COMMENTS)
     ]
     single = instrument is not None and instrument.single
-    notation = _notation(numbered, said, path, 1 if single else 2)
+    notation = _notation(numbered, said, 1 if single else 2)
     first = next(k for k, (_, line) in enumerate(numbered) if notation.is_row(line))
     rows, doubts = _first_table(numbered[first:], {line for _, line in numbered[:first]}, notation)
-    values = values_in(rows, notation, path)
+    values = values_in(rows, notation)
     if instrument is not None and len(instrument.names) >= notation.cells:
         header_line, names = None, instrument.names[: notation.cells]
     else:
-        header_line, names = _names(lines, rows[0][0], notation, said, path)
+        header_line, names = _names(lines, rows[0][0], notation, said)
     if instrument is not None and times is not None:
         count = values[:, 0] if instrument.counted else np.arange(values.shape[0])
         values = values[:, 1:] if instrument.counted else values
@@ -177,13 +173,10 @@ def read_text_table(path: Path, said: Described | None = None) -> RawTable:
         notes=tuple(notes),
         doubts=(*doubts, *_perhaps_cut(text, rows)),
     )
-    table.require_finite()
     return with_meaning(table, instrument)
 
 
-def _notation(
-    numbered: Sequence[tuple[int, str]], said: Described | None, path: Path, least: int
-) -> Notation:
+def _notation(numbered: Sequence[tuple[int, str]], said: Described | None, least: int) -> Notation:
     """The notation in which most lines hold at least so many numbers at the same places, counted
     half where other cells stand among them; of equals the first."""
     sample = [line for _, line in numbered[:_SAMPLE]] + [line for _, line in numbered[-20:]]
@@ -212,13 +205,12 @@ def _notation(
         at = numbered[0][0] if numbered else None
         raise ConfigError(
             f"holds no line with two numbers or more{told}; give a table of numbers, a row a line",
-            file=path,
             line=at,
         )
     return best
 
 
-def values_in(rows: Sequence[tuple[int, str]], notation: Notation, path: Path) -> si.FloatArray:
+def values_in(rows: Sequence[tuple[int, str]], notation: Notation) -> si.FloatArray:
     """The numbers of all rows, shape (rows, columns)."""
     values = np.empty((len(rows), notation.cells))
     for k, (number, line) in enumerate(rows):
@@ -226,7 +218,6 @@ def values_in(rows: Sequence[tuple[int, str]], notation: Notation, path: Path) -
         if len(cells) != notation.cells:
             raise ConfigError(
                 _miscounted(cells, notation, last=k == len(rows) - 1),
-                file=path,
                 line=number,
                 column=min(len(cells), notation.cells + 1),
             )
@@ -235,10 +226,7 @@ def values_in(rows: Sequence[tuple[int, str]], notation: Notation, path: Path) -
                 values[k, column] = notation.number(cell)
             except ValueError:
                 raise ConfigError(
-                    _no_number(cell, notation),
-                    file=path,
-                    line=number,
-                    column=notation.kept[column] + 1,
+                    _no_number(cell, notation), line=number, column=notation.kept[column] + 1
                 ) from None
     return values
 
@@ -266,7 +254,7 @@ def _no_number(cell: str, notation: Notation) -> str:
 
 
 def _names(
-    lines: Sequence[str], first: int, notation: Notation, said: Described | None, path: Path
+    lines: Sequence[str], first: int, notation: Notation, said: Described | None
 ) -> tuple[int | None, tuple[str, ...]]:
     """The line of the columns' names, told or the last one above the numbers that fits, and
     they."""
@@ -278,15 +266,13 @@ def _names(
         if not 1 <= told < first:
             raise ConfigError(
                 f"header = {told}, and the first row of numbers stands in line {first}; tell a "
-                "line before it, or 0 for none",
-                file=path,
+                "line before it, or 0 for none"
             )
         cells = _header_cells(lines[told - 1], notation)
         if len(cells) != notation.cells:
             raise ConfigError(
                 f"the line of the header has {len(cells)} cells, and the rows have "
                 f"{notation.cells}",
-                file=path,
                 line=told,
             )
         return told, tuple(cells)
@@ -299,7 +285,6 @@ def _names(
             f"has {notation.cells} cells where the header above has {len(cells)}: decimals after a "
             "comma and commas between the columns cannot be told apart; export it with semicolons "
             "or tabs, or with decimal points",
-            file=path,
             line=first,
             column=len(cells) + 1,
         )
@@ -311,7 +296,6 @@ def _names(
             f"'{other}' stands beside a number, above the first row of numbers: mend the row if it "
             f"is one, or write header = {above[0]} if it holds the columns' names (0 for a file "
             "without)",
-            file=path,
             line=above[0],
             column=cells.index(other) + 1,
         )

@@ -43,27 +43,26 @@ def read_touchstone(path: Path) -> RawTable:
             version = 2 if key.upper() == "VERSION" else version
             swapped |= value.strip() == "12_21"
             if key.upper() == "REFERENCE" and value.strip():
-                reference = float(_numbers(value, number, path)[0])
+                reference = float(_numbers(value, number)[0])
             if key.upper() in ("NOISE DATA", "END"):
                 break
         elif bare and not bare.startswith("#"):
-            values = _numbers(bare, number, path)
+            values = _numbers(bare, number)
             if rows and len(values) == 5 and len(rows[0]) == 9:
                 notes.append("its noise parameters were left out")
                 break
             rows.append(values)
             lines.append(number)
-    unit, kind, form, ohms = _options(option[1:], path)
+    unit, kind, form, ohms = _options(option[1:])
     reference = ohms if reference is None else reference
     ports = {3: 1, 9: 2}.get(len(rows[0]) if rows else 3)
     if ports is None:
-        raise ConfigError("holds other than one or two ports; export one or two", file=path)
+        raise ConfigError("holds other than one or two ports; export one or two")
     for values, number in zip(rows, lines, strict=True):
         if len(values) != len(rows[0]):
             raise ConfigError(
                 f"has {len(values)} numbers where the rows before have {len(rows[0])}; export it "
                 "again",
-                file=path,
                 line=number,
             )
     table = np.array(rows, dtype=float).reshape(len(rows), -1)
@@ -84,7 +83,7 @@ def read_touchstone(path: Path) -> RawTable:
     if names[at].startswith("S21"):
         notes.append("S11 + S21 = 1: the device is in series between the ports, S21 is read")
     instrument = recognised(text)
-    raw = RawTable(
+    return RawTable(
         file=path,
         format=f"Touchstone file of {ports} port{'s' * (ports > 1)}, {kind} over {reference:g} ohm",
         names=tuple(names),
@@ -98,11 +97,9 @@ def read_touchstone(path: Path) -> RawTable:
         instrument="" if instrument is None else instrument.name,
         specified=None if instrument is None else instrument.range,
     )
-    raw.require_finite()
-    return raw
 
 
-def _options(words: list[str], path: Path) -> tuple[str, str, str, si.Ohm]:
+def _options(words: list[str]) -> tuple[str, str, str, si.Ohm]:
     """Unit, parameter, form and reference (Ω) of the option line, in any order."""
     unit, kind, form, ohms = "GHz", "S", "MA", 50.0
     for before, word in zip(["", *words], words, strict=False):
@@ -116,9 +113,7 @@ def _options(words: list[str], path: Path) -> tuple[str, str, str, si.Ohm]:
             ohms = float(word)
         elif word != "R":
             raise ConfigError(
-                f"the option '{word[:20]}' is not read; export S, Y or Z parameters as RI, MA or "
-                "DB",
-                file=path,
+                f"the option '{word[:20]}' is not read; export S, Y or Z parameters as RI, MA or DB"
             )
     return unit, kind, form, ohms
 
@@ -166,8 +161,8 @@ def _held(columns: list[str], unit: str, kind: str, form: str) -> tuple[Held, ..
     return frequency, (size, first, decibels), ("phase", second, "deg")
 
 
-def _numbers(text: str, line: int, path: Path) -> list[float]:
+def _numbers(text: str, line: int) -> list[float]:
     try:
         return [float(cell.replace(",", ".")) for cell in text.split()]
     except ValueError:
-        raise ConfigError(f"'{text[:40]}' is no row of numbers", file=path, line=line) from None
+        raise ConfigError(f"'{text[:40]}' is no row of numbers", line=line) from None

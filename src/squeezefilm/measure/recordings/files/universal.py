@@ -29,6 +29,8 @@ _MOTIONS = {8: "displacement", 11: "velocity", 12: "acceleration"}
 _AXES = {1: "x", 2: "y", 3: "z", 4: "rotation x", 5: "rotation y", 6: "rotation z"}
 _OVER_ANOTHER = 4  # the type of a function that is a frequency response
 
+_Column = tuple[str, si.FloatArray]  # with its name
+
 
 @dataclass(frozen=True)
 class _Block:
@@ -57,16 +59,13 @@ def read_universal(path: Path, at: si.Hertz | None = None) -> RawTable:
     # Looked at here, since a pipe must not be waited for there.
     read_regular(path, RECORDING_BYTES, "a Universal File")
     (format, names, moved, notes), (values,) = read_isolated(_table, str(path), at, file=path)
-    table = RawTable(path, format, tuple(names), values, notes=tuple(notes), moved=tuple(moved))
-    table.require_finite()
-    return table
+    return RawTable(path, format, tuple(names), values, notes=tuple(notes), moved=tuple(moved))
 
 
 def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
     """Format, names of the columns, the motions they hold by the file's own words, and notes; and
     the columns' values (read in the child)."""
-    path = Path(file)
-    blocks = _blocks(path)
+    blocks = _blocks(Path(file))
     nodes: dict[int, list[float]] = {}
     a_metre = [float(block.content["length"]) for block in blocks if block.type == 164]
     length = _LENGTHS.get(round(a_metre[-1], 6), "") if a_metre else ""
@@ -77,28 +76,28 @@ def _table(_: bytes, file: str, at: si.Hertz | None) -> Read:
         }
     functions, fields = ([block for block in blocks if block.type == of] for of in (58, 55))
     if fields and nodes:
-        names, columns = _data_at_nodes(fields[0], nodes, path)
+        pairs = _data_at_nodes(fields[0], nodes)
         own = dict.fromkeys(_DIRECTIONS, _motion(fields[0], "spec_data_type"))
     elif functions and nodes and at is not None:
-        names, columns = _functions_at_nodes(functions, nodes, at, path)
+        pairs = _functions_at_nodes(functions, nodes, at)
         own = {"58": _motion(functions[0])}
     elif functions:
-        names, columns = _functions(functions, path)
+        pairs = _functions(functions)
         own = {f"58.{k}": _motion(block) for k, block in enumerate(functions, 1)}
     else:
         kinds = ", ".join(sorted({str(block.type) for block in blocks})) or "none"
         raise ConfigError(
             f"holds no functions (type 58) and no data at nodes (55 with 15); its data sets are of "
-            f"the types {kinds}",
-            file=path,
+            f"the types {kinds}"
         )
+    names = [name for name, _ in pairs]
     moved = [own.get(name.split(" ")[0], "") for name in names]
     notes = [_said(block, nodes) for block in functions[:3]]
     if length and nodes and names[:3] == ["x", "y", "z"]:
         names = [*(f"{name} ({length})" for name in "xyz"), *names[3:]]
     notes += [f"its units (type 164): {count:g} lengths a metre" for count in a_metre[-1:]]
     said = f"Universal File of {len(blocks)} data sets", names, moved, notes
-    return said, [np.stack(columns, axis=1)]
+    return said, [np.stack([column for _, column in pairs], axis=1)]
 
 
 def _blocks(path: Path) -> list[_Block]:
@@ -112,13 +111,11 @@ def _blocks(path: Path) -> list[_Block]:
     marks = [data.count(b"\n", 0, place) + 1 for place in places]
     if len(marks) < 2:
         raise ConfigError(
-            "is no Universal File: its data sets stand between lines with -1 in columns 5 and 6",
-            file=path,
+            "is no Universal File: its data sets stand between lines with -1 in columns 5 and 6"
         )
     if len(marks) % 2:
         raise ConfigError(
             "the data set that begins here is not closed: the file is cut short; export it again",
-            file=path,
             line=marks[-1],
         )
     blocks = []
@@ -126,7 +123,7 @@ def _blocks(path: Path) -> list[_Block]:
     for number, (line, place) in enumerate(zip(marks[::2], places[::2], strict=True)):
         kind = data[place : place + 200].decode("latin-1").partition("\n")[2][:6].strip()
         if not kind.isdigit():
-            raise ConfigError(f"'{kind}' is no type of a data set", file=path, line=line + 1)
+            raise ConfigError(f"'{kind}' is no type of a data set", line=line + 1)
         if int(kind) not in _READ:
             continue
         try:
@@ -137,16 +134,14 @@ def _blocks(path: Path) -> list[_Block]:
         except Exception as error:
             why = str(error).splitlines()[0] if str(error) else type(error).__name__
             raise ConfigError(
-                f"the data set of type {kind} that begins here cannot be read: {why}",
-                file=path,
-                line=line,
+                f"the data set of type {kind} that begins here cannot be read: {why}", line=line
             ) from error
         blocks.append(_Block(int(kind), line, content))
-        _require_whole(blocks[-1], path)
+        _require_whole(blocks[-1])
     return blocks
 
 
-def _require_whole(block: _Block, path: Path) -> None:
+def _require_whole(block: _Block) -> None:
     """Refuse a function of another count of values than its head says, and nodes with parts
     missing."""
     c = block.content
@@ -156,22 +151,17 @@ def _require_whole(block: _Block, path: Path) -> None:
             raise ConfigError(
                 f"the function that begins here has {count} values, and its head says {said}: the "
                 "file is cut short or was changed",
-                file=path,
                 line=block.line,
             )
     elif block.type == 164:
         if not c.get("length", 0) > 0:
-            raise ConfigError("the units that begin here have parts missing", file=path)
+            raise ConfigError("the units that begin here have parts missing")
     elif block.type in _NODES:
         if len({len(c[key]) for key in ("node_nums", "x", "y", "z")}) > 1:
-            raise ConfigError(
-                "the nodes that begin here have parts missing", file=path, line=block.line
-            )
+            raise ConfigError("the nodes that begin here have parts missing", line=block.line)
     elif np.size(c.get("r3", [])) != np.size(c["node_nums"]):
         raise ConfigError(
-            "the data at nodes that begin here have no value for every node",
-            file=path,
-            line=block.line,
+            "the data at nodes that begin here have no value for every node", line=block.line
         )
 
 
@@ -217,7 +207,7 @@ def _said(block: _Block, nodes: Mapping[int, Sequence[float]]) -> str:
     )
 
 
-def _parts(name: str, values: Any, unit: str = "") -> list[tuple[str, si.FloatArray]]:
+def _parts(name: str, values: Any, unit: str = "") -> list[_Column]:
     """Columns of values that may be complex."""
     array = np.asarray(values)
     end = f" ({unit})" if unit else ""
@@ -229,7 +219,7 @@ def _parts(name: str, values: Any, unit: str = "") -> list[tuple[str, si.FloatAr
     ]
 
 
-def _functions(functions: Sequence[_Block], path: Path) -> tuple[list[str], list[si.FloatArray]]:
+def _functions(functions: Sequence[_Block]) -> list[_Column]:
     x = np.asarray(functions[0].content["x"], dtype=float)
     pairs = [("x", x)]
     for number, block in enumerate(functions, 1):
@@ -238,26 +228,23 @@ def _functions(functions: Sequence[_Block], path: Path) -> tuple[list[str], list
             raise ConfigError(
                 "the function that begins here stands over another abscissa than the first; save "
                 "functions of one abscissa in a file",
-                file=path,
                 line=block.line,
             )
         pairs += _parts(f"58.{number}", block.content["data"], _unit(block))
-    return [name for name, _ in pairs], [column for _, column in pairs]
+    return pairs
 
 
-def _data_at_nodes(
-    block: _Block, nodes: Mapping[int, Sequence[float]], path: Path
-) -> tuple[list[str], list[si.FloatArray]]:
-    places = _places([int(node) for node in block.content["node_nums"]], nodes, block, path)
+def _data_at_nodes(block: _Block, nodes: Mapping[int, Sequence[float]]) -> list[_Column]:
+    places = _places([int(node) for node in block.content["node_nums"]], nodes, block)
     pairs = list(zip("xyz", places.T, strict=True))
     for direction in _DIRECTIONS:
         pairs += _parts(direction, block.content[direction])
-    return [name for name, _ in pairs], [column for _, column in pairs]
+    return pairs
 
 
 def _functions_at_nodes(
-    functions: Sequence[_Block], nodes: Mapping[int, Sequence[float]], at: si.Hertz, path: Path
-) -> tuple[list[str], list[si.FloatArray]]:
+    functions: Sequence[_Block], nodes: Mapping[int, Sequence[float]], at: si.Hertz
+) -> list[_Column]:
     places, values = [], []
     for block in functions:
         x, data = np.asarray(block.content["x"]), np.asarray(block.content["data"])
@@ -269,32 +256,28 @@ def _functions_at_nodes(
             raise ConfigError(
                 f"the function that begins here does not reach the frequency told (asked, first, "
                 f"last: {shown})",
-                file=path,
                 line=block.line,
             )
-        places.append(_places([int(block.content["rsp_node"])], nodes, block, path)[0])
+        places.append(_places([int(block.content["rsp_node"])], nodes, block)[0])
         values.append(data[nearest])
     kinds = {(_unit(block), _motion(block)) for block in functions}
     if len(kinds) > 1:
         raise ConfigError(
             "its functions are of several quantities or units, and a scan is of one; save those of "
-            "one quantity in a file",
-            file=path,
+            "one quantity in a file"
         )
     columns = _parts("58", np.array(values), _unit(functions[0]))
-    pairs = [*zip("xyz", np.array(places).T, strict=True), *columns]
-    return [name for name, _ in pairs], [column for _, column in pairs]
+    return [*zip("xyz", np.array(places).T, strict=True), *columns]
 
 
 def _places(
-    numbers: Sequence[int], nodes: Mapping[int, Sequence[float]], block: _Block, path: Path
+    numbers: Sequence[int], nodes: Mapping[int, Sequence[float]], block: _Block
 ) -> si.FloatArray:
     lacking = [number for number in numbers if number not in nodes]
     if lacking:
         raise ConfigError(
             f"the data that begin here are of node {lacking[0]}, whose place no data set of type "
             "15 gives",
-            file=path,
             line=block.line,
         )
     return np.array([nodes[number] for number in numbers], dtype=float)
