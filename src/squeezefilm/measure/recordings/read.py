@@ -23,12 +23,15 @@ from squeezefilm.measure.recordings.description import (
     load_description,
 )
 from squeezefilm.measure.recordings.doubts import doubts_of
-from squeezefilm.measure.recordings.files.analysers import is_4294a, read_4294a
+from squeezefilm.measure.recordings.files.analysers import (
+    TOUCHSTONE,
+    is_4294a,
+    read_4294a,
+    read_touchstone,
+)
 from squeezefilm.measure.recordings.files.raw_table import RawTable
 from squeezefilm.measure.recordings.files.scipy_files import read_matlab, read_wav
 from squeezefilm.measure.recordings.files.text_table import read_text_table
-from squeezefilm.measure.recordings.files.touchstone import SUFFIX as TOUCHSTONE
-from squeezefilm.measure.recordings.files.touchstone import read_touchstone
 from squeezefilm.measure.recordings.files.universal import SUFFIXES, read_universal
 from squeezefilm.measure.recordings.kinds import FrequencyResponse, Recording, VoltageSweeps
 from squeezefilm.measure.recordings.quantities_read import Reading
