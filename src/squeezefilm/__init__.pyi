@@ -50,7 +50,8 @@ if TYPE_CHECKING:
     from squeezefilm.instruments.session.record.trace import read_trace as read_trace
     from squeezefilm.measure.calibration.blind import BlindPrediction, Score
     from squeezefilm.measure.calibration.folder import FolderCalibration
-    from squeezefilm.measure.fits.by_kind import Fit, NamedRecording
+    from squeezefilm.measure.fits.by_kind import NamedRecording
+    from squeezefilm.measure.fits.estimate import FitResult
     from squeezefilm.measure.recordings.read import check_recording as check_recording
     from squeezefilm.measure.recordings.read import read_recording as read_recording
     from squeezefilm.physics.chain.pad_law import FrictionModel
@@ -407,7 +408,7 @@ if TYPE_CHECKING:
         display: NamedDisplay | str | Path | None = ...,
         *,
         progress: SayProgress | None = ...,
-    ) -> Fit:
+    ) -> FitResult:
         """The fit that goes with the kind of a recording: a circuit with an impedance (constants of the"""
     def calibrate_display(
         display: NamedDisplay | str | Path,

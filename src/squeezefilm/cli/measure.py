@@ -12,7 +12,7 @@ from squeezefilm.core.errors import InputError
 
 if TYPE_CHECKING:
     from squeezefilm.core.progress import SayProgress
-    from squeezefilm.measure.fits.by_kind import Fit
+    from squeezefilm.measure.fits.estimate import FitResult
     from squeezefilm.measure.recordings.read import RecordingCheck
 
 measure = typer.Typer(
@@ -112,7 +112,7 @@ def fit(
         raise typer.Exit(1)
 
 
-def _fitted(found: RecordingCheck, display: str | None, step: SayProgress) -> Fit:
+def _fitted(found: RecordingCheck, display: str | None, step: SayProgress) -> FitResult:
     """The fit of what was read; where it is refused, what is doubtful of the recording is said."""
     from squeezefilm.measure.fits.by_kind import fit_recording
     from squeezefilm.physics.display import load_display

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any, Protocol
+from typing import Annotated, Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import ReadBy, reads_text
@@ -12,7 +12,7 @@ from squeezefilm.core.progress import SayProgress
 from squeezefilm.measure.fits.ceramic.constants import bar_constants
 from squeezefilm.measure.fits.ceramic.disc import disc_constants
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
-from squeezefilm.measure.fits.estimate import Adequacy, Observing
+from squeezefilm.measure.fits.estimate import FitResult
 from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.friction.friction_curve import compare_friction_curve
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
@@ -44,21 +44,13 @@ NamedRecording = Annotated[kinds.Recording, ReadBy(read_recording)]
 """A recording, or in its place the path of its file (see `reads_text`)."""
 
 
-class Fit(Observing, Protocol):
-    """Attributes that every fit has, whatever was fitted: estimates are its fields of that type."""
-
-    @property
-    def adequacy(self) -> Adequacy:
-        """Judgement of whether the fitted model describes what was recorded."""
-
-
 @reads_text
 def fit_recording(
     recording: NamedRecording,
     display: NamedDisplay | None = None,
     *,
     progress: SayProgress | None = None,
-) -> Fit:
+) -> FitResult:
     """The fit that goes with the kind of a recording: a circuit with an impedance (constants of the
     material with that of a bare ceramic bar or disc, whose shape its description names), modes with
     a frequency response, models of friction with a friction curve; a frozen dataclass whose numbers
@@ -84,14 +76,14 @@ def fit_recording(
     return fit(recording, display, progress)
 
 
-def response_fit(fit: Fit) -> Fit | None:
+def response_fit(fit: FitResult) -> FitResult | None:
     """The fit of the frequency response that raw signals give, which has the numbers; None for a
     fit of anything else. Raises what `fit_recording` raises."""
     response = getattr(fit, "response", None)
     return fit_recording(response) if isinstance(response, kinds.FrequencyResponse) else None
 
 
-def _swept(sweep: kinds.ImpedanceSweep, *_: object) -> Fit:
+def _swept(sweep: kinds.ImpedanceSweep, *_: object) -> FitResult:
     """A circuit, or the constants of a bare ceramic."""
     if sweep.body is None:
         return fit_impedance(sweep)
@@ -100,7 +92,7 @@ def _swept(sweep: kinds.ImpedanceSweep, *_: object) -> Fit:
     return disc_constants(sweep, sweep.body)
 
 
-def _line(scan: kinds.LineScan, display: Display | None, _: object) -> Fit:
+def _line(scan: kinds.LineScan, display: Display | None, _: object) -> FitResult:
     """A wave along a line, beside the shape of a plate that resonates near the scan's frequency."""
     plate = None if display is None else display.actuator
     if isinstance(plate, RectangularPlate):
@@ -110,7 +102,7 @@ def _line(scan: kinds.LineScan, display: Display | None, _: object) -> Fit:
     return fit_line_scan(scan)
 
 
-def _grid(scan: kinds.GridScan, display: Display | None, _: object) -> Fit:
+def _grid(scan: kinds.GridScan, display: Display | None, _: object) -> FitResult:
     """A scan of a face beside the plate's solved shapes."""
     plate = None if display is None else display.actuator
     if not isinstance(plate, RectangularPlate):
@@ -127,11 +119,11 @@ def _grid(scan: kinds.GridScan, display: Display | None, _: object) -> Fit:
 
 def _curve(
     curve: kinds.FrictionCurve, display: Display | None, progress: SayProgress | None
-) -> Fit:
+) -> FitResult:
     return compare_friction_curve(curve, progress, None if curve.display else display)
 
 
-FITS: Mapping[type, Callable[[Any, Display | None, SayProgress | None], Fit]] = {
+FITS: Mapping[type, Callable[[Any, Display | None, SayProgress | None], FitResult]] = {
     kinds.ImpedanceSweep: _swept,
     kinds.FrequencyResponse: lambda response, *_: fit_frequency_response(response),
     kinds.LineScan: _line,

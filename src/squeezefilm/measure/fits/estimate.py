@@ -13,7 +13,7 @@ import math
 import warnings
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, NamedTuple, ParamSpec, Protocol, TypeVar
+from typing import Annotated, ClassVar, NamedTuple, ParamSpec, TypeVar
 
 import numpy as np
 
@@ -57,9 +57,15 @@ class Adequacy:
 
 
 class FitResult(Result):
-    """A fit's result: its estimates and whether it is adequate are what a person looks for."""
+    """A fit's result: its `Estimate`s and whether it is adequate are what a person looks for."""
 
+    adequacy: Adequacy
     _shown: ClassVar[str] = "adequacy.sentence"
+
+    @property
+    def observations(self) -> tuple[Observation, ...]:
+        """Observations for a calibration; none where no answer of a display was fitted."""
+        return ()
 
     def _told(self) -> Iterator[tuple[str, str]]:
         estimates = ((name, value) for name, value in vars(self).items())
@@ -88,6 +94,14 @@ class Observation:
     def in_words(self, answer: str) -> str:
         """An answer as it is said, with the recording that it was read from."""
         return f"{answer} ({self.recording})" if self.recording else answer
+
+
+def observed(conditions: Mapping[str, float], **answers: Estimate) -> tuple[Observation, ...]:
+    """Observations of answers by their names, all estimated under some `conditions` (SI)."""
+    return tuple(
+        Observation(answer, estimate.value, estimate.standard_error, conditions)
+        for answer, estimate in answers.items()
+    )
 
 
 # Of a standard error, to either side of a fitted number.
@@ -159,17 +173,7 @@ def propagated(
 
 
 _P = ParamSpec("_P")
-
-
-class Observing(Protocol):
-    """A fit: it has observations."""
-
-    @property
-    def observations(self) -> tuple[Observation, ...]:
-        """Observations for a calibration."""
-
-
-_F = TypeVar("_F", bound=Observing)
+_F = TypeVar("_F", bound=FitResult)
 
 
 def guarded_fit(fit: Callable[_P, _F]) -> Callable[_P, _F]:

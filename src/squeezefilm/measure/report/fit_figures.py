@@ -10,7 +10,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, SPEED, N, shown
-from squeezefilm.measure.fits.by_kind import Fit
+from squeezefilm.measure.fits.estimate import FitResult
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.recordings import kinds
 from squeezefilm.measure.recordings.read import RecordingCheck
@@ -49,7 +49,7 @@ _OVER = {
 }
 
 
-def fit_figure(check: RecordingCheck, fit: Fit) -> Figure | None:
+def fit_figure(check: RecordingCheck, fit: FitResult) -> Figure | None:
     """Data, model and residual of a fit; None for a fit that has nothing to draw."""
     if isinstance(fit, CurveComparison):
         return comparison_figure(fit)
@@ -63,7 +63,7 @@ def fit_figure(check: RecordingCheck, fit: Fit) -> Figure | None:
     return None if compared is None else _over_abscissa((subject, compared))
 
 
-def modelled(check: RecordingCheck, fit: Fit) -> Modelled | None:
+def modelled(check: RecordingCheck, fit: FitResult) -> Modelled | None:
     """Model of a fit at the recording's points, over one abscissa; None where it has no such.
 
     A fit has either `admittance`, a function of frequency, or arrays `model` and `residual` over a

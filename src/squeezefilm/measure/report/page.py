@@ -25,8 +25,7 @@ from squeezefilm.core.kit.page_style import (
 from squeezefilm.core.kit.terminal import bullets as printed_bullets
 from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.core.results import stamp, to_json
-from squeezefilm.measure.fits.by_kind import Fit
-from squeezefilm.measure.fits.estimate import LEVEL, Adequacy, Estimate
+from squeezefilm.measure.fits.estimate import LEVEL, Adequacy, Estimate, FitResult
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
 from squeezefilm.measure.fits.friction.friction_scores import NO_PHYSICS
 from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
@@ -63,7 +62,7 @@ def show_folder(checked: FolderCheck) -> None:
         )
 
 
-def show_fit(check: RecordingCheck, fit: Fit, response: Fit | None = None) -> None:
+def show_fit(check: RecordingCheck, fit: FitResult, response: FitResult | None = None) -> None:
     """Print the numbers of a fit with their intervals, and whether its model is adequate; of raw
     signals also those of the `response` that they give."""
     title = f"{check.recording.told.name} ({check.file.name}): {check.kind}"
@@ -73,7 +72,7 @@ def show_fit(check: RecordingCheck, fit: Fit, response: Fit | None = None) -> No
     printed_bullets(plain_console(), [("doubtful", text, "yellow") for text in check.doubts])
 
 
-def _show_one(title: str, fit: Fit) -> None:
+def _show_one(title: str, fit: FitResult) -> None:
     console = plain_console()
     heading(console, title)
     if isinstance(fit, CurveComparison):
@@ -128,7 +127,7 @@ HEAD = ("quantity", "value", si.percent(LEVEL) + " interval", "standard error")
 _LEAST_DIGITS, _MOST_DIGITS = 3, 9
 
 
-def estimate_rows(fit: Fit) -> list[tuple[str, ...]]:
+def estimate_rows(fit: FitResult) -> list[tuple[str, ...]]:
     """The estimates of a fit: name, value, interval, standard error; with so many digits that two
     of the standard error are seen."""
     rows: list[tuple[str, ...]] = []
@@ -205,7 +204,9 @@ def write_checks(checked: FolderCheck, folder: Path) -> Path:
     return folder / "check.html"
 
 
-def write_fit(check: RecordingCheck, fit: Fit, folder: Path, response: Fit | None = None) -> Path:
+def write_fit(
+    check: RecordingCheck, fit: FitResult, folder: Path, response: FitResult | None = None
+) -> Path:
     """Write fit.json, the picture of data, model and residual and fit.html into `folder`; of raw
     signals also the fit of the `response` that they give.
 
@@ -237,7 +238,9 @@ def write_fit(check: RecordingCheck, fit: Fit, folder: Path, response: Fit | Non
     return folder / "fit.html"
 
 
-def fit_summary(check: RecordingCheck, fit: Fit, response: Fit | None = None) -> dict[str, Any]:
+def fit_summary(
+    check: RecordingCheck, fit: FitResult, response: FitResult | None = None
+) -> dict[str, Any]:
     """Numbers as plain JSON values: estimates in the unit that each names, adequacy,
     observations for a calibration, and how the recording was read."""
     summary: dict[str, Any] = {"recording": check.summary(), **_numbers(fit)}
@@ -246,7 +249,7 @@ def fit_summary(check: RecordingCheck, fit: Fit, response: Fit | None = None) ->
     return summary | {"stamp": stamp(summary)}
 
 
-def _numbers(fit: Fit) -> dict[str, Any]:
+def _numbers(fit: FitResult) -> dict[str, Any]:
     numbers: dict[str, Any] = {
         "estimates": {
             name.replace(" ", "_"): to_json(estimate) for name, estimate in estimates(fit)

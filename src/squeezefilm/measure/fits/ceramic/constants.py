@@ -23,7 +23,7 @@ from squeezefilm.measure.fits.complex_fit import (
     sweep_adequacy,
     sweep_peaks,
 )
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, Observation
+from squeezefilm.measure.fits.estimate import Adequacy, Estimate, FitResult
 from squeezefilm.measure.recordings.kinds import CeramicBar, ImpedanceSweep
 
 PARAMETERS = (
@@ -126,8 +126,8 @@ def permittivity_read(
     return float(np.median(np.abs(sweep.admittance / (1 + square * (motion - 1))) / free))
 
 
-@dataclass(frozen=True, eq=False)
-class CeramicConstants:
+@dataclass(frozen=True, eq=False, repr=False)
+class CeramicConstants(FitResult):
     """s11 at constant field (m²/N), d31 (m/V, by convention negative), the relative permittivity
     ε33 at constant stress, the Q of s11, and the loss tangents of d31 and ε33. `model` and
     `residual` (S, (points,)) are at the sweep's `frequency` (Hz)."""
@@ -143,11 +143,6 @@ class CeramicConstants:
     residual: si.ComplexArray
     adequacy: Adequacy
     fit: ComplexFit
-
-    @property
-    def observations(self) -> tuple[Observation, ...]:
-        """No observations: constants of a material are no answers of a display."""
-        return ()
 
 
 def constants_of(
@@ -206,7 +201,7 @@ def resonance_peaks(sweep: ImpedanceSweep) -> SweepPeaks:
     return peaks
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class BarConstants(CeramicConstants):
     """`CeramicConstants` of a bar, and its coupling k31."""
 

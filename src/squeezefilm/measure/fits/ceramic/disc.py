@@ -33,7 +33,7 @@ from squeezefilm.physics.plate.ring.ceramic_disc import (
 _LEAST_SLENDERNESS = 5.0
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DiscConstants(CeramicConstants):
     """Constants of a ceramic by the sweep of a disc's first radial mode: `CeramicConstants`, s12 at
     constant field (m²/N), Poisson's ratio −s12/s11, and the planar coupling.

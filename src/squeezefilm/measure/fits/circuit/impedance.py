@@ -19,7 +19,13 @@ from squeezefilm.measure.fits.circuit.choice import (
     sweep_motion,
 )
 from squeezefilm.measure.fits.complex_fit import ComplexFit, require_passive, sweep_adequacy
-from squeezefilm.measure.fits.estimate import Adequacy, Estimate, FitResult, Observation
+from squeezefilm.measure.fits.estimate import (
+    Adequacy,
+    Estimate,
+    FitResult,
+    Observation,
+    observed,
+)
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 
@@ -112,14 +118,12 @@ class ImpedanceFit(FitResult):
         branch = self.strongest
         if not branch.quality_factor.standard_error < branch.quality_factor.value / 2:
             return ()
-        return tuple(
-            Observation(answer, estimate.value, estimate.standard_error)
-            for answer, estimate in (
-                ("resonance_frequency", branch.series_resonance),
-                ("parallel_resonance_frequency", branch.parallel_resonance),
-                ("quality_factor", branch.quality_factor),
-                ("static_capacitance", self.static_capacitance),
-            )
+        return observed(
+            {},
+            resonance_frequency=branch.series_resonance,
+            parallel_resonance_frequency=branch.parallel_resonance,
+            quality_factor=branch.quality_factor,
+            static_capacitance=self.static_capacitance,
         )
 
 

@@ -22,6 +22,7 @@ from squeezefilm.measure.fits.estimate import (
     adequacy_of,
     guarded_fit,
     interval_around,
+    observed,
 )
 from squeezefilm.measure.fits.friction.strokes import Strokes, sliding_strokes
 from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
@@ -74,21 +75,11 @@ class FrictionBenchFit(FitResult):
             at |= {"frequency": self.recording.frequency}
         if not self.relative_friction or not self.adequacy.adequate:
             return ()
-        still = self.coefficients[0]
-        return (
-            Observation("friction_coefficient", still.value, still.standard_error, at),
-            *(
-                Observation(
-                    "relative_friction",
-                    estimate.value,
-                    estimate.standard_error,
-                    at | {"vibration_amplitude": float(amplitude)},
-                )
-                for amplitude, estimate in zip(
-                    self.amplitudes[1:], self.relative_friction, strict=True
-                )
-            ),
-        )
+        seen = list(observed(at, friction_coefficient=self.coefficients[0]))
+        for amplitude, estimate in zip(self.amplitudes[1:], self.relative_friction, strict=True):
+            vibrating = at | {"vibration_amplitude": float(amplitude)}
+            seen += observed(vibrating, relative_friction=estimate)
+        return tuple(seen)
 
 
 @guarded_fit

@@ -17,6 +17,7 @@ from squeezefilm.measure.fits.estimate import (
     adequacy_of,
     guarded_fit,
     inverse_of,
+    observed,
 )
 from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
 from squeezefilm.measure.recordings.kinds import FrequencyResponse
@@ -79,6 +80,10 @@ def _around(size: si.FloatArray, peak: int, share: float) -> si.IntArray:
     return np.arange(low, high + 1)
 
 
+PHASE_REVERSED = (
+    "The phase was recorded with the other sign (it rises through the resonance); the fit is of "
+    "the complex conjugate. "
+)
 _TRIED_MODES = 4
 _FEWEST_POINTS = 12
 # A wider band needs curved residuals; one mode's band is narrow.
@@ -138,15 +143,11 @@ class FrequencyResponseFit(FitResult):
         first, largest = self.modes[0], self.largest_per_volt
         remainder = (largest.value - first.amplitude_per_volt.value) / 2
         error = float(np.hypot(largest.standard_error, remainder))
-        return (
-            *(
-                Observation(name, estimate.value, estimate.standard_error, under)
-                for name, estimate in (
-                    ("resonance_frequency", first.frequency),
-                    ("quality_factor", first.quality_factor),
-                )
-            ),
-            Observation("amplitude_per_volt", largest.value, error, under),
+        return observed(
+            under,
+            resonance_frequency=first.frequency,
+            quality_factor=first.quality_factor,
+            amplitude_per_volt=replace(largest, standard_error=error),
         )
 
 
@@ -353,17 +354,11 @@ class _FittedResponse:
         )
 
     def _adequacy(self) -> Adequacy:
-        said = (
-            "The phase was recorded with the other sign (it rises through the resonance); the fit "
-            "is of the complex conjugate. "
-            if self.reversed_phase
-            else ""
-        )
         return adequacy_of(
             self.response,
             self.fit.residual * self.size,
             lambda i: f"at {si.format_quantity(self.band.f[i], si.Unit('Hz'), 5)}",
             remedy="Cut the band to the resonance, or drive less: a mode that shifts with its "
             "amplitude is none of a linear plate.",
-            said=said,
+            said=PHASE_REVERSED if self.reversed_phase else "",
         )

@@ -12,7 +12,6 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import (
     Adequacy,
     FitResult,
-    Observation,
     guarded_fit,
 )
 from squeezefilm.measure.fits.vibration.frequency_response import modal_circle
@@ -37,19 +36,14 @@ class RawSignalsFit(FitResult):
     """The response between two time signals.
 
     `response` (m/V, with its coherence) at the frequencies that were driven is to be fitted as any
-    frequency response; `standard_error` (m/V) is that of its size, of noise that does not come from
-    the drive.
+    frequency response, which then has the observations; `standard_error` (m/V) is that of its size,
+    of noise that does not come from the drive.
     """
 
     recording: RawSignals
     response: FrequencyResponse
     standard_error: si.MetrePerVoltArray
     adequacy: Adequacy
-
-    @property
-    def observations(self) -> tuple[Observation, ...]:
-        """No observations of the display: fit the `response`, which has them."""
-        return ()
 
 
 @guarded_fit

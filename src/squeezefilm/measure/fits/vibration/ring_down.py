@@ -18,6 +18,7 @@ from squeezefilm.measure.fits.estimate import (
     correlation_factor,
     guarded_fit,
     inverse_of,
+    observed,
 )
 from squeezefilm.measure.fits.least_squares import (
     NonlinearFit,
@@ -70,13 +71,7 @@ class RingDownFit(FitResult):
         """
         if not self.adequacy.adequate:
             return ()
-        return tuple(
-            Observation(name, estimate.value, estimate.standard_error, {})
-            for name, estimate in (
-                ("resonance_frequency", self.frequency),
-                ("quality_factor", self.quality_factor),
-            )
-        )
+        return observed({}, resonance_frequency=self.frequency, quality_factor=self.quality_factor)
 
 
 @guarded_fit

@@ -20,9 +20,14 @@ from squeezefilm.measure.fits.estimate import (
     correlation_factor,
     guarded_fit,
     inverse_of,
+    observed,
 )
 from squeezefilm.measure.fits.least_squares import NonlinearFit, fit_nonlinear
-from squeezefilm.measure.fits.vibration.frequency_response import ModalCircle, modal_circle
+from squeezefilm.measure.fits.vibration.frequency_response import (
+    PHASE_REVERSED,
+    ModalCircle,
+    modal_circle,
+)
 from squeezefilm.measure.recordings.kinds import VoltageSweeps
 from squeezefilm.physics.plate.loaded_mode import FreePlate
 
@@ -67,13 +72,11 @@ class VoltageSweepsFit(FitResult):
         the fit is not adequate."""
         if not self.adequacy.adequate:
             return ()
-        return tuple(
-            Observation(name, estimate.value, estimate.standard_error, {"voltage": 0.0})
-            for name, estimate in (
-                ("resonance_frequency", self.frequency),
-                ("quality_factor", self.quality_factor),
-                ("amplitude_per_volt", self.amplitude_per_volt),
-            )
+        return observed(
+            {"voltage": 0.0},
+            resonance_frequency=self.frequency,
+            quality_factor=self.quality_factor,
+            amplitude_per_volt=self.amplitude_per_volt,
         )
 
     @si.checked_numbers
@@ -265,10 +268,7 @@ class _Fitted:
                 f"at {si.format_quantity(f[i], si.Unit('Hz'), 5)} and "
                 f"{si.format_quantity(points.v[self.used][i] * volts, si.Unit('V'), 3)}"
             ),
-            said="The phase was recorded with the other sign (it rises through the resonance); the "
-            "fit is of the complex conjugate. "
-            if points.phase_reversed
-            else "",
+            said=PHASE_REVERSED if points.phase_reversed else "",
             remedy="Narrow the band to the one mode, or wait between sweeps until the plate is "
             "cold.",
         )
