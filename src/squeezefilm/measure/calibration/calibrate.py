@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -29,6 +29,7 @@ from squeezefilm.measure.calibration.friction_posterior import (
     finger_mixture,
     friction_of_points,
     friction_posterior,
+    normal_scores,
 )
 from squeezefilm.measure.calibration.identified import (
     Identification,
@@ -53,13 +54,14 @@ from squeezefilm.measure.calibration.solved_answers import (
     in_parts,
 )
 from squeezefilm.measure.fits.estimate import Observation
-from squeezefilm.physics.chain.prediction import Prediction, predict
+from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.chain.touch import touch
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.working_mode import WorkingMode
 from squeezefilm.physics.uncertainty.drawn import evaluate
 from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, between_limits
 from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, quantiles
+from squeezefilm.physics.uncertainty.parameters import Parameter
 from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 
 _JOINT = 1024
@@ -129,8 +131,8 @@ def calibrate(
     tell("friction as described", 0.0)
     before = friction_before(display, seed)
     finger = _fitted_finger(calibrated, likelihood, effort, seed, next(steps))
-    made = _joint(finger, plate, effort.joint_draws, seed, next(steps))
-    return _calibration(display, calibrated, every, plate, finger, before, made, seed, next(steps))
+    joint = _joint(finger, plate, effort.joint_draws, seed, next(steps))
+    return _calibration(display, calibrated, every, plate, finger, before, joint, seed, next(steps))
 
 
 def friction_before(display: Display, seed: int) -> FrictionInterval | None:
@@ -139,55 +141,55 @@ def friction_before(display: Display, seed: int) -> FrictionInterval | None:
     prediction = predict(display)
     mixture = Mixture(display, prediction, driven=prediction.voltage is not None)
     drawn, refused = evaluate(mixture, sobol_points(mixture, _BEFORE, seed), lambda _: None)
-    if refused.share > MOST_REFUSED:
+    return _interval(drawn.friction, drawn.amplitude, refused.share)
+
+
+def _interval(
+    friction: si.FloatArray, amplitude: si.MetreArray, refused: float
+) -> FrictionInterval | None:
+    """The interval of draws; None where too large a share of them was `refused`."""
+    if refused > MOST_REFUSED:
         return None
-    low, middle, high = (float(quantile) for quantile in quantiles(drawn.friction))
-    return FrictionInterval(middle, (low, high), float(np.nanmedian(drawn.amplitude)))
+    low, middle, high = (float(quantile) for quantile in quantiles(friction))
+    return FrictionInterval(middle, (low, high), float(np.nanmedian(amplitude)))
 
 
 class _Finger(NamedTuple):
-    """Draws of finger and laws, from the posterior where friction was observed, else the priors."""
+    """Draws of finger and laws at `points` of a mixture's unit cube: those of a posterior where
+    friction was observed (by so many `first_draws`), else of the priors."""
 
-    prediction: Prediction
     mixture: Mixture
-    likelihood: FrictionLikelihood
-    posterior: FrictionPosterior | None
     points: si.DimensionlessArray
-    draws: FrictionDraws | None
+    draws: FrictionDraws | None = None
     first_draws: int = 0
+
+    @property
+    def posterior(self) -> FrictionPosterior | None:
+        """The posterior, where friction was observed."""
+        return None if self.draws is None else self.draws.posterior
 
 
 def _fitted_finger(
     display: Display, likelihood: FrictionLikelihood, effort: Effort, seed: int, tell: ShareProgress
 ) -> _Finger:
-    prediction = predict(display)
-    mixture = finger_mixture(display, prediction)
+    mixture = finger_mixture(display, predict(display))
     if not likelihood.observations:
-        points = sobol_points(mixture, effort.joint_draws, seed)
-        return _Finger(prediction, mixture, likelihood, None, points, None)
+        return _Finger(mixture, sobol_points(mixture, effort.joint_draws, seed))
     posterior = friction_posterior(
         mixture, likelihood, seed=seed, draws=effort.finger_draws, progress=tell
     )
     draws = posterior.resampled(effort.joint_draws, seed)
-    return _Finger(
-        prediction, mixture, likelihood, posterior, draws.points, draws, effort.finger_draws
-    )
-
-
-class _Made(NamedTuple):
-    joint: Joint
-    with_finger: si.MetreArray
+    return _Finger(mixture, draws.points, draws, effort.finger_draws)
 
 
 @as_drawn()
 def _joint(
     finger: _Finger, plate: PlateFit | None, count: int, seed: int, tell: ShareProgress
-) -> _Made:
+) -> Joint:
     """Draws of plate and finger at once, with what comes of them at the display's voltage."""
-    from scipy.special import ndtri
-
     random = np.random.default_rng(seed)
-    p, volts = finger.prediction, finger.prediction.voltage
+    p = finger.mixture.prediction
+    volts = p.voltage
     felt = np.full((count, 2), np.nan)
     free = np.full(count, p.held_amplitude)
     modes: list[WorkingMode] = [p.mode] * count
@@ -212,19 +214,18 @@ def _joint(
     if finger.draws is not None:
         where = (Touching(float(np.nanmedian(amplitude))),)
         friction = finger.draws.with_error(friction[:, None], where, seed)[:, 0]
-    scores = ndtri(np.clip(finger.points, 1e-9, 1 - 1e-9))
-    joint = Joint(
+    return Joint(
         () if plate is None else plate.paths,
         np.zeros((count, 0)) if plate is None else plate.posterior.scores[rows],
         finger.mixture.paths,
-        scores,
+        normal_scores(finger.points),
         () if plate is None else plate.predictive.asked,
         np.zeros((count, 0)) if plate is None else plate.predictive.values[rows],
         free,
+        amplitude,
         friction,
         friction - alone,
     )
-    return _Made(joint, amplitude)
 
 
 def _felt(mixture: Mixture, draw: Draw, mode: WorkingMode, free: si.Metre) -> tuple[float, float]:
@@ -244,15 +245,12 @@ def _calibration(
     plate: PlateFit | None,
     finger: _Finger,
     before: FrictionInterval | None,
-    made: _Made,
+    joint: Joint,
     seed: int,
     tell: ShareProgress,
 ) -> Calibration:
-    joint, refused = made.joint, float(np.mean(~np.isfinite(made.joint.friction)))
-    after = None
-    if refused <= MOST_REFUSED:
-        low, middle, high = (float(quantile) for quantile in quantiles(joint.friction))
-        after = FrictionInterval(middle, (low, high), float(np.nanmedian(made.with_finger)))
+    refused = float(np.mean(~np.isfinite(joint.friction)))
+    after = _interval(joint.friction, joint.felt_amplitude, refused)
     misfits = [] if plate is None else [plate.posterior.misfit]
     misfits += [] if finger.posterior is None else [finger.posterior.misfit]
     errors: dict[str, float] = {}
@@ -271,7 +269,7 @@ def _calibration(
         after=after,
         next_measurements=()
         if after is None
-        else _next(finger, joint, made, observations, seed, tell),
+        else _next(finger, joint, after.amplitude, observations, seed, tell),
         emulator_errors=errors,
         solves=0 if plate is None else plate.solves,
         seed=seed,
@@ -304,41 +302,41 @@ def _doubts(plate: PlateFit | None, finger: _Finger, refused: float) -> tuple[st
 
 def _values(plate: PlateFit | None, finger: _Finger, joint: Joint) -> tuple[CalibratedValue, ...]:
     """Plate and finger before and after."""
-    from scipy.special import ndtr
-
     values = []
     if plate is not None:
         after = plate.problem.scores.values(plate.posterior.scores)
         for k, parameter in enumerate(plate.problem.scores.parameters):
-            left = float(np.std(plate.posterior.scores[:, k]))
-            values.append(
-                _value(parameter.path, parameter.unit, parameter.distribution, after[:, k], left)
-            )
+            values.append(_value(parameter, after[:, k], plate.posterior.scores[:, k]))
     if finger.posterior is not None:
-        share = ndtr(joint.finger)
-        for k, item in enumerate(finger.mixture.inputs):
-            distribution = getattr(item, "distribution", None)
-            if distribution is not None:
-                drawn = np.array(item.drawn(share[:, k]), dtype=float)
-                unit = getattr(item, "unit", si.Unit("1"))
-                left = float(np.std(joint.finger[:, k]))
-                values.append(_value(item.path, unit, distribution, drawn, left))
+        for parameter, drawn, scores in _of_finger(finger, joint):
+            values.append(_value(parameter, drawn, scores))
     return tuple(values)
 
 
+def _of_finger(
+    finger: _Finger, joint: Joint
+) -> Iterator[tuple[Parameter, si.FloatArray, si.DimensionlessArray]]:
+    """Each uncertain value of finger, surface and gas, with its draws in its unit and in scores."""
+    from scipy.special import ndtr
+
+    for item, scores in zip(finger.mixture.inputs, joint.finger.T, strict=True):
+        if isinstance(item, Parameter):
+            yield item, np.array(item.drawn(ndtr(scores))), scores
+
+
 def _value(
-    path: str, unit: si.Unit, prior: Distribution, after: si.FloatArray, left: float
+    parameter: Parameter, after: si.FloatArray, scores: si.DimensionlessArray
 ) -> CalibratedValue:
     low, middle, high = (float(quantile) for quantile in np.quantile(after, _TAILS))
-    ends = prior.quantile(np.array([_TAILS[0], _TAILS[-1]]))
+    ends = parameter.distribution.quantile(np.array([_TAILS[0], _TAILS[-1]]))
     return CalibratedValue(
-        path,
-        unit,
+        parameter.path,
+        parameter.unit,
         (float(ends[0]), float(ends[1])),
         middle,
         float(np.std(after)),
         (low, high),
-        min(left, 1.0),
+        min(float(np.std(scores)), 1.0),
     )
 
 
@@ -347,9 +345,7 @@ def _identified(plate: PlateFit | None, finger: _Finger) -> Identification:
     if plate is not None:
         parts.append(identification(plate.paths, plate.posterior.scores))
     if finger.posterior is not None:
-        from scipy.special import ndtri
-
-        scores = ndtri(np.clip(finger.posterior.points, 1e-9, 1 - 1e-9))
+        scores = normal_scores(finger.posterior.points)
         parts.append(
             identification(finger.mixture.paths, scores, finger.posterior.weights.sum(axis=1))
         )
@@ -362,26 +358,21 @@ def _identified(plate: PlateFit | None, finger: _Finger) -> Identification:
 def _next(
     finger: _Finger,
     joint: Joint,
-    made: _Made,
+    amplitude: si.Metre,
     observations: tuple[Observation, ...],
     seed: int,
     tell: ShareProgress,
 ) -> tuple[NextMeasurement, ...]:
-    """Candidates that were not measured yet, ranked."""
-    from scipy.special import ndtr
-
+    """Candidates that were not measured yet, ranked; of friction at an amplitude and at half of
+    it."""
     done = {observation.answer for observation in observations}
     drawn = {
         one.name: joint.answers[:, k]
         for k, one in enumerate(joint.asked)
         if one.name not in done or one.name == MODE_FREQUENCY
     }
-    share = ndtr(joint.finger)
-    for k, item in enumerate(finger.mixture.inputs):
-        if getattr(item, "distribution", None) is not None:
-            drawn[item.path] = np.array(item.drawn(share[:, k]), dtype=float)
+    drawn |= {parameter.path: values for parameter, values, _ in _of_finger(finger, joint)}
     options = candidates(drawn)
-    amplitude = float(np.nanmedian(made.with_finger))
     # The error of the law at the first is that in the joint draws, by the seed.
     where = (Touching(amplitude), Touching(amplitude / 2))
     curves = friction_of_points(

@@ -61,9 +61,9 @@ class FrictionInterval:
 @dataclass(frozen=True, eq=False)
 class Joint:
     """Draws of everything at once, in scores: `plate` (draws, parameters), `finger` (draws, inputs
-    of the mixture: `finger_paths`), with the bench's own answers (draws, asked; SI), free amplitude
-    and µ′/µ at the display's voltage (draws,), of which `law_error` (draws,) is what the laws
-    themselves are taken to be off by."""
+    of the mixture: `finger_paths`), with the bench's own answers (draws, asked; SI), and at the
+    display's voltage the free amplitude, the one with the finger on and µ′/µ (draws,), of which
+    `law_error` (draws,) is what the laws themselves are taken to be off by."""
 
     plate_paths: tuple[str, ...]
     plate: si.DimensionlessArray
@@ -72,6 +72,7 @@ class Joint:
     asked: tuple[Asked, ...]
     answers: si.FloatArray
     amplitude: si.MetreArray
+    felt_amplitude: si.MetreArray
     friction: si.DimensionlessArray
     law_error: si.DimensionlessArray
 

@@ -72,6 +72,13 @@ def friction_of(mixture: Mixture, draw: Draw, where: tuple[Touching, ...]) -> si
     return friction
 
 
+def normal_scores(points: si.DimensionlessArray) -> si.DimensionlessArray:
+    """Points of a unit cube as independent standard normal numbers, of the same shape."""
+    from scipy.special import ndtri
+
+    return np.asarray(ndtri(np.clip(points, 1e-9, 1 - 1e-9)))
+
+
 @as_drawn()
 def friction_of_points(
     mixture: Mixture,
@@ -214,7 +221,7 @@ def friction_posterior(
     as many again in `ROUNDS` rounds. Raises `OutOfRangeError` as `weighted`; interrupted it goes on
     from what was kept.
     """
-    from scipy.special import logsumexp, ndtr, ndtri
+    from scipy.special import logsumexp, ndtr
     from scipy.stats import qmc
 
     tell = progress or (lambda _, __: None)
@@ -226,8 +233,8 @@ def friction_posterior(
     posterior = weighted(mixture, likelihood, points, curves)
     # Draws of every round count by the mixture of all that was drawn from.
     proposals: list[tuple[int, si.FloatArray | None, si.FloatArray | None]] = [(draws, None, None)]
+    scores = normal_scores(points)
     for number in range(ROUNDS):
-        scores = ndtri(np.clip(points, 1e-9, 1 - 1e-9))
         weight = posterior.weights.sum(axis=1)
         middle = weight @ scores
         spread = (scores - middle).T @ (weight[:, None] * (scores - middle))
@@ -242,7 +249,7 @@ def friction_posterior(
         points = np.vstack([points, more])
         part = within(tell, *ends[number : number + 2])
         curves = np.vstack([curves, friction_of_points(mixture, more, likelihood.where, part)])
-        scores = ndtri(np.clip(points, 1e-9, 1 - 1e-9))
+        scores = normal_scores(points)
         total = sum(count for count, _, _ in proposals)
         parts = []
         for count, centre, covariance in proposals:

@@ -25,6 +25,7 @@ from squeezefilm.measure.calibration.solved_answers import (
     MODE_FREQUENCY,
     PLATE_ANSWERS,
     Asked,
+    SolvedAnswers,
     asked_by,
     solved_answers,
 )
@@ -83,8 +84,8 @@ def design_sizes(parameters: int) -> tuple[int, int]:
 
 
 class Solves:
-    """Solved plates as they are added: scores, logarithms of answers, errors of solver and
-    readings."""
+    """Solved plates as they are added: their scores (`points`), what was `solved` of each, and why
+    others were `refused`."""
 
     def __init__(
         self,
@@ -97,11 +98,8 @@ class Solves:
         observed = {asked_by(seen) for seen in observations}
         self._needed = np.array([answer in observed or answer in WORKING for answer in self.asked])
         self.points: list[si.FloatArray] = []
-        self.logs: list[si.FloatArray] = []
-        self.errors: list[si.FloatArray] = []
-        self.readings: list[si.FloatArray] = []
-        self.lost = 0
-        self.example = ""
+        self.solved: list[SolvedAnswers] = []
+        self.refused: list[str] = []
 
     def add(self, points: si.DimensionlessArray, said: str, tell: ShareProgress) -> None:
         """Solve plates at scores; one that has no such mode is left out and counted."""
@@ -112,40 +110,32 @@ class Solves:
                 display = with_calibrated(self.display, dict(zip(paths, row.tolist(), strict=True)))
                 solved = solved_answers(display.actuator, self.asked)
             except SqueezefilmError as error:
-                self._lose(str(error))
+                self.refused.append(str(error))
                 continue
             lacking = self._needed & ~(solved.values > 0)
             if np.any(lacking):
-                self._lose(f"it has no {self.asked[int(np.argmax(lacking))].said}")
+                self.refused.append(f"it has no {self.asked[int(np.argmax(lacking))].said}")
                 continue
             self.points.append(point)
-            self.logs.append(np.log(solved.values))
-            self.errors.append(solved.errors)
-            self.readings.append(solved.readings)
-
-    def _lose(self, why: str) -> None:
-        self.lost += 1
-        self.example = self.example or why
+            self.solved.append(solved)
 
     def require_enough(self) -> None:
         """Refuse priors in which too many plates have no answer."""
-        total = self.lost + len(self.points)
-        if self.lost > _MOST_LOST * total:
+        lost, total = len(self.refused), len(self.refused) + len(self.points)
+        if lost > _MOST_LOST * total:
             raise InputError(
-                f"{self.lost} of {total} plates within the priors have no answer (the first: "
-                f"{self.example}); narrow the ranges, or say working_frequency in the file"
+                f"{lost} of {total} plates within the priors have no answer (the first: "
+                f"{self.refused[0]}); narrow the ranges, or say working_frequency in the file"
             )
 
     def problem(self, observations: tuple[Observation, ...]) -> PlateProblem:
         """Observations beside an emulator of all plates so far. An answer that some of them
         have not, and that was not observed, is left out."""
-        logs = np.array(self.logs)
+        values, *of = (np.array(rows) for rows in zip(*self.solved, strict=True))
+        logs = np.log(values)
         whole = np.asarray(np.isfinite(logs).all(axis=0))
         emulator = emulator_of(self.scores.coordinates(np.array(self.points)), logs[:, whole])
-        solver_errors, readings = (
-            np.sqrt(np.mean(np.square(part), axis=0))[whole]
-            for part in (self.errors, self.readings)
-        )
+        solver_errors, readings = (np.sqrt(np.mean(part**2, axis=0))[whole] for part in of)
         asked = tuple(part for part, has in zip(self.asked, whole.tolist(), strict=True) if has)
         return PlateProblem(self.scores, emulator, asked, solver_errors, readings, observations)
 
@@ -188,7 +178,7 @@ def fitted_plate(
         problem = solves.problem(observations)
     posterior = sampled_posterior(problem, seed=seed, progress=within(tell, _SOLVES, 1.0))
     made = predictive(problem, posterior, seed=seed)
-    return PlateFit(problem, posterior, made, len(solves.points) + solves.lost)
+    return PlateFit(problem, posterior, made, len(solves.points) + len(solves.refused))
 
 
 def prior_scores(

@@ -10,6 +10,7 @@ import itertools
 import json
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -165,10 +166,13 @@ def solved_answers(actuator: Actuator, asked: tuple[Asked, ...]) -> SolvedAnswer
                 f"the solved {actuator.type} has no answer '{answer.said}'; it has: "
                 f"{', '.join(PLATE_ANSWERS)}"
             )
-    answers = _working(actuator)
+    working = _KEPT.found(_question(actuator, "working"), partial(_working, actuator))
+    answers = dict(zip(map(Asked, PLATE_ANSWERS), working, strict=True))
     for answer in asked:
         if answer.lines is not None and isinstance(actuator, RectangularPlate):
-            answers[answer] = _other_mode(actuator, answer.lines)
+            question = _question(actuator, list(answer.lines))
+            solve = partial(_other_mode, actuator, answer.lines)
+            answers[answer] = _KEPT.found(question, solve)
     rows = np.array([answers[answer] for answer in asked]).reshape(-1, 3)
     return SolvedAnswers(rows[:, 0], rows[:, 1], rows[:, 2])
 
@@ -177,26 +181,21 @@ def _question(actuator: Actuator, mode: object) -> str:
     return json.dumps([to_json(actuator), mode], sort_keys=True)
 
 
-def _working(actuator: RectangularPlate | DiscPlate) -> dict[Asked, tuple[float, ...]]:
-    """All answers of the working mode, each with its relative errors, of solver and reading."""
-    question = _question(actuator, "working")
-    kept = _KEPT.get(question)
-    if kept is None:
-        named, read = (
-            _of_plate(actuator) if isinstance(actuator, RectangularPlate) else _of_disc(actuator)
-        )
-        kept = np.array(
-            [(*named.get(name, (math.nan, 0.0)), read.get(name, 0.0)) for name in PLATE_ANSWERS]
-        ).ravel()
-        _KEPT.put(question, kept)
-    rows = kept.reshape(-1, 3).tolist()
-    return {Asked(name): tuple(row) for name, row in zip(PLATE_ANSWERS, rows, strict=True)}
+_Named = Mapping[str, float]
 
 
-_Named = Mapping[str, tuple[float, float]]
+def _working(actuator: RectangularPlate | DiscPlate) -> si.FloatArray:
+    """`PLATE_ANSWERS` of the working mode, each a row of its value and its relative errors, of
+    solver and reading."""
+    values, errors, read = (
+        _of_plate(actuator) if isinstance(actuator, RectangularPlate) else _of_disc(actuator)
+    )
+    return np.array(
+        [(values[name], errors.get(name, 0.0), read.get(name, 0.0)) for name in PLATE_ANSWERS]
+    )
 
 
-def _of_plate(plate: RectangularPlate) -> tuple[_Named, Mapping[str, float]]:
+def _of_plate(plate: RectangularPlate) -> tuple[_Named, _Named, _Named]:
     # Of a hundred plates only these numbers are asked for again.
     with in_passing():
         mode = solid_mode(plate)
@@ -204,27 +203,27 @@ def _of_plate(plate: RectangularPlate) -> tuple[_Named, Mapping[str, float]]:
         error = mode.frequency_error / mode.frequency
     static = math.nan if mode.circuit is None else mode.circuit.static_capacitance
     coupling = float(modes.couplings[at])
-    named = {
-        "resonance_frequency": (mode.frequency, error),
-        "parallel_resonance_frequency": (float(modes.open_frequencies[at]), error),
-        "coupling_coefficient": (
-            coupling,
-            float(modes.coupling_errors[at]) / coupling if coupling else 0.0,
-        ),
-        "static_capacitance": (static, 0.0),
-        "quality_factor": (mode.quality_factor, 0.0),
-        "amplitude_per_volt": (
-            mode.amplitude_per_volt,
-            mode.amplitude_error / mode.amplitude_per_volt,
-        ),
-        "half_wavelength": (mode.half_wavelength, 0.0),
-        "mass": (assembly_mass(plate), 0.0),
-        "modal_mass": (mode.modal_mass, 0.0),
+    values = {
+        "resonance_frequency": mode.frequency,
+        "parallel_resonance_frequency": float(modes.open_frequencies[at]),
+        "coupling_coefficient": coupling,
+        "static_capacitance": static,
+        "quality_factor": mode.quality_factor,
+        "amplitude_per_volt": mode.amplitude_per_volt,
+        "half_wavelength": mode.half_wavelength,
+        "mass": assembly_mass(plate),
+        "modal_mass": mode.modal_mass,
     }
-    return named, _read_beside(mode, named)
+    errors = {
+        "resonance_frequency": error,
+        "parallel_resonance_frequency": error,
+        "coupling_coefficient": float(modes.coupling_errors[at]) / coupling if coupling else 0.0,
+        "amplitude_per_volt": mode.amplitude_error / mode.amplitude_per_volt,
+    }
+    return values, errors, _read_beside(mode, values)
 
 
-def _read_beside(mode: SolidMode, named: _Named) -> Mapping[str, float]:
+def _read_beside(mode: SolidMode, named: _Named) -> _Named:
     """Shares by which a bench's fit of a plate's admittance reads its answers beside what they
     are: over the usual band, with the usual noise, which weighs the points."""
     from squeezefilm.measure.fits.circuit.impedance import fit_impedance
@@ -241,13 +240,13 @@ def _read_beside(mode: SolidMode, named: _Named) -> Mapping[str, float]:
     except InputError:
         return {}
     return {
-        seen.answer: abs(seen.value / named[seen.answer][0] - 1)
+        seen.answer: abs(seen.value / named[seen.answer] - 1)
         for seen in fit.observations
-        if named[seen.answer][0] > 0
+        if named[seen.answer] > 0
     }
 
 
-def _of_disc(disc: DiscPlate) -> tuple[_Named, Mapping[str, float]]:
+def _of_disc(disc: DiscPlate) -> tuple[_Named, _Named, _Named]:
     mode, body = working_mode(disc), ring_body(disc)
     annular = mode.disc
     assert annular is not None
@@ -261,36 +260,28 @@ def _of_disc(disc: DiscPlate) -> tuple[_Named, Mapping[str, float]]:
         static, moving = circuit.static_capacitance, circuit.motional_capacitance
         coupling = math.sqrt(moving / (moving + static))
     error = (mode.frequency_error or 0.0) / mode.resonance_frequency
-    named = {
-        "resonance_frequency": (mode.resonance_frequency, error),
-        "parallel_resonance_frequency": (
-            mode.resonance_frequency / math.sqrt(1 - coupling**2),
-            error,
-        ),
-        "coupling_coefficient": (coupling, 0.0),
-        "static_capacitance": (static, 0.0),
-        "quality_factor": (mode.quality_factor, 0.0),
-        "amplitude_per_volt": (mode.amplitude_per_volt, 0.0),
-        "half_wavelength": (mode.half_wavelength, 0.0),
-        "mass": (assembly_mass(disc), 0.0),
-        "modal_mass": (mode.modal_mass, 0.0),
+    values = {
+        "resonance_frequency": mode.resonance_frequency,
+        "parallel_resonance_frequency": mode.resonance_frequency / math.sqrt(1 - coupling**2),
+        "coupling_coefficient": coupling,
+        "static_capacitance": static,
+        "quality_factor": mode.quality_factor,
+        "amplitude_per_volt": mode.amplitude_per_volt,
+        "half_wavelength": mode.half_wavelength,
+        "mass": assembly_mass(disc),
+        "modal_mass": mode.modal_mass,
     }
     # Its modes are far apart, and none is solved beside the working one.
-    return named, {}
+    return values, {"resonance_frequency": error, "parallel_resonance_frequency": error}, {}
 
 
-def _other_mode(plate: RectangularPlate, lines: tuple[int, int]) -> tuple[float, ...]:
-    question = _question(plate, list(lines))
-    kept = _KEPT.get(question)
-    if kept is None:
-        try:
-            modes = solve_modes(plate, mode=lines)
-            at = modes.index(lines)
-        except InputError:
-            # Where two modes meet, neither may have these lines.
-            kept = np.array([math.nan, 0.0])
-        else:
-            frequency = float(modes.frequencies[at])
-            kept = np.array([frequency, float(modes.errors[at]) / frequency])
-        _KEPT.put(question, kept)
-    return float(kept[0]), float(kept[1]), 0.0
+def _other_mode(plate: RectangularPlate, lines: tuple[int, int]) -> si.FloatArray:
+    """The row of another mode's frequency."""
+    try:
+        modes = solve_modes(plate, mode=lines)
+        at = modes.index(lines)
+    except InputError:
+        # Where two modes meet, neither may have these lines.
+        return np.array([math.nan, 0.0, 0.0])
+    frequency = float(modes.frequencies[at])
+    return np.array([frequency, float(modes.errors[at]) / frequency, 0.0])

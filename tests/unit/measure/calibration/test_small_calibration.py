@@ -329,9 +329,9 @@ def test_plates_without_an_answer_are_counted_and_many_are_refused(
     shares: list[float] = []
     solves.add(points, "tried", lambda _, share: shares.append(share))
     np.testing.assert_allclose(shares, np.arange(count) / count)
-    assert solves.lost == 2
+    assert len(solves.refused) == 2
     first = thick[thick < np.sort(thick)[2]][0]
-    assert solves.example == f"a plate of {1e3 * first:.2f} mm has no such mode"
+    assert solves.refused[0] == f"a plate of {1e3 * first:.2f} mm has no such mode"
     solves.require_enough()
     problem = solves.problem(SEEN[:1])
     assert Asked("half_wavelength") not in problem.asked
@@ -345,6 +345,6 @@ def test_plates_without_an_answer_are_counted_and_many_are_refused(
     monkeypatch.setattr(plate_fit, "solved_answers", Refusing(0.0, np.sort(quality)[7]))
     solves = Solves(PLATE, scores, SEEN[:1])
     solves.add(points, "tried", lambda _, __: None)
-    assert solves.lost == 7
+    assert len(solves.refused) == 7
     with pytest.raises(InputError, match=r"7 of 27 plates .* no resonance frequency\); narrow"):
         solves.require_enough()

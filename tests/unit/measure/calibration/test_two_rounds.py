@@ -21,7 +21,7 @@ class Solves:
     def __init__(self, display: Any, scores: Any, observations: Any) -> None:
         self.given = display, observations
         self.points: list[Any] = []
-        self.lost = 3
+        self.refused = 3 * ["no such mode"]
         self.added: list[tuple[str, Any]] = []
         self.every.append(self)
 

@@ -75,7 +75,16 @@ def made(**changed: Any) -> FolderCalibration:
         seed=7,
         doubts=("The draws are few.",),
         joint=Joint(
-            (), NOTHING, (), NOTHING, (), NOTHING, np.full(4, 2e-6), np.full(4, np.nan), np.zeros(4)
+            (),
+            NOTHING,
+            (),
+            NOTHING,
+            (),
+            NOTHING,
+            np.full(4, 2e-6),
+            np.full(4, 2e-6),
+            np.full(4, np.nan),
+            np.zeros(4),
         ),
         compared=(MET, MISSED),
     )
