@@ -17,7 +17,7 @@ from squeezefilm.measure.calibration.solved_answers import Asked
 from squeezefilm.measure.fits.ceramic.constants import compliances
 from squeezefilm.measure.fits.circuit.branches import poles
 from squeezefilm.measure.fits.estimate import Estimate, Observation, guarded_fit
-from squeezefilm.measure.fits.friction.friction_bench import _MOST_LEVELS, _levels, _straight
+from squeezefilm.measure.fits.friction.friction_bench import _MOST_LEVELS, _levels
 from squeezefilm.measure.fits.least_squares import _least
 from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
 from squeezefilm.measure.fits.vibration.frequency_response import _Band, fit_frequency_response
@@ -53,7 +53,6 @@ def line(w: Any, x: Any = X) -> Any:
             "one frequency only",
         ),
         (lambda: fit_frequency_response(FrequencyResponse(F, np.abs(RESPONSE))), "no phase"),
-        (lambda: _straight(np.ones((5, 2)), np.ones(5)), "went together"),
     ],
 )
 def test_what_cannot_be_is_refused(build: Callable[[], object], word: str) -> None:

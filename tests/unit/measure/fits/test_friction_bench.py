@@ -9,7 +9,7 @@ import pytest
 from tests.made_bench.strokes import PlannedStrokes, recorded_strokes
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.friction.friction_bench import _Design, _levels, fit_friction_bench
+from squeezefilm.measure.fits.friction.friction_bench import _Fitted, _levels, fit_friction_bench
 from squeezefilm.measure.fits.friction.strokes import sliding_strokes
 
 LEVELS = np.array([0.0, 0.5e-6, 1e-6, 2e-6])
@@ -150,22 +150,23 @@ def test_levels_are_told_apart_by_a_share_of_the_largest() -> None:
 def test_a_design_has_a_column_for_each_thing_that_varied() -> None:
     random = np.random.default_rng(3)
     known = {
-        "amplitude": np.array([0.0, 1e-6, 2e-6, 0.0, 1e-6, 2e-6]),
-        "speed": 0.07 * np.exp(0.2 * random.standard_normal(6)),
-        "force": np.exp(0.3 * random.standard_normal(6)),
-        "time": np.array([1.0, 2.0, 2.5, 4.0, 5.0, 9.0]),
-        "direction": np.array([1.0, -1.0, 1.0, -1.0, 1.0, 1.0]),
+        "amplitude": np.tile([0.0, 1e-6, 2e-6], 4),
+        "speed": 0.07 * np.exp(0.2 * random.standard_normal(12)),
+        "force": np.exp(0.3 * random.standard_normal(12)),
+        "time": np.array([1.0, 2.0, 2.5, 4.0, 5.0, 5.5, 6.0, 6.25, 7.0, 7.5, 8.5, 9.0]),
+        "direction": np.array([1.0, -1.0, 1.0, -1.0, 1.0, 1.0] * 2),
+        "coefficient": np.exp(random.standard_normal(12)),
     }
 
-    def design(**changes: np.ndarray) -> tuple[_Design, np.ndarray]:
-        strokes: Any = SimpleNamespace(column=(known | changes).__getitem__)
-        found = _Design.of(strokes)
+    def design(**changes: np.ndarray) -> tuple[_Fitted, np.ndarray]:
+        strokes: Any = SimpleNamespace(column=(known | changes).__getitem__, rows=range(12))
+        found = _Fitted.of(strokes)
         return found, found.matrix.T
 
     whole, columns = design()
     assert whole.levels == pytest.approx([0.0, 1e-6, 2e-6])
-    assert whole.speed == pytest.approx(np.prod(known["speed"]) ** (1 / 6))
-    assert whole.force == pytest.approx(np.prod(known["force"]) ** (1 / 6))
+    assert whole.speed == pytest.approx(np.prod(known["speed"]) ** (1 / 12))
+    assert whole.force == pytest.approx(np.prod(known["force"]) ** (1 / 12))
     assert (whole.speeds_vary, whole.forces_vary, whole.drift) == (True, True, slice(7, 9))
     share = known["amplitude"] / 2e-6
     place = (known["time"] - 5) / 4
@@ -178,7 +179,10 @@ def test_a_design_has_a_column_for_each_thing_that_varied() -> None:
     expected += [place - place.mean(), bend - bend.mean(), direction - direction.mean()]
     assert columns == pytest.approx(np.array(expected, dtype=float))
     # What hardly varied has no column, and one level no share of it.
-    even, columns = design(speed=np.full(6, 0.07), direction=np.ones(6))
+    even, columns = design(speed=np.full(12, 0.07), direction=np.ones(12))
     assert (even.speeds_vary, even.drift, len(columns)) == (False, slice(5, 7), 7)
-    alone, columns = design(amplitude=np.full(6, 1e-6))
+    alone, columns = design(amplitude=np.full(12, 1e-6))
     assert (alone.levels.size, alone.drift, len(columns)) == (1, slice(3, 5), 6)
+    # A level of its own for each direction.
+    with pytest.raises(InputError, match="went together"):
+        design(amplitude=np.tile([0.0, 1e-6], 6), direction=np.tile([1.0, -1.0], 6))

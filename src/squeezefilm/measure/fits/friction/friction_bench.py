@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -129,22 +128,37 @@ def _touching(strokes: Strokes) -> tuple[Strokes, tuple[si.Metre, ...]]:
     return replace(strokes, rows=rows), tuple(float(levels[i]) for i in none)
 
 
+def _levels(amplitude: si.MetreArray) -> tuple[si.MetreArray, si.IntArray]:
+    """The amplitudes that were set, and which of them each stroke had."""
+    order = np.argsort(amplitude, kind="stable")
+    steps = np.diff(amplitude[order]) > _LEVEL * max(float(amplitude.max()), 1e-12)
+    number = np.empty(amplitude.size, dtype=np.int64)
+    number[order] = np.concatenate([[0], np.cumsum(steps)])
+    count = int(number.max()) + 1
+    if count > _MOST_LEVELS:
+        raise InputError(
+            f"the strokes have {count} different amplitudes; at most {_MOST_LEVELS} are fitted: "
+            "hold the amplitude at set levels"
+        )
+    return np.array([amplitude[number == i].mean() for i in range(count)]), number
+
+
 @dataclass(frozen=True, eq=False)
-class _Design:
-    """Columns of ln µ of a stroke: columns by level, speed, force, time and direction."""
+class _Fitted:
+    """ln µ of strokes by columns of a `matrix`: by level, speed, force, time and direction."""
 
     levels: si.MetreArray
-    number: si.IntArray
     speed: si.MetrePerSecond
     force: si.Newton
     speeds_vary: bool
     forces_vary: bool
     matrix: si.FloatArray
+    fit: SeparableFit
 
     @classmethod
-    def of(cls, strokes: Strokes) -> _Design:
-        amplitude = strokes.column("amplitude")
-        levels, number = _levels(amplitude)
+    def of(cls, strokes: Strokes) -> _Fitted:
+        """Raises `InputError` for too few strokes, or columns that cannot be told apart."""
+        levels, number = _levels(strokes.column("amplitude"))
         speed, force = (np.log(strokes.column(name)) for name in ("speed", "force"))
         middle = float(np.exp(np.mean(speed))), float(np.exp(np.mean(force)))
         vary = bool(np.std(speed) > _VARIED), bool(np.std(force) > _VARIED)
@@ -163,49 +177,30 @@ class _Design:
         direction = strokes.column("direction")
         if np.ptp(direction) > 0:
             columns.append(direction - direction.mean())
-        return cls(levels, number, *middle, *vary, np.stack(columns, axis=1))
+        matrix = np.stack(columns, axis=1)
+        if len(strokes.rows) < len(columns) + 2:
+            raise InputError(
+                f"{len(strokes.rows)} strokes were recorded; {levels.size} amplitudes, "
+                f"drift and what else varied need at least {len(columns) + 2}"
+            )
+        if np.linalg.matrix_rank(matrix) < len(columns):
+            raise InputError(
+                "amplitude, speed, force and time of the strokes went together, so that none can "
+                "be told from the others; vary them in a mixed order"
+            )
+        fit = linear_fit(matrix, np.log(strokes.column("coefficient")))
+        return cls(levels, *middle, *vary, matrix, fit)
 
-    @cached_property
+    @property
+    def after_speed(self) -> int:
+        """The first column after those of the speed."""
+        return self.levels.size + (2 if self.levels.size > 1 else 1) * self.speeds_vary
+
+    @property
     def drift(self) -> slice:
         """The columns of the drift."""
-        exponents = self.speeds_vary + self.forces_vary
-        first = self.levels.size + exponents * (2 if self.levels.size > 1 else 1)
+        first = self.after_speed + (2 if self.levels.size > 1 else 1) * self.forces_vary
         return slice(first, first + _DRIFT)
-
-
-def _levels(amplitude: si.MetreArray) -> tuple[si.MetreArray, si.IntArray]:
-    """The amplitudes that were set, and which of them each stroke had."""
-    order = np.argsort(amplitude, kind="stable")
-    steps = np.diff(amplitude[order]) > _LEVEL * max(float(amplitude.max()), 1e-12)
-    number = np.empty(amplitude.size, dtype=np.int64)
-    number[order] = np.concatenate([[0], np.cumsum(steps)])
-    count = int(number.max()) + 1
-    if count > _MOST_LEVELS:
-        raise InputError(
-            f"the strokes have {count} different amplitudes; at most {_MOST_LEVELS} are fitted: "
-            "hold the amplitude at set levels"
-        )
-    return np.array([amplitude[number == i].mean() for i in range(count)]), number
-
-
-@dataclass(frozen=True, eq=False)
-class _Fitted:
-    """ln µ by its design."""
-
-    design: _Design
-    fit: SeparableFit
-    data: si.FloatArray
-
-    @classmethod
-    def of(cls, strokes: Strokes) -> _Fitted:
-        design = _Design.of(strokes)
-        data = np.log(strokes.column("coefficient"))
-        if len(strokes.rows) < design.matrix.shape[1] + 2:
-            raise InputError(
-                f"{len(strokes.rows)} strokes were recorded; {design.levels.size} amplitudes, "
-                f"drift and what else varied need at least {design.matrix.shape[1] + 2}"
-            )
-        return cls(design, _straight(design.matrix, data), data)
 
     def sum(self, row: si.FloatArray, *, exponential: bool = False) -> Estimate:
         """A weighted sum of the fitted numbers, or e to that."""
@@ -214,40 +209,35 @@ class _Fitted:
         return interval_around(value, error, freedom, "1", logarithmic=exponential)
 
     def one(self, i: int, other: int | None = None) -> si.FloatArray:
-        row = np.zeros(self.design.matrix.shape[1])
+        row = np.zeros(self.matrix.shape[1])
         row[i] = 1.0
         if other is not None:
             row[other] = -1.0
         return row
 
     def read(self, recording: FrictionBench, strokes: Strokes) -> FrictionBenchFit:
-        design, count = self.design, self.design.levels.size
-        still = design.levels[0] < _LEVEL * design.levels[-1] or count == 1
+        count = self.levels.size
+        still = self.levels[0] < _LEVEL * self.levels[-1] or count == 1
         relative = (
             [self.sum(self.one(i, 0), exponential=True) for i in range(1, count)] if still else []
         )
-        after_speed = count + (2 if count > 1 else 1) * design.speeds_vary
+        from_first_to_last = np.zeros(self.matrix.shape[1])
+        from_first_to_last[self.drift] = self.matrix[-1, self.drift] - self.matrix[0, self.drift]
         spread = float(np.sqrt(np.sum(self.fit.residual**2) / self.fit.freedom))
         return FrictionBenchFit(
             recording=recording,
             strokes=strokes,
-            amplitudes=design.levels,
-            speed=design.speed,
-            normal_force=design.force,
+            amplitudes=self.levels,
+            speed=self.speed,
+            normal_force=self.force,
             coefficients=tuple(self.sum(self.one(i), exponential=True) for i in range(count)),
             relative_friction=tuple(relative),
-            speed_exponent=self.sum(self.one(count)) if design.speeds_vary else None,
-            force_exponent=self.sum(self.one(after_speed)) if design.forces_vary else None,
-            drift=self._drift(),
+            speed_exponent=self.sum(self.one(count)) if self.speeds_vary else None,
+            force_exponent=self.sum(self.one(self.after_speed)) if self.forces_vary else None,
+            drift=self.sum(from_first_to_last),
             between_strokes=spread,
             adequacy=self._adequacy(strokes),
         )
-
-    def _drift(self) -> Estimate:
-        """Drift from the first stroke to the last."""
-        design, row = self.design, np.zeros(self.design.matrix.shape[1])
-        row[design.drift] = design.matrix[-1, design.drift] - design.matrix[0, design.drift]
-        return self.sum(row)
 
     def _adequacy(self, strokes: Strokes) -> Adequacy:
         friction = strokes.column("coefficient")
@@ -260,38 +250,26 @@ class _Fitted:
         confounded = self._confounded()
         if confounded is None:
             return adequacy
+        where = f"at {1e6 * self.levels[confounded]:.3g} µm"
         sentence = (
-            f"Amplitude and time went together: the drift of the finger makes the interval at "
-            f"{1e6 * self.design.levels[confounded]:.3g} µm more than {_CONFOUNDED:g} times as "
-            "wide. Repeat it with amplitudes in a mixed order. "
+            "Amplitude and time went together: the drift of the finger makes the interval "
+            f"{where} more than {_CONFOUNDED:g} times as wide. Repeat it with amplitudes in a "
+            f"mixed order. {adequacy.sentence}"
         )
-        where = f"at {1e6 * self.design.levels[confounded]:.3g} µm"
-        return Adequacy(
-            False, adequacy.residual, adequacy.noise, where, sentence + adequacy.sentence
-        )
+        return replace(adequacy, adequate=False, where=where, sentence=sentence)
 
     def _confounded(self) -> int | None:
         """The level whose difference from the first one drift widens most, if by too much."""
-        design, count = self.design, self.design.levels.size
+        count = self.levels.size
         if count < 2:
             return None
-        keep = np.ones(design.matrix.shape[1], dtype=bool)
-        keep[design.drift] = False
-        # In units of the noise: what the design alone does.
-        whole, without = (np.linalg.pinv(m.T @ m) for m in (design.matrix, design.matrix[:, keep]))
+        keep = np.ones(self.matrix.shape[1], dtype=bool)
+        keep[self.drift] = False
+        # In units of the noise: what the columns alone do.
+        whole, without = (np.linalg.pinv(m.T @ m) for m in (self.matrix, self.matrix[:, keep]))
         ratio = []
         for i in range(1, count):
             row = self.one(i, 0)
             ratio.append(np.sqrt((row @ whole @ row) / (row[keep] @ without @ row[keep])))
         worst = int(np.argmax(ratio))
         return worst + 1 if ratio[worst] > _CONFOUNDED else None
-
-
-def _straight(matrix: si.FloatArray, data: si.FloatArray) -> SeparableFit:
-    """Ordinary least squares. Raises `InputError` where columns cannot be told apart."""
-    if np.linalg.matrix_rank(matrix) < matrix.shape[1]:
-        raise InputError(
-            "amplitude, speed, force and time of the strokes went together, so that none can be "
-            "told from the others; vary them in a mixed order"
-        )
-    return linear_fit(matrix, data)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
@@ -214,6 +214,4 @@ def _adequacy(
         f"of {likeness:.2f} where {SAME_SHAPE:g} would call it the same; several modes take part, "
         "or the place of the scan on the plate is not what was told. "
     )
-    return Adequacy(
-        False, adequacy.residual, adequacy.noise, adequacy.where, sentence + adequacy.sentence
-    )
+    return replace(adequacy, adequate=False, sentence=sentence + adequacy.sentence)
