@@ -171,7 +171,27 @@ def fit_frequency_response(recording: FrequencyResponse) -> FrequencyResponseFit
     size = float(np.max(np.abs(H)))
     band = _Band.over(f)
     fit = _as_many_as_needed(band, H / size, start)
-    return _FittedResponse(recording, band, H, fit, size, reversed_phase).read()
+    count = fit.shape.size // 2
+    strength = [abs(fit.weights[k] / fit.shape[2 * k + 1]) for k in range(count)]
+    order = sorted(range(count), key=lambda k: -strength[k])
+    model = np.asarray(fit.model * size, dtype=complex)
+    return FrequencyResponseFit(
+        recording=recording,
+        frequency=f,
+        model=model,
+        residual=H - model,
+        modes=tuple(_mode(band, fit, size, k) for k in order),
+        largest_per_volt=_largest(band, fit, size, order[0]),
+        phase_reversed=reversed_phase,
+        adequacy=adequacy_of(
+            H,
+            fit.residual * size,
+            lambda i: f"at {si.format_quantity(f[i], si.Unit('Hz'), 5)}",
+            remedy="Cut the band to the resonance, or drive less: a mode that shifts with its "
+            "amplitude is none of a linear plate.",
+            said=PHASE_REVERSED if reversed_phase else "",
+        ),
+    )
 
 
 def _recorded(recording: FrequencyResponse) -> tuple[si.HertzArray, si.ComplexArray]:
@@ -296,69 +316,30 @@ def _one_more(band: _Band, H: si.ComplexArray, fit: SeparableFit) -> SeparableFi
     return min(fits, key=lambda more: float(np.sum(np.abs(more.residual) ** 2)), default=None)
 
 
-@dataclass(frozen=True, eq=False)
-class _FittedResponse:
-    """A fit in its own numbers, to be read off."""
+def _mode(band: _Band, fit: SeparableFit, size: si.MetrePerVolt, k: int) -> FittedMode:
+    loss = fit.estimate(lambda shape, _: shape[2 * k + 1], "1")
+    return FittedMode(
+        frequency=fit.estimate(lambda shape, _: band.middle * (1 + shape[2 * k]), "Hz"),
+        quality_factor=inverse_of(loss),
+        modal_constant=fit.estimate(
+            lambda _, weights: abs(weights[k]) * size, "m/V", positive=True
+        ),
+        amplitude_per_volt=fit.estimate(
+            lambda shape, weights: abs(weights[k] / shape[2 * k + 1]) * size, "m/V", positive=True
+        ),
+        phase=fit.angle(lambda _, weights: complex(weights[k])),
+    )
 
-    recording: FrequencyResponse
-    band: _Band
-    response: si.ComplexArray
-    fit: SeparableFit
-    size: float
-    reversed_phase: bool
 
-    def read(self) -> FrequencyResponseFit:
-        count = self.fit.shape.size // 2
-        strength = [abs(self.fit.weights[k] / self.fit.shape[2 * k + 1]) for k in range(count)]
-        order = sorted(range(count), key=lambda k: -strength[k])
-        model = np.asarray(self.fit.model * self.size, dtype=complex)
-        return FrequencyResponseFit(
-            recording=self.recording,
-            frequency=self.band.f,
-            model=model,
-            residual=self.response - model,
-            modes=tuple(self._mode(k) for k in order),
-            largest_per_volt=self._largest(order[0]),
-            phase_reversed=self.reversed_phase,
-            adequacy=self._adequacy(),
-        )
-
-    def _mode(self, k: int) -> FittedMode:
-        fit = self.fit
-        loss = fit.estimate(lambda shape, _: shape[2 * k + 1], "1")
-        return FittedMode(
-            frequency=fit.estimate(lambda shape, _: self.band.middle * (1 + shape[2 * k]), "Hz"),
-            quality_factor=inverse_of(loss),
-            modal_constant=fit.estimate(
-                lambda _, weights: abs(weights[k]) * self.size, "m/V", positive=True
-            ),
-            amplitude_per_volt=fit.estimate(
-                lambda shape, weights: abs(weights[k] / shape[2 * k + 1]) * self.size,
-                "m/V",
-                positive=True,
-            ),
-            phase=fit.angle(lambda _, weights: complex(weights[k])),
-        )
-
-    def _largest(self, k: int) -> Estimate:
-        """The largest size of the fitted response within the strongest mode's band."""
-        own, loss = self.band.middle * (1 + self.fit.shape[2 * k]), self.fit.shape[2 * k + 1]
-        near = replace(self.band, f=own * (1 + loss * np.linspace(-1, 1, 81)))
-        at = int(np.argmax(np.abs(near.columns(self.fit.shape)[0] @ self.fit.weights)))
-        # At the place of a maximum its shift changes the value to second order only.
-        point = replace(near, f=near.f[at : at + 1])
-        return self.fit.estimate(
-            lambda shape, weights: float(abs((point.columns(shape)[0] @ weights)[0])) * self.size,
-            "m/V",
-            positive=True,
-        )
-
-    def _adequacy(self) -> Adequacy:
-        return adequacy_of(
-            self.response,
-            self.fit.residual * self.size,
-            lambda i: f"at {si.format_quantity(self.band.f[i], si.Unit('Hz'), 5)}",
-            remedy="Cut the band to the resonance, or drive less: a mode that shifts with its "
-            "amplitude is none of a linear plate.",
-            said=PHASE_REVERSED if self.reversed_phase else "",
-        )
+def _largest(band: _Band, fit: SeparableFit, size: si.MetrePerVolt, k: int) -> Estimate:
+    """The largest size of the fitted response within the strongest mode's band."""
+    own, loss = band.middle * (1 + fit.shape[2 * k]), fit.shape[2 * k + 1]
+    near = replace(band, f=own * (1 + loss * np.linspace(-1, 1, 81)))
+    at = int(np.argmax(np.abs(near.columns(fit.shape)[0] @ fit.weights)))
+    # At the place of a maximum its shift changes the value to second order only.
+    point = replace(near, f=near.f[at : at + 1])
+    return fit.estimate(
+        lambda shape, weights: float(abs((point.columns(shape)[0] @ weights)[0])) * size,
+        "m/V",
+        positive=True,
+    )

@@ -88,7 +88,7 @@ def fit_ring_down(recording: RingDown) -> RingDownFit:
     size = float(np.max(np.abs(w - w.mean())))
     if size == 0:
         raise InputError("the ring-down does not move; nothing was recorded")
-    decay = _Decay(t, w / size)
+    decay = _Decay(t, w / size, size)
     fit = fit_separable(
         decay.columns, decay.w, decay.start, reach=np.array([decay.wide, 30.0 * decay.rate])
     )
@@ -103,7 +103,7 @@ def fit_ring_down(recording: RingDown) -> RingDownFit:
         two = not blocks.misfits(pair.residual) and bool(np.all(pair.shape[1::2] > 0))
         fit = pair if two else fit
     fit = fit.with_widening(correlation_factor(blocks.of(fit.residual)))
-    return _FittedDecay(recording, decay, fit, bent, two, blocks, size).read()
+    return _told(recording, decay, blocks, fit, bent, two=two)
 
 
 def _recorded(recording: RingDown) -> tuple[si.SecondArray, si.MetreArray]:
@@ -120,10 +120,11 @@ def _recorded(recording: RingDown) -> tuple[si.SecondArray, si.MetreArray]:
 
 @dataclass(frozen=True, eq=False)
 class _Decay:
-    """A decay over its largest size, and the columns of decays: shape is f and the rate πf/Q."""
+    """A decay over its largest `size`, and the columns of decays: shape is f and the rate πf/Q."""
 
     t: si.SecondArray
     w: si.FloatArray
+    size: float
 
     @cached_property
     def wide(self) -> si.Hertz:
@@ -275,64 +276,64 @@ def _bent_decay(t: si.SecondArray, numbers: si.FloatArray) -> si.FloatArray:
     return np.asarray(a * np.cos(turned + phase) + constant + slope * (t / t[-1] - 0.5))
 
 
-@dataclass(frozen=True, eq=False)
-class _FittedDecay:
-    """A fit in its own numbers, to be read off."""
+def _told(
+    recording: RingDown,
+    decay: _Decay,
+    blocks: _Blocks,
+    fit: SeparableFit,
+    bent: _Bent | None,
+    *,
+    two: bool,
+) -> RingDownFit:
+    """A fit in its own numbers, read off."""
+    size, unit = decay.size, recording.unit
+    numbers = _straight(decay, fit, 0, unit) if bent is None else _slight(decay, bent, unit)
+    frequency, quality, amplitude = numbers
+    model = fit.model if bent is None else bent.model
+    residual = decay.w - model
+    adequacy = adequacy_of(
+        blocks.of(decay.w) * size,
+        blocks.of(residual) * size,
+        lambda i: f"{1e3 * blocks.time[i]:.3g} ms after the start",
+        remedy="Cut off what came before the drive stopped, or drive less.",
+        said="Damping or frequency depend on the amplitude; frequency and Q are those of the "
+        "smallest amplitudes. "
+        if bent is not None
+        else "",
+    )
+    return RingDownFit(
+        recording=recording,
+        time=decay.t,
+        model=model * size,
+        residual=residual * size,
+        frequency=frequency,
+        quality_factor=quality,
+        amplitude=amplitude,
+        damping_rise=bent.estimate(4, f"1/{unit}", 1 / size) if bent is not None else None,
+        frequency_rise=bent.estimate(5, f"1/{unit}2", size**-2) if bent is not None else None,
+        second=_straight(decay, fit, 1, unit)[:2] if two else None,
+        adequacy=adequacy,
+    )
 
-    recording: RingDown
-    decay: _Decay
-    fit: SeparableFit
-    bent: _Bent | None
-    two: bool
-    blocks: _Blocks
-    size: float
 
-    def read(self) -> RingDownFit:
-        bent = self.bent
-        frequency, quality, amplitude = self._straight(0) if bent is None else self._slight(bent)
-        model = self.fit.model if bent is None else bent.model
-        residual = self.decay.w - model
-        w = self.blocks.of(self.decay.w) * self.size
-        adequacy = adequacy_of(
-            w,
-            self.blocks.of(residual) * self.size,
-            lambda i: f"{1e3 * self.blocks.time[i]:.3g} ms after the start",
-            remedy="Cut off what came before the drive stopped, or drive less.",
-            said="Damping or frequency depend on the amplitude; frequency and Q are those of the "
-            "smallest amplitudes. "
-            if bent is not None
-            else "",
-        )
-        size, unit = self.size, self.recording.unit
-        return RingDownFit(
-            recording=self.recording,
-            time=self.decay.t,
-            model=model * size,
-            residual=residual * size,
-            frequency=frequency,
-            quality_factor=quality,
-            amplitude=amplitude,
-            damping_rise=bent.estimate(4, f"1/{unit}", 1 / size) if bent is not None else None,
-            frequency_rise=bent.estimate(5, f"1/{unit}2", size**-2) if bent is not None else None,
-            second=self._straight(1)[:2] if self.two else None,
-            adequacy=adequacy,
-        )
+def _straight(
+    decay: _Decay, fit: SeparableFit, k: int, unit: str
+) -> tuple[Estimate, Estimate, Estimate]:
+    """Frequency, Q and first amplitude of a decay that no amplitude changes."""
+    loss = fit.estimate(lambda shape, _: shape[2 * k + 1] / (np.pi * shape[2 * k]), "1")
+    return (
+        fit.estimate(lambda shape, _: shape[2 * k], "Hz"),
+        inverse_of(loss),
+        fit.estimate(
+            lambda _, weights: decay.size * float(np.hypot(*weights[2 * k : 2 * k + 2])),
+            unit,
+            positive=True,
+        ),
+    )
 
-    def _straight(self, k: int) -> tuple[Estimate, Estimate, Estimate]:
-        fit = self.fit
-        loss = fit.estimate(lambda shape, _: shape[2 * k + 1] / (np.pi * shape[2 * k]), "1")
-        return (
-            fit.estimate(lambda shape, _: shape[2 * k], "Hz"),
-            inverse_of(loss),
-            fit.estimate(
-                lambda _, weights: self.size * float(np.hypot(*weights[2 * k : 2 * k + 2])),
-                self.recording.unit,
-                positive=True,
-            ),
-        )
 
-    def _slight(self, bent: _Bent) -> tuple[Estimate, Estimate, Estimate]:
-        """Frequency, Q and first amplitude, the former two of slight amplitudes."""
-        frequency, unit = bent.estimate(0, "Hz", 1.0), self.recording.unit
-        loss = bent.estimate(1, "1", 1 / (np.pi * frequency.value))
-        return frequency, inverse_of(loss), bent.estimate(2, unit, self.size)
+def _slight(decay: _Decay, bent: _Bent, unit: str) -> tuple[Estimate, Estimate, Estimate]:
+    """Frequency, Q and first amplitude, the former two of slight amplitudes."""
+    frequency = bent.estimate(0, "Hz", 1.0)
+    loss = bent.estimate(1, "1", 1 / (np.pi * frequency.value))
+    return frequency, inverse_of(loss), bent.estimate(2, unit, decay.size)

@@ -35,6 +35,7 @@ BackboneLaw = Literal["quadratic", "linear"]
 BACKBONE_LAWS: tuple[BackboneLaw, ...] = get_args(BackboneLaw)
 """Laws of the frequency over the amplitude: with its square (Duffing), or in proportion."""
 
+_Flags = np.ndarray[tuple[int, ...], np.dtype[np.bool]]
 _FEWEST_POINTS = 30
 # Near a fold of the curve a small noise moves a point far: such points say little and bend much.
 _FOLD = 0.15
@@ -120,7 +121,8 @@ def fit_voltage_sweeps(recording: VoltageSweeps) -> VoltageSweepsFit:
     """
     points = _Points.of(recording)
     looks = [_first_look(points, law) for law in BACKBONE_LAWS]
-    return _fitted(*min(looks, key=_left)).read(recording)
+    duffing, look, steps = min(looks, key=_left)
+    return _told(recording, duffing, *_fitted(duffing, look, steps))
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,54 +244,50 @@ class _Duffing:
         return np.asarray(step), np.asarray(determinant.real / np.abs(D) ** 2)
 
 
-@dataclass(frozen=True, eq=False)
-class _Fitted:
-    duffing: _Duffing
-    fit: NonlinearFit
-    used: np.ndarray[tuple[int, ...], np.dtype[np.bool]]
+def _told(
+    recording: VoltageSweeps, duffing: _Duffing, fit: NonlinearFit, used: _Flags
+) -> VoltageSweepsFit:
+    """A law's fit to the points that were `used`, read off."""
+    points, own, power = duffing.points, duffing.own, duffing.power
+    step, _ = duffing.steps_to_curve(fit.numbers)
+    count = int(used.sum())
+    left = -(fit.residual[:count] + 1j * fit.residual[count:])
+    fit = fit.with_widening(correlation_factor(left))
+    size, volts = points.size, points.volts
 
-    def read(self, recording: VoltageSweeps) -> VoltageSweepsFit:
-        points, own, power = self.duffing.points, self.duffing.own, self.duffing.power
-        step, _ = self.duffing.steps_to_curve(self.fit.numbers)
-        count = int(self.used.sum())
-        left = -(self.fit.residual[:count] + 1j * self.fit.residual[count:])
-        fit = self.fit.with_widening(correlation_factor(left))
-        size, volts = points.size, points.volts
+    def estimate(i: int, factor: float, unit: str) -> Estimate:
+        return fit.estimate(lambda at: factor * float(at[i]), unit)
 
-        def estimate(i: int, factor: float, unit: str) -> Estimate:
-            return fit.estimate(lambda at: factor * float(at[i]), unit)
-
-        backbone = estimate(2, size**-power, "1/m2" if power == 2 else "1/m")
-        f, used = points.f[self.used], points.u[self.used] * size
-        adequacy = adequacy_of(
-            used,
-            left * size,
-            lambda i: (
-                f"at {si.format_quantity(f[i], si.Unit('Hz'), 5)} and "
-                f"{si.format_quantity(points.v[self.used][i] * volts, si.Unit('V'), 3)}"
-            ),
-            said=PHASE_REVERSED if points.phase_reversed else "",
-            remedy="Narrow the band to the one mode, or wait between sweeps until the plate is "
-            "cold.",
-        )
-        return VoltageSweepsFit(
-            recording=recording,
-            law=self.duffing.law,
-            frequency=fit.estimate(lambda at: own * (1 + float(at[0])), "Hz"),
-            quality_factor=inverse_of(estimate(1, 1.0, "1")),
-            amplitude_per_volt=fit.estimate(
-                lambda at: size / volts * math.hypot(at[4], at[5]) / abs(at[1]) / (1 + at[0]) ** 2,
-                "m/V",
-                positive=True,
-            ),
-            backbone=backbone,
-            damping_rise=estimate(3, 1 / size, "1/m"),
-            critical_amplitude=_critical(backbone, float(fit.numbers[1]), power),
-            phase_reversed=points.phase_reversed,
-            model=(points.u - step) * size,
-            residual=step * size,
-            adequacy=adequacy,
-        )
+    backbone = estimate(2, size**-power, "1/m2" if power == 2 else "1/m")
+    f, v = points.f[used], points.v[used] * volts
+    adequacy = adequacy_of(
+        points.u[used] * size,
+        left * size,
+        lambda i: (
+            f"at {si.format_quantity(f[i], si.Unit('Hz'), 5)} and "
+            f"{si.format_quantity(v[i], si.Unit('V'), 3)}"
+        ),
+        said=PHASE_REVERSED if points.phase_reversed else "",
+        remedy="Narrow the band to the one mode, or wait between sweeps until the plate is cold.",
+    )
+    return VoltageSweepsFit(
+        recording=recording,
+        law=duffing.law,
+        frequency=fit.estimate(lambda at: own * (1 + float(at[0])), "Hz"),
+        quality_factor=inverse_of(estimate(1, 1.0, "1")),
+        amplitude_per_volt=fit.estimate(
+            lambda at: size / volts * math.hypot(at[4], at[5]) / abs(at[1]) / (1 + at[0]) ** 2,
+            "m/V",
+            positive=True,
+        ),
+        backbone=backbone,
+        damping_rise=estimate(3, 1 / size, "1/m"),
+        critical_amplitude=_critical(backbone, float(fit.numbers[1]), power),
+        phase_reversed=points.phase_reversed,
+        model=(points.u - step) * size,
+        residual=step * size,
+        adequacy=adequacy,
+    )
 
 
 def _first_look(points: _Points, law: BackboneLaw) -> tuple[_Duffing, NonlinearFit, si.FloatArray]:
@@ -317,8 +315,11 @@ def _left(look: tuple[_Duffing, NonlinearFit, si.FloatArray]) -> float:
     return float(np.mean(np.minimum(np.abs(step), 0.2)[folded > _FOLD] ** 2))
 
 
-def _fitted(duffing: _Duffing, fit: NonlinearFit, steps: si.FloatArray) -> _Fitted:
-    """The best numbers of a law; points near a fold are left out by those of the last look."""
+def _fitted(
+    duffing: _Duffing, fit: NonlinearFit, steps: si.FloatArray
+) -> tuple[NonlinearFit, _Flags]:
+    """The best numbers of a law, and the points used: those near a fold are left out by the last
+    look."""
     everything = np.ones(duffing.points.f.size, dtype=bool)
     for _ in range(2):
         _, folded = duffing.steps_to_curve(fit.numbers)
@@ -326,14 +327,12 @@ def _fitted(duffing: _Duffing, fit: NonlinearFit, steps: si.FloatArray) -> _Fitt
         if used.sum() < _FEWEST_POINTS:
             used = everything
 
-        def residual(
-            at: si.FloatArray, used: np.ndarray[tuple[int, ...], np.dtype[np.bool]] = used
-        ) -> si.FloatArray:
+        def residual(at: si.FloatArray, used: _Flags = used) -> si.FloatArray:
             step, _ = duffing.steps_to_curve(at)
             return np.concatenate([step.real[used], step.imag[used]])
 
         fit = fit_nonlinear(residual, fit.numbers, steps)
-    return _Fitted(duffing, fit, used)
+    return fit, used
 
 
 def _first_bend(points: _Points, own: si.Hertz, power: int) -> float:
