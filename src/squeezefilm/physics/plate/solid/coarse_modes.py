@@ -21,8 +21,14 @@ from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.layers import COARSE
 from squeezefilm.physics.plate.solid.mesh import plate_model
 from squeezefilm.physics.plate.solid.modes import Label, label_of, surface_shapes
-from squeezefilm.physics.plate.solid.reduced import plate_circuit
-from squeezefilm.physics.plate.solid.symmetry import PlateModel, Symmetry, drive_signs
+from squeezefilm.physics.plate.solid.reduced import (
+    charge_free_stiffness,
+    class_drive,
+    open_electrodes,
+    plate_circuit,
+    reduced_model,
+)
+from squeezefilm.physics.plate.solid.symmetry import PlateModel, Symmetry
 
 _HARDLY = 1e-9
 _OPEN_TOLERANCE = 1e-6
@@ -30,37 +36,10 @@ _OPEN_TOLERANCE = 1e-6
 
 def inverse_with_open(solved: PlateModel, factor: SlabFactor) -> Callable[..., si.FloatArray]:
     """The inverse with the plate's own open electrodes."""
-    columns = _floating(solved)
+    columns = open_electrodes(solved)
     return (
         with_open_electrodes(solved.slabs, factor.solve, columns) if columns.size else factor.solve
     )
-
-
-def _floating(solved: PlateModel) -> si.FloatArray:
-    """The electrodes that the plate leaves open, each by itself."""
-    patches = solved.plate.patches
-    return tied_electrodes(
-        solved, [[(i, 1.0)] for i, p in enumerate(patches) if p.electrode == "open"]
-    )
-
-
-def tied_electrodes(solved: PlateModel, groups: list[list[tuple[int, float]]]) -> si.FloatArray:
-    """Model electrodes tied together, one column a group of (patch, sign); empty groups and
-    repeated ones (mirror images) left out."""
-    electrodes = len(solved.model.electrodes)
-    columns: list[si.FloatArray] = []
-    for group in groups:
-        column = np.zeros(electrodes)
-        for patch, sign in group:
-            if solved.share_of[patch] == 0:
-                continue
-            column[solved.electrode_of[patch]] += sign * solved.sign_of[patch]
-        column = np.sign(np.round(column, 9))
-        if np.any(column) and not any(
-            np.array_equal(np.abs(column), np.abs(other)) for other in columns
-        ):
-            columns.append(column)
-    return np.stack(columns, axis=1) if columns else np.zeros((electrodes, 0))
 
 
 def open_values(
@@ -73,10 +52,9 @@ def open_values(
     not found again among those with open terminals.
     """
     slabs = solved.slabs
-    signs = drive_signs(solved.plate)
-    port = tied_electrodes(solved, [[(i, s) for i, s in enumerate(signs) if s]])
+    port = class_drive(solved)[:, None]
     out = values.copy()
-    if values.size == 0 or not port.size:
+    if values.size == 0 or not np.any(port):
         return out
     G, C = slabs.electrode_columns
     force, held = port.T @ G.T @ vectors, np.abs(np.diag(port.T @ C @ port))
@@ -84,7 +62,7 @@ def open_values(
     moved = np.flatnonzero(np.sum(force**2 / held[:, None], axis=0) > _HARDLY * values)
     if not moved.size:
         return out
-    columns = np.concatenate([port, _floating(solved)], axis=1)
+    columns = np.concatenate([port, open_electrodes(solved)], axis=1)
     solve = with_open_electrodes(slabs, factor.solve, columns)
     pairs = modes_near(
         slabs, solve, factor.shift, None, vectors[:, moved], tolerance=_OPEN_TOLERANCE
@@ -108,26 +86,13 @@ def shunted_frequencies(
     circuit = [resistor for resistor in plate_circuit(solved) if np.isfinite(resistor[1])]
     if not circuit or values.size == 0:
         return omega
-    slabs = solved.slabs
+    part = reduced_model(solved, factor, COARSE, 3, [], vectors)
     number = [resistor[0] for resistor in circuit]
-    weight = np.array([resistance * share for _, resistance, share in circuit])
-    G, C = slabs.electrode_columns
-    G, C = G[:, number], C[np.ix_(number, number)]
-    opened = _floating(solved)
-    solve = inverse_with_open(solved, factor)
-    answer = solve(G / np.max(np.abs(G)))
-    more = solve(slabs.mass_times(answer))
-    X = np.concatenate([vectors, answer, more, solve(slabs.mass_times(more))], axis=1)
-    X = X / np.sqrt(np.maximum(np.sum(X * slabs.mass_times(X), axis=0), 1e-300))
-    M = X.T @ slabs.mass_times(X)
-    size, turn = np.linalg.eigh((M + M.T) / 2)
-    X = X @ (turn[:, size > 1e-10] / np.sqrt(size[size > 1e-10]))
-    K = X.T @ slabs.stiffness_times(X)
-    if opened.size:
-        Go, Co = slabs.electrode_columns
-        force = X.T @ (Go @ opened)
-        K = K - force @ np.linalg.solve(opened.T @ Co @ opened, force.T)
-    force, start = X.T @ G, X.T @ slabs.mass_times(vectors)
+    weight = np.array([resistance * share for _, resistance, share in circuit]) / solved.copies
+    force, C = part.coupling[:, number], part.capacitance[np.ix_(number, number)]
+    K = charge_free_stiffness(part)
+    # The modes come first in the space.
+    start = np.eye(len(K), values.size)
     for mode in range(values.size):
         shape = start[:, mode].astype(complex)
         for _ in range(60):
@@ -135,7 +100,7 @@ def shunted_frequencies(
             stiffer = np.linalg.solve(
                 np.eye(weight.size) - scale[:, None] * C, scale[:, None] * force.T
             )
-            squares, shapes = eig(K + force @ stiffer)
+            squares, shapes = eig(K + force @ stiffer, part.mass)
             likeness = np.abs(shape.conj() @ shapes) / np.linalg.norm(shapes, axis=0)
             best = int(np.argmax(likeness))
             before, omega[mode] = omega[mode], np.sqrt(squares[best])

@@ -72,6 +72,12 @@ def plate_circuit(solved: PlateModel) -> tuple[tuple[int, float, float], ...]:
     return tuple(out.values())
 
 
+def open_electrodes(solved: PlateModel) -> si.FloatArray:
+    """Columns (electrodes, open ones) with a 1 for each electrode that the plate leaves open."""
+    opened = [number for number, resistance, _ in plate_circuit(solved) if np.isinf(resistance)]
+    return np.eye(len(solved.model.electrodes))[:, opened]
+
+
 def reduced_class(
     plate: RectangularPlate,
     parity: Symmetry,
@@ -123,6 +129,13 @@ def reduced_model(
         drive,
         circuit,
     )
+
+
+def charge_free_stiffness(part: ReducedClass) -> si.FloatArray:
+    """The stiffness with the voltages of open electrodes, which keep no charge."""
+    opened = open_electrodes(part.solved)
+    pull = part.coupling @ opened
+    return part.stiffness - pull @ np.linalg.solve(opened.T @ part.capacitance @ opened, pull.T)
 
 
 def _symmetric(matrix: si.FloatArray) -> si.FloatArray:

@@ -27,7 +27,11 @@ from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.layers import SCREENING
 from squeezefilm.physics.plate.solid.mesh import require_thin, wave_number
 from squeezefilm.physics.plate.solid.modes import Label, check_band, label_of, surface_shapes
-from squeezefilm.physics.plate.solid.reduced import ReducedClass, reduced_class
+from squeezefilm.physics.plate.solid.reduced import (
+    ReducedClass,
+    charge_free_stiffness,
+    reduced_class,
+)
 from squeezefilm.physics.plate.solid.symmetry import (
     Symmetry,
     drive_classes,
@@ -118,13 +122,7 @@ def driven_modes(part: ReducedClass, band: tuple[si.Hertz, si.Hertz]) -> list[Dr
     space has converged, which is about the band it was made for.
     """
     with one_blas_thread():
-        opened = [number for number, resistance, _ in part.circuit if np.isinf(resistance)]
-        stiffness = part.stiffness
-        if opened:
-            pull = part.coupling[:, opened]
-            held = part.capacitance[np.ix_(opened, opened)]
-            stiffness = stiffness - pull @ np.linalg.solve(held, pull.T)
-        squares, turn = eigh(stiffness, part.mass)
+        squares, turn = eigh(charge_free_stiffness(part), part.mass)
         inside = (squares > (2 * np.pi * band[0]) ** 2) & (squares < (2 * np.pi * band[1]) ** 2)
         squares, turn = squares[inside], turn[:, inside]
         if not squares.size:

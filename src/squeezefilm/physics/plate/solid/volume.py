@@ -19,7 +19,7 @@ from squeezefilm.physics.plate.elements.cross_section import potential_base
 from squeezefilm.physics.plate.elements.lobatto import LineMesh
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.modes import PlateModes
-from squeezefilm.physics.plate.solid.reduced import class_slices, plate_circuit
+from squeezefilm.physics.plate.solid.reduced import class_slices, open_electrodes
 from squeezefilm.physics.plate.solid.response import HarmonicResponse
 from squeezefilm.physics.plate.solid.symmetry import PlateModel
 
@@ -171,11 +171,8 @@ def _mode_electrodes(solved: PlateModel, vector: si.FloatArray) -> si.FloatArray
     """The potential (V) of each electrode in free vibration: none but where a patch is open and
     carries no charge."""
     G, C = solved.slabs.electrode_columns
-    V = np.zeros(C.shape[0])
-    opened = [number for number, resistor, _ in plate_circuit(solved) if np.isinf(resistor)]
-    if opened:
-        V[opened] = np.linalg.solve(C[np.ix_(opened, opened)], -(G.T @ vector)[opened])
-    return V
+    opened = open_electrodes(solved)
+    return opened @ np.linalg.solve(opened.T @ C @ opened, -opened.T @ (G.T @ vector))
 
 
 def _potential_coefficients(

@@ -17,8 +17,8 @@ from squeezefilm.physics.plate.solid.coarse_modes import (
     inverse_with_open,
     open_values,
     shunted_frequencies,
-    tied_electrodes,
 )
+from squeezefilm.physics.plate.solid.reduced import open_electrodes
 from squeezefilm.physics.plate.solid.symmetry import Parity
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480)
@@ -64,32 +64,21 @@ def opened(one: CoarseModes) -> float:
     return float(values[0])
 
 
-def test_electrodes_are_tied_with_their_signs_each_group_once() -> None:
-    solved = sensing("shorted").solved
-    groups: list[list[tuple[int, float]]] = [
-        [(0, 1.0), (1, -1.0)], [(1, 2.0)], [], [(0, -1.0), (1, 1.0)], [(0, 1.0), (0, -1.0)],
-    ]  # fmt: skip
-    assert tied_electrodes(solved, groups) == pytest.approx(np.array([[1.0, 0.0], [-1.0, 1.0]]))
-    assert tied_electrodes(solved, [[]]).shape == (2, 0)
-    assert tied_electrodes(solved, []).shape == (2, 0)
-
-
 def test_mirror_images_share_an_electrode_that_an_odd_class_does_not_have() -> None:
-    pair = [CeramicPatch(x, 0, 6e-3, 14e-3, 0.5e-3, sign) for x, sign in ((2e-3, 1), (16e-3, -1))]
-    centre = CeramicPatch(10e-3, 0, 4e-3, 14e-3, 0.5e-3)
+    pair = [
+        CeramicPatch(x, 0, 6e-3, 14e-3, 0.5e-3, sign, electrode="open")
+        for x, sign in ((2e-3, 1), (16e-3, -1))
+    ]
+    centre = CeramicPatch(10e-3, 0, 4e-3, 14e-3, 0.5e-3, electrode="open")
     even, odd = (
         solved_plate(*pair, centre, parity=(p, "S")).solved  # type: ignore[arg-type]
         for p in ("S", "A")
     )
-    for solved, sign in ((even, 1.0), (odd, -1.0)):
-        one = tied_electrodes(solved, [[(0, 1.0)], [(1, 1.0)]])
-        assert one.shape[1] == 1
-        assert np.abs(one).sum() == 1.0
-        # Tied against the class's own sign the two hold nothing at all.
-        assert tied_electrodes(solved, [[(0, 1.0), (1, sign)]]).shape[1] == 1
-        assert tied_electrodes(solved, [[(0, 1.0), (1, -sign)]]).shape[1] == 0
-    assert tied_electrodes(even, [[(2, 1.0)]]).shape[1] == 1
-    assert tied_electrodes(odd, [[(2, 1.0)]]).shape[1] == 0
+    for solved, count in ((even, 2), (odd, 1)):
+        columns = open_electrodes(solved)
+        assert columns.shape == (2, count)
+        assert np.all(columns.sum(axis=0) == 1)
+    assert open_electrodes(sensing("shorted").solved).shape == (2, 0)
 
 
 @pytest.mark.parametrize("sign", [1, -1])
