@@ -9,10 +9,8 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import itertools
 import time
-from collections.abc import Iterable
-from typing import Annotated, NamedTuple, TypeVar
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -21,7 +19,7 @@ from squeezefilm.core.blas_threads import one_blas_thread
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import FREQUENCY
 from squeezefilm.core.progress import Deadline, ShareProgress
-from squeezefilm.physics.plate.elements.box_model import Medium
+from squeezefilm.physics.plate.elements.cross_section import Springs, Weight
 from squeezefilm.physics.plate.elements.slabs import Slabs
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.coarse_modes import (
@@ -48,61 +46,35 @@ from squeezefilm.physics.plate.solid.refined_modes import (
     with_label,
 )
 from squeezefilm.physics.plate.solid.symmetry import (
-    PlateModel,
-    Symmetry,
     all_classes,
     drive_classes,
     drive_signs,
     told_of,
 )
 
-_Row = TypeVar("_Row")
-
 
 def energy_shares_of(slabs: Slabs, vectors: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
     """The share of each medium, and of springs, in a mode's elastic energy (modes × media), and the
     loss factor that these shares and each medium's and spring's own loss make."""
     model = slabs.model
-    energy, lost = [], []
-    used = set(np.unique(model.medium).tolist())
-    for number, medium in enumerate(model.media):
-        if number not in used:
-            energy.append(np.zeros(vectors.shape[1]))
-            lost.append(energy[-1])
-            continue
 
-        def only(other: Medium, own: Medium = medium) -> tuple[float, float]:
-            return float(other is own), 0.0
+    def energy(weight: Weight, springs: Springs) -> si.FloatArray:
+        sections = slabs.weighted_sections(weight, springs)
+        return np.asarray(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
 
-        sections = slabs.weighted_sections(only, springs=0.0)
-        energy.append(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
-        lost.append(energy[-1] * (medium.loss or 0.0))
+    parts = [
+        energy(lambda other, own=medium: (float(other is own), 0.0), 0.0)  # type: ignore[misc]
+        for medium in model.media
+    ]
     if model.foundations:
-        for total, springs in ((energy, 1.0), (lost, model.spring_losses)):
-            sections = slabs.weighted_sections(lambda m: (0.0, 0.0), springs=springs)
-            total.append(np.sum(vectors * slabs.stiffness_times(vectors, sections), axis=0))
-    table, whole = np.stack(energy, axis=1), np.sum(energy, axis=0)
-    return table / whole[:, None], np.sum(lost, axis=0) / whole
+        parts.append(energy(lambda medium: (0.0, 0.0), 1.0))
+    lost = energy(lambda medium: (medium.loss or 0.0, 0.0), model.spring_losses)
+    whole = np.sum(parts, axis=0)
+    return np.stack(parts, axis=1) / whole[:, None], lost / whole
 
 
-class _Columns(NamedTuple):
-    """Columns of `PlateModes` for the modes of one class."""
-
-    frequencies: si.HertzArray
-    errors: si.HertzArray
-    mesh_frequencies: si.HertzArray
-    labels: list[Label | None]
-    parities: list[Symmetry]
-    shapes: si.FloatArray
-    modal_forces: si.FloatArray
-    drive_forces: si.FloatArray
-    open_frequencies: si.HertzArray
-    open_errors: si.HertzArray
-    couplings: si.DimensionlessArray
-    coupling_errors: si.DimensionlessArray
-    energy_shares: si.DimensionlessArray
-    quality_factors: si.DimensionlessArray
-    fields: list[tuple[PlateModel, si.FloatArray]]
+# Fields of `PlateModes` that have no entry for each mode.
+_OF_ALL = {"plate", "x", "y", "materials", "model", "status", "unknowns", "left_coarse", "_again"}
 
 
 def collected_modes(
@@ -115,51 +87,27 @@ def collected_modes(
 
     Raises `InputError` where none is left.
     """
-    tables = [_table(piece, drive_signs(plate)) for piece in pieces]
+    tables = [_modes_of(piece, drive_signs(plate)) for piece in pieces]
     order = _order([frequency for table in tables for frequency in table.frequencies], band)
 
-    def taken(columns: Iterable[Iterable[_Row]]) -> list[_Row]:
-        rows = list(itertools.chain.from_iterable(columns))
-        return [rows[i] for i in order]
+    def taken(name: str) -> Any:
+        rows = [row for table in tables for row in getattr(table, name)]
+        chosen = [rows[i] for i in order]
+        return tuple(chosen) if isinstance(getattr(tables[0], name), tuple) else np.array(chosen)
 
-    frequencies = np.array(taken(table.frequencies for table in tables))
-    errors = np.array(taken(table.errors for table in tables))
-    over = int(np.sum(errors > tolerance * frequencies))
-    coarse = any(piece.level == UNREFINED for piece in pieces)
-    model = pieces[0].solved.model
-    materials = [medium.name for medium in model.media]
-    if model.foundations:
-        materials.append("supports")
-    x, y, _ = surface_shapes(pieces[0].solved, pieces[0].vectors[:, :0])
-    return PlateModes(
-        plate=plate,
-        frequencies=frequencies,
-        errors=errors,
-        mesh_frequencies=np.array(taken(table.mesh_frequencies for table in tables)),
-        labels=tuple(taken(table.labels for table in tables)),
-        parities=tuple(taken(table.parities for table in tables)),
-        x=x,
-        y=y,
-        shapes=np.array(taken(table.shapes for table in tables)),
-        modal_forces=np.array(taken(table.modal_forces for table in tables)),
-        drive_forces=np.array(taken(table.drive_forces for table in tables)),
-        open_frequencies=np.array(taken(table.open_frequencies for table in tables)),
-        open_errors=np.array(taken(table.open_errors for table in tables)),
-        coupling_errors=np.array(taken(table.coupling_errors for table in tables)),
-        couplings=np.array(taken(table.couplings for table in tables)),
-        quality_factors=np.array(taken(table.quality_factors for table in tables)),
-        materials=tuple(materials),
-        energy_shares=np.array(taken(table.energy_shares for table in tables)),
-        model=MODEL,
+    columns = {field.name for field in dataclasses.fields(PlateModes)} - _OF_ALL
+    modes = dataclasses.replace(tables[0], **{name: taken(name) for name in columns})
+    over = int(np.sum(modes.errors > tolerance * modes.frequencies))
+    return dataclasses.replace(
+        modes,
         status=(
             f"the frequencies of all {len(order)} modes within {100 * tolerance:.2g} % (estimated)"
             if over == 0
             else f"{over} of {len(order)} modes have an estimated error above {tolerance:.1e}; "
-            + ("the time was up" if coarse else "no finer mesh was used")
+            + ("the time was up" if modes.left_coarse else "no finer mesh was used")
         ),
-        unknowns=max(piece.solved.slabs.unknowns for piece in pieces),
-        _fields=tuple(taken(table.fields for table in tables)),
-        left_coarse=coarse,
+        unknowns=max(table.unknowns for table in tables),
+        left_coarse=any(table.left_coarse for table in tables),
     )
 
 
@@ -178,7 +126,7 @@ def _order(every: list[si.Hertz], band: tuple[float, float] | None) -> list[int]
     return order
 
 
-def _table(piece: RefinedModes, signs: si.FloatArray) -> _Columns:
+def _modes_of(piece: RefinedModes, signs: si.FloatArray) -> PlateModes:
     """The modes of one class; `signs` are those of the drive."""
     frequency, error = extrapolated(piece.coarse_values, piece.values, piece.level)
     solved = piece.solved
@@ -200,22 +148,31 @@ def _table(piece: RefinedModes, signs: si.FloatArray) -> _Columns:
     # digit. (So may a mode that is alone in its class: BLAS adds in another order along its row.)
     driven = np.array([row @ signs for row in forces])
     turn = np.array([_turn(top, push) for top, push in zip(surface, driven, strict=True)])
-    return _Columns(
+    model = solved.model
+    return PlateModes(
+        plate=solved.plate,
         frequencies=frequency,
         errors=error,
         mesh_frequencies=np.sqrt(piece.values) / (2 * np.pi),
-        labels=[label_of(top, x, y) for top in surface],
-        parities=[piece.found.parity] * frequency.size,
+        labels=tuple(label_of(top, x, y) for top in surface),
+        parities=(piece.found.parity,) * frequency.size,
+        x=x,
+        y=y,
         shapes=turn[:, None, None] * surface[..., 2],
         modal_forces=turn[:, None] * forces,
         drive_forces=np.abs(driven),
         open_frequencies=opened,
         open_errors=open_error,
-        couplings=coupling,
         coupling_errors=coupling_error,
-        energy_shares=shares,
+        couplings=coupling,
         quality_factors=1 / np.maximum(losses, 1e-30),
-        fields=[(solved, sign * vector) for sign, vector in zip(turn, vectors.T, strict=True)],
+        materials=(*(m.name for m in model.media), *(["supports"] if model.foundations else [])),
+        energy_shares=shares,
+        model=MODEL,
+        status="",
+        unknowns=solved.slabs.unknowns,
+        _fields=tuple((solved, sign * vec) for sign, vec in zip(turn, vectors.T, strict=True)),
+        left_coarse=piece.level == UNREFINED,
     )
 
 
