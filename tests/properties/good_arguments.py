@@ -84,9 +84,6 @@ class Later:
 
 _GRID = np.linspace(0.0, 1.0, 9)
 _FALL = {"relative_friction": falling_friction}
-_RADIATOR = {
-    "x": np.linspace(0, 0.02, 9), "y": np.linspace(0, 0.01, 5), "velocity": np.ones((9, 5)) + 0j,
-}  # fmt: skip
 _BAND = {"band": (20e3, 40e3)}
 _WAVE = np.linspace(0.0, 8e-3, 8, endpoint=False)
 _EDGE = np.linspace(0.0, 0.01, 9)
@@ -259,7 +256,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "frequencies": np.array([30e3]),
         "harmonics": (0,),
     },
-    "physics.plate.sound.rectangular_surface": _RADIATOR,
     "physics.plate.sound.smooth_surface": {
         "sides": (0.02, 0.01),
         "velocity": lambda x, y: np.ones((x.size, y.size)) + 0j,

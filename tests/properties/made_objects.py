@@ -72,7 +72,7 @@ from squeezefilm.physics.plate.solid.response import (
 )
 from squeezefilm.physics.plate.solid.solve import solve_modes
 from squeezefilm.physics.plate.solid.working import SolidMode, solid_mode
-from squeezefilm.physics.plate.sound import RadiatingSurface, rectangular_surface
+from squeezefilm.physics.plate.sound import RadiatingSurface, smooth_surface
 from squeezefilm.physics.plate.surface_shape import (
     BeamSurface,
     DiscSurface,
@@ -234,8 +234,8 @@ MADE: dict[Any, Callable[[], Any]] = {
     AmplifierPart: lambda: AMPLIFIERS[0],
     BeamResponse: lambda: beam_response(PLATE),
     Medium: lambda: isotropic_solid(BRASS),
-    RadiatingSurface: lambda: rectangular_surface(
-        np.linspace(0, 0.02, 9), np.linspace(0, 0.01, 5), np.ones((9, 5)) + 0j, 30e3
+    RadiatingSurface: lambda: smooth_surface(
+        (0.02, 0.01), lambda x, y: np.ones((x.size, y.size)) + 0j, 30e3, 0.01
     ),
     StatorAssumptions: StatorAssumptions,
     StatorFit: fit_stator,

@@ -24,14 +24,12 @@ from squeezefilm.physics.plate.sound import (
     exposure_guidance,
     loudest,
     ring_surface,
-    smooth_surface,
 )
 from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
 MODEL_ERROR_dB: si.Dimensionless = 6.0
 """Error of the level either way, assumed: a wall or a table may double the pressure, and a thin
 plate without a baffle, whose back moves against its front, may halve it."""
-_AIR: si.MetrePerSecond = 343.2
 AUDIBLE: si.Hertz = 17.8e3
 """The lower edge of the one-third-octave band around 20 kHz: below it limits of noise hold."""
 
@@ -160,16 +158,8 @@ def moving_surface(display: Display, prediction: Prediction) -> RadiatingSurface
     omega = 2 * np.pi * p.frequency
     free = p.touch.free_amplitude
     if mode.solid is not None:
-        plate, response = mode.solid.modes.plate, mode.solid.response
-        resonance = mode.solid.resonance
         # The shape at resonance; off it as much as its lobe moves less.
-        factor = 1j * omega * free / mode.solid.amplitude_per_volt
-        return smooth_surface(
-            (plate.length, plate.width),
-            lambda x, y: factor * response.motion(resonance, x, y),
-            p.frequency,
-            min(2 * p.mode.half_wavelength, _AIR / p.frequency),
-        )
+        return mode.solid.radiating(free / mode.solid.amplitude_per_volt, p.frequency)
     if isinstance(actuator, DiscPlate):
         ring_mode = ring_body(actuator).mode()
         shape = ring_mode.surface_shape / np.max(np.abs(ring_mode.surface_shape))

@@ -20,7 +20,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import NODAL_LINES, require_within
 from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left
 from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring
-from squeezefilm.design.plate.solved import Hurry, ModeRow, Remarks, SolvedBody, plate_sound
+from squeezefilm.design.plate.solved import Hurry, ModeRow, Remarks, SolvedBody
 from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.plate.beam_response import BeamResponse, beam_response
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
@@ -31,7 +31,7 @@ from squeezefilm.physics.plate.solid.resonances import antinode, label_name
 from squeezefilm.physics.plate.solid.response import HarmonicResponse
 from squeezefilm.physics.plate.solid.solve import solve_modes
 from squeezefilm.physics.plate.solid.working import SolidMode, response_frequencies, solid_mode
-from squeezefilm.physics.plate.sound import SoundField
+from squeezefilm.physics.plate.sound import SoundField, sound_field
 from squeezefilm.physics.plate.working_mode import WorkingMode, solid_working_mode
 from squeezefilm.physics.plausibility.checks import require_plausible
 
@@ -167,7 +167,7 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         resonance=at,
         beam_frequency=solved.beam.mode.frequency,
         beam_amplitude_per_volt=solved.beam.amplitude_per_volt,
-        sound=plate_sound(response, at, solid.frequency, display.drive.voltage),
+        sound=sound_field(solid.radiating(display.drive.voltage, solid.frequency)),
         objections=(*require_plausible(display), *solved.left_out),
     )
 

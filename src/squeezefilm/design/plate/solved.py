@@ -23,8 +23,7 @@ from squeezefilm.physics.plate.solid.forecast import (
     solve_size,
 )
 from squeezefilm.physics.plate.solid.modes import Label, PlateModes
-from squeezefilm.physics.plate.solid.response import HarmonicResponse
-from squeezefilm.physics.plate.sound import DISTANCES, SoundField, rectangular_surface, sound_field
+from squeezefilm.physics.plate.sound import SoundField
 from squeezefilm.physics.plausibility.expected import expectation
 
 if TYPE_CHECKING:
@@ -32,9 +31,6 @@ if TYPE_CHECKING:
 
 ALONE = "the budget left no time for the other modes of the band"
 """Sentence where only the working mode was solved."""
-# Points to a wave in air, and at the least along a side: halved, levels change by 0.1 dB.
-_POINTS_OF_A_WAVE, _LEAST_POINTS = 6, 31
-_SOUND_SPEED: si.MetrePerSecond = 343.2
 
 
 @dataclass(frozen=True)
@@ -205,29 +201,6 @@ def half_power(frequency: si.FloatArray, amplitude: si.FloatArray) -> tuple[floa
         share = (level - amplitude[low]) / (amplitude[high] - amplitude[low])
         edges.append(float(frequency[low] + share * (frequency[high] - frequency[low])))
     return edges[0], edges[1]
-
-
-def plate_sound(
-    response: HarmonicResponse,
-    at: int,
-    frequency: si.Hertz,
-    voltage: si.Volt,
-    distances: tuple[si.Metre, ...] = DISTANCES,
-) -> SoundField:
-    """The sound of a plate's face alone, in a baffle, at a voltage (V, zero-to-peak).
-
-    The face moves as at the solved frequency of number `at`, with the `frequency` (Hz) of the
-    drive. No finger is on it. Range, model and errors are those of
-    `physics.plate.sound.sound_field`.
-    """
-    plate, wave = response.plate, _SOUND_SPEED / frequency
-    x, y = (
-        np.linspace(0, side, max(_LEAST_POINTS, math.ceil(_POINTS_OF_A_WAVE * side / wave) + 1))
-        for side in (plate.length, plate.width)
-    )
-    w = voltage * response.displacement(x, y)[at]
-    surface = rectangular_surface(x, y, 2j * np.pi * frequency * w, frequency)
-    return sound_field(surface, distances)
 
 
 @dataclass(frozen=True)

@@ -117,37 +117,6 @@ class RadiatingSurface:
 
 
 @si.checked_numbers
-def rectangular_surface(
-    x: si.MetreArray,
-    y: si.MetreArray,
-    velocity: si.ComplexArray,
-    frequency: Annotated[si.Hertz, si.Above(0.0)],
-) -> RadiatingSurface:
-    """A plate's surface from its velocity (len(x), len(y)) on a rising grid (trapezoidal rule).
-
-    For a displacement w of zero-to-peak amplitude the velocity is 2πi f w. Positions are taken
-    from the middle of the grid. Raises `InputError` for a wrong shape or a grid coarser than a
-    quarter of the wave in air.
-    """
-    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
-    values = np.asarray(velocity, dtype=complex)
-    if values.shape != (x.size, y.size):
-        raise InputError(
-            f"velocity has the shape {values.shape}; for this grid it must be {(x.size, y.size)}",
-            quantity="velocity",
-        )
-    for name, line in (("x", x), ("y", y)):
-        if line.size < 2 or np.any(np.diff(line) <= 0):
-            raise InputError(f"{name} must be two or more rising positions", quantity=name)
-        _require_fine(name, float(np.diff(line).max()), frequency)
-    grid = np.stack(
-        np.meshgrid(x - (x[0] + x[-1]) / 2, y - (y[0] + y[-1]) / 2, indexing="ij"), axis=-1
-    )
-    area = np.outer(_trapezoid(x), _trapezoid(y))
-    return RadiatingSurface(frequency, grid.reshape(-1, 2), area.ravel(), values.ravel())
-
-
-@si.checked_numbers
 def smooth_surface(
     sides: tuple[Annotated[si.Metre, si.Above(0.0)], Annotated[si.Metre, si.Above(0.0)]],
     velocity: Callable[[si.MetreArray, si.MetreArray], si.ComplexArray],
@@ -155,12 +124,15 @@ def smooth_surface(
     wave: Annotated[si.Metre, si.Above(0.0)],
 ) -> RadiatingSurface:
     """A plate's surface from a smooth `velocity` (m/s) of lines x and y (m from a corner), shape
-    (x, y), whose shortest wave, in air or along the plate, is `wave` (m).
+    (x, y), whose shortest wave along the plate is `wave` (m).
 
-    Gauss–Legendre quadrature with three points to a wave and six more along each side: levels of
-    the plates that come along are within .01 dB of those of a grid of ten times as many points.
-    Raises `InputError` for a velocity of another shape, or more than 500 waves along a side.
+    For a displacement w of zero-to-peak amplitude the velocity is 2πi f w. Gauss–Legendre
+    quadrature with three points to a wave, of the plate's or in air, and six more along each side:
+    levels of the plates that come along are within .01 dB of those of a grid of ten times as many
+    points. Raises `InputError` for a velocity of another shape, or more than 500 waves along a
+    side.
     """
+    wave = min(wave, _SOUND_SPEED / frequency)
     si.require("wave", wave, si.Unit("m"), at_least=max(sides) / _MOST_WAVES)
     nodes, weights = [], []
     for side in sides:
@@ -325,13 +297,6 @@ def _directions(surface: RadiatingSurface) -> tuple[si.FloatArray, si.FloatArray
     steps = max(36, math.ceil(2 * math.pi / lobe))
     polar = np.linspace(0, math.pi / 2, max(36, steps // 2) + 1)
     return polar, 2 * math.pi * np.arange(steps) / steps
-
-
-def _trapezoid(line: si.FloatArray) -> si.FloatArray:
-    weight = np.zeros_like(line)
-    weight[:-1] += np.diff(line) / 2
-    weight[1:] += np.diff(line) / 2
-    return weight
 
 
 def _require_fine(name: str, step: float, frequency: float) -> None:

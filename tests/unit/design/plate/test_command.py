@@ -91,6 +91,7 @@ def solid(plate: RectangularPlate, label: Any) -> Any:
         alone_per_volt=39e-9, modal_mass=None, lobe=(41e-3, 24e-3), model="solid",
         position=modes.x, deflection=along(modes.x), neighbour=None,
         response=Response(frequencies), resonance=100, circuit=CIRCUIT, circuit_said="well",
+        radiating=lambda volts, frequency: (volts, frequency),
     )  # fmt: skip
 
 
@@ -124,7 +125,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, Any]]:
     monkeypatch.setattr(command, "solve_modes", solve)
     monkeypatch.setattr(command, "solid_mode", solved)
     stand_in(
-        "plate_sound",
+        "sound_field",
         SimpleNamespace(distances=(0.3,), sound_pressure_level_dB=(70.0,), guidance=None),
     )
     stand_in(
@@ -150,7 +151,7 @@ def test_an_analysis_is_around_the_mode_asked_for(display: Display, parts: dict[
     assert (one.amplitude_per_volt, one.largest_per_volt) == (40e-9, 120e-9)
     assert (one.mode.lobe, one.working.alone_per_volt) == ((41e-3, 24e-3), 39e-9)
     assert (one.beam_frequency, one.beam_amplitude_per_volt) == (33e3, 9e-8)
-    assert parts["plate_sound"][0] == (one.response, one.resonance, 30e3, 15.0)
+    assert parts["sound_field"][0] == ((15.0, 30e3),)
     assert told == [
         "mode (4,0) and its response", "all modes in the band", "airborne sound",
     ]  # fmt: skip
@@ -172,7 +173,7 @@ def test_a_plate_is_solved_once_for_all_voltages(display: Display, parts: dict[s
             display, drive=dataclasses.replace(display.drive, voltage=volts)
         )
         analyze_plate(driven, mode=(4, 0), progress=lambda _: None)
-        assert parts["plate_sound"][0][3] == volts
+        assert parts["sound_field"][0][0][0] == volts
     assert len(parts["modes"]) == 1
     thicker = dataclasses.replace(display.actuator, thickness=2.1e-3)
     analyze_plate(dataclasses.replace(display, actuator=thicker), mode=(4, 0))

@@ -40,6 +40,7 @@ from squeezefilm.physics.plate.solid.resonances import (
 from squeezefilm.physics.plate.solid.response import HarmonicResponse, harmonic_response
 from squeezefilm.physics.plate.solid.solve import solve_for_response
 from squeezefilm.physics.plate.solid.symmetry import PlateModel
+from squeezefilm.physics.plate.sound import RadiatingSurface, smooth_surface
 
 RESPONSE_POINTS = 200
 _LINE_POINTS = 401
@@ -186,6 +187,22 @@ class SolidMode:
         si.require("frequency", frequency, si.Unit("Hz"), above=0)
         band = np.union1d([frequency], self.frequency)
         return self._response(band), int(np.searchsorted(band, frequency))
+
+    @si.checked_numbers
+    def radiating(
+        self,
+        voltage: Annotated[si.Volt, si.AtLeast(0.0)],
+        frequency: Annotated[si.Hertz, si.Above(0.0)],
+    ) -> RadiatingSurface:
+        """The upper face as a source of sound, without a finger: as it moves at resonance under a
+        voltage (V, zero to peak), at a drive's frequency (Hz)."""
+        factor = 2j * np.pi * frequency * voltage
+        return smooth_surface(
+            self.modes.plate.extent,
+            lambda x, y: factor * self.response.motion(self.resonance, x, y),
+            frequency,
+            2 * self.half_wavelength,
+        )
 
     def _response(self, frequencies: si.HertzArray) -> HarmonicResponse:
         known = self.response.frequencies
