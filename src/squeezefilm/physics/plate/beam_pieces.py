@@ -27,6 +27,7 @@ from squeezefilm.physics.plate.beam_modes import (
 )
 from squeezefilm.physics.plate.elements.lobatto import (
     LineMesh,
+    apart,
     lagrange_basis,
     line_matrices,
     lobatto_nodes,
@@ -87,7 +88,7 @@ def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[B
     across the plate bends together."""
     spans = [stressed_span(plate, patch) for patch in plate.patches]
     ends = [e for patch in plate.patches for e in (patch.x, patch.x + patch.length)]
-    stops = _apart([0.0, plate.length, *ends, *itertools.chain(*spans)], _NEAR * plate.length)
+    stops = apart([0.0, plate.length, *ends, *itertools.chain(*spans)], _NEAR * plate.length)
     sections = dict[tuple[_Strip, ...], si.FloatArray]()
 
     def section(which: Iterable[CeramicPatch]) -> si.FloatArray:
@@ -110,22 +111,13 @@ def beam_pieces(plate: RectangularPlate, cross_section: CrossSection) -> tuple[B
     return tuple(pieces)
 
 
-def _apart(places: Iterable[float], least: float) -> list[float]:
-    """Places in their order, of those that are as good as one the first."""
-    kept = list[float]()
-    for place in sorted(places):
-        if not kept or place - kept[-1] > least:
-            kept.append(place)
-    return kept
-
-
 def _mean(
     plate: RectangularPlate, cross_section: CrossSection, strips: tuple[_Strip, ...]
 ) -> si.FloatArray:
     """Bending and shear stiffness, mass and rotary inertia per unit width of the plate with strips
     of ceramic, the mean over its width."""
     edges = [e for _, y, width, _ in strips for e in (y, y + width)]
-    stops = _apart([0.0, plate.width, *edges], _NEAR * plate.width)
+    stops = apart([0.0, plate.width, *edges], _NEAR * plate.width)
     total = np.zeros(4)
     for low, high in itertools.pairwise(stops):
         middle = (low + high) / 2

@@ -7,6 +7,7 @@ three-dimensional plate is a sum of Kronecker products of the three below.
 from __future__ import annotations
 
 import functools
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,6 +113,16 @@ def hierarchic_values(order: int, points: tuple[float, ...] | None = None) -> si
         out[:, k - 1] = (high - low) / np.sqrt(2 * (2 * k - 1))
     out.setflags(write=False)
     return out
+
+
+def apart(places: Iterable[float], least: float) -> list[float]:
+    """Places in rising order, of those that are as good as one (no more than `least` apart) the
+    first."""
+    kept: list[float] = []
+    for place in sorted(places):
+        if not kept or place - kept[-1] > least:
+            kept.append(place)
+    return kept
 
 
 @dataclass(frozen=True, eq=False)

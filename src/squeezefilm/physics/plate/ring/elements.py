@@ -21,7 +21,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError
 from squeezefilm.core.hard_limits import RING_ELEMENTS, require_within
 from squeezefilm.physics.plate.elements.box_model import require_aspect
-from squeezefilm.physics.plate.elements.lobatto import gauss_points, lagrange, lobatto_nodes
+from squeezefilm.physics.plate.elements.lobatto import apart, gauss_points, lagrange, lobatto_nodes
 from squeezefilm.physics.plate.ring.section import AnnularSection, RingLayer
 
 Entries = tuple[si.IntArray, si.IntArray, si.FloatArray]
@@ -158,8 +158,8 @@ def ring_mesh(section: AnnularSection) -> RingMesh:
     thinnest = min(layer.thickness for layer in layers)
     require_aspect("body", section.thickness, "radius", radius, _THINNEST_BODY)
     require_aspect("layer", thinnest, "radius", radius, _THINNEST_LAYER)
-    r_breaks = _unique([x for a in layers for x in (a.inner_radius, a.outer_radius)])
-    z_breaks = _unique([x for a in layers for x in (a.bottom, a.top)])
+    r_breaks = apart((x for a in layers for x in (a.inner_radius, a.outer_radius)), _SAME)
+    z_breaks = apart((x for a in layers for x in (a.bottom, a.top)), _SAME)
     longest = max(3 * section.thickness, (r_breaks[-1] - r_breaks[0]) / 6)
     # Only where two layers meet is there a singular corner worth grading for; the free corners of
     # one homogeneous layer have smooth enough fields.
@@ -373,8 +373,3 @@ def _unknowns(
     unknown[at, _HOOP] = unknown[at, _RADIAL]
     sign[at, _HOOP] = -1.0
     return unknown, sign, count, potentials, used.ravel()
-
-
-def _unique(values: list[float]) -> list[float]:
-    ordered = sorted(values)
-    return [x for k, x in enumerate(ordered) if k == 0 or x - ordered[k - 1] > _SAME]

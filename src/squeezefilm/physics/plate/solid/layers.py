@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.plate.elements.box_model import Medium, isotropic_solid, piezoceramic_solid
-from squeezefilm.physics.plate.elements.lobatto import LineMesh
+from squeezefilm.physics.plate.elements.lobatto import LineMesh, apart
 from squeezefilm.physics.plate.layout import Face, RectangularPlate
 from squeezefilm.physics.plate.solid.symmetry import SNAP
 
@@ -72,7 +71,7 @@ def media(plate: RectangularPlate) -> tuple[Medium, ...]:
 
 def thicknesses(plate: RectangularPlate, face: Face) -> list[si.Metre]:
     """The different thicknesses of the ceramics on a face, ascending."""
-    return merged(patch.thickness for patch in plate.patches if patch.face == face)
+    return apart((patch.thickness for patch in plate.patches if patch.face == face), SNAP)
 
 
 def through_thickness(
@@ -127,15 +126,6 @@ def through_thickness(
 def snapped(length: si.Metre) -> int:
     """A length in whole units of `SNAP`, to compare by."""
     return round(length / SNAP)
-
-
-def merged(values: Iterable[float]) -> list[float]:
-    """The values ascending, without those nearer than `SNAP` to the one before."""
-    out: list[float] = []
-    for value in sorted(values):
-        if not out or value > out[-1] + SNAP:
-            out.append(value)
-    return out
 
 
 def nearest(mesh: LineMesh, position: si.Metre) -> int:

@@ -25,14 +25,13 @@ from squeezefilm.physics.plate.elements.box_model import (
     require_aspect,
     require_half_wave,
 )
-from squeezefilm.physics.plate.elements.lobatto import MAX_ORDER, LineMesh
+from squeezefilm.physics.plate.elements.lobatto import MAX_ORDER, LineMesh, apart
 from squeezefilm.physics.plate.elements.slabs import require_countable
 from squeezefilm.physics.plate.layout import CeramicPatch, Face, FoamSupport, RectangularPlate
 from squeezefilm.physics.plate.solid.layers import (
     NORMAL,
     Resolution,
     media,
-    merged,
     snapped,
     through_thickness,
 )
@@ -80,7 +79,7 @@ def _breaks(plate: RectangularPlate, axis: int, half: bool) -> tuple[list[float]
         (ceramics if isinstance(part, CeramicPatch) else springs).extend([start, start + extent])
     stop = span / 2 if half else span
     inside = [v for v in ceramics + springs if SNAP < v < stop - SNAP]
-    every = merged([0.0, *inside, stop])
+    every = apart([0.0, *inside, stop], SNAP)
     # An edge that coincides with the plate's own is snapped to it.
     sharp = [v for v in every if any(abs(v - c) < 2 * SNAP for c in ceramics)]
     return every, sharp
