@@ -16,7 +16,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.core.hard_limits import NODAL_LINES, require_within
-from squeezefilm.physics.plate.elements.nodal_lines import within_nodes, zero_crossings
+from squeezefilm.physics.plate.elements.nodal_lines import largest_lobe, zero_crossings
 from squeezefilm.physics.plate.laminate import Laminate
 
 BeamTheory = Literal["euler_bernoulli", "timoshenko"]
@@ -239,8 +239,7 @@ def scaled_mode(
     """A mode of any scale, on rising places from 0 to the beam's length, as it is told: scaled to 1
     at its largest lobe inside the ends. `mass` is its modal mass as it comes."""
     nodes = zero_crossings(x, w)
-    inner = w[within_nodes(x, nodes)]
-    scale = float(inner[np.argmax(np.abs(inner))])
+    scale = float(w[largest_lobe(x, w)])
     return BeamMode(
         theory=theory,
         nodal_lines=nodes.size,

@@ -64,10 +64,8 @@ class SurfaceShape(ABC):
         self, x: si.MetreLike, y: si.MetreLike
     ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
         """True where points (m, broadcast) lie on the face."""
-        left, right, front, back = self.bounds
-        return np.asarray(
-            (x >= left - _EDGE) & (x <= right + _EDGE) & (y >= front - _EDGE) & (y <= back + _EDGE)
-        )
+        X, Y = np.broadcast_arrays(x, y)
+        return self._covered(X, Y, 2 * _EDGE, 2 * _EDGE) > 0
 
     @si.checked_numbers
     def grid(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
@@ -115,7 +113,7 @@ class SurfaceShape(ABC):
     def _covered(
         self, x: si.FloatArray, y: si.FloatArray, length: si.MetreLike, width: si.MetreLike
     ) -> si.DimensionlessArray:
-        """The share of cells that is on a rectangular face."""
+        """The share of cells that is on the face, here a rectangular one."""
         left, right, front, back = self.bounds
         return _within(x, length, left, right) * _within(y, width, front, back)
 
@@ -200,14 +198,6 @@ class DiscSurface(SurfaceShape):
     mode: AnnularMode
     words: ClassVar[str] = "the disc's own mode alone, turned so that the x axis crosses antinodes"
 
-    @si.checked_numbers
-    def on_face(
-        self, x: si.MetreLike, y: si.MetreLike
-    ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
-        """True where points (m, broadcast) lie on the face."""
-        r, known = np.hypot(x, y), self.mode.surface_radius
-        return np.asarray((r >= known[0] - _EDGE) & (r <= known[-1] + _EDGE))
-
     def _nearest(self, x: si.MetreArray, y: si.MetreArray) -> tuple[si.MetreArray, si.MetreArray]:
         return x, y  # `_points` keeps to the radii there are
 
@@ -237,21 +227,13 @@ class TrackSurface(SurfaceShape):
         "at one of them: how they differ, and what changes across the track, is not known"
     )
 
-    @si.checked_numbers
-    def on_face(
-        self, x: si.MetreLike, y: si.MetreLike
-    ) -> np.ndarray[tuple[int, ...], np.dtype[np.bool]]:
-        """True where points (m, broadcast) lie on the face: the track is closed, so every x
-        does."""
-        _, _, inner, outer = self.bounds
-        return np.asarray(np.broadcast_arrays((y >= inner - _EDGE) & (y <= outer + _EDGE), x)[0])
-
     def _nearest(self, x: si.MetreArray, y: si.MetreArray) -> tuple[si.MetreArray, si.MetreArray]:
         return x, y  # |w| is that of x alone, round and round
 
     def _covered(
         self, x: si.FloatArray, y: si.FloatArray, length: si.MetreLike, width: si.MetreLike
     ) -> si.DimensionlessArray:
+        # The track is closed: every x is on it.
         _, _, inner, outer = self.bounds
         return np.asarray(np.broadcast_arrays(_within(y, width, inner, outer), x)[0])
 

@@ -16,7 +16,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.core.progress import NO_HURRY, Pace
 from squeezefilm.physics.plate.beam_response import BeamResponse, beam_response
-from squeezefilm.physics.plate.elements.nodal_lines import within_nodes, zero_crossings
+from squeezefilm.physics.plate.elements.nodal_lines import largest_lobe, zero_crossings
 from squeezefilm.physics.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.physics.plate.ring.body import (
     RingBody,
@@ -272,10 +272,8 @@ def _diameter(mode: AnnularMode) -> ModeLine:
 
 def _beam_lobe(beam: BeamResponse) -> si.Metre:
     """Place of the largest lobe between the outermost nodal lines, where the shape is 1."""
-    shape = beam.mode
-    inside = within_nodes(shape.position, shape.nodal_positions)
-    at = np.argmax(np.abs(shape.deflection[inside]))
-    return float(shape.position[inside][at])
+    position = beam.mode.position
+    return float(position[largest_lobe(position, beam.mode.deflection)])
 
 
 def _beam_beside(plate: RectangularPlate) -> BeamResponse | None:

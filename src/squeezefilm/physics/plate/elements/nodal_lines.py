@@ -34,16 +34,13 @@ def line_counts(shape: si.FloatArray, x: si.MetreArray, y: si.MetreArray) -> tup
     return zero_crossings(x, along).size, zero_crossings(y, across).size
 
 
-@si.checked_numbers
-def within_nodes(
-    position: si.MetreArray, nodes: si.MetreArray
-) -> np.ndarray[tuple[int], np.dtype[np.bool]]:
-    """True for places between the outermost of some nodal lines, all where there are fewer than
-    two: free ends move further than any finger meets."""
-    si.require("nodes", nodes, si.Unit("m"), axes=1)
-    if nodes.size < 2:
-        return np.ones(position.size, dtype=bool)
-    return np.asarray((position > nodes[0]) & (position < nodes[-1]))
+def largest_lobe(position: si.FloatArray, profile: si.FloatArray) -> int:
+    """The number of the place where a profile is largest between its outermost zeros, anywhere
+    where it has fewer than two: free ends move further than any finger meets."""
+    nodes, size = zero_crossings(position, profile), np.abs(profile)
+    if nodes.size > 1:
+        size = np.where((position > nodes[0]) & (position < nodes[-1]), size, -1.0)
+    return int(np.argmax(size))
 
 
 @si.checked_numbers

@@ -24,7 +24,7 @@ from squeezefilm.physics.plate.circuit import (
     motional_branch,
     resolved_circuit,
 )
-from squeezefilm.physics.plate.elements.nodal_lines import within_nodes, zero_crossings
+from squeezefilm.physics.plate.elements.nodal_lines import largest_lobe
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.forecast import estimated_frequency, solve_size
 from squeezefilm.physics.plate.solid.layers import Resolution
@@ -311,8 +311,7 @@ def _solved_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: P
         line = modes.field(index, x, middle, plate.thickness)[:, 0, 2]
     else:
         line = modes.field(index, middle, x, plate.thickness)[0, :, 2]
-    inside = within_nodes(x, zero_crossings(x, line))
-    at = int(np.flatnonzero(inside)[np.argmax(np.abs(line[inside]))])
+    at = largest_lobe(x, line)
     lobe = float(x[at]), across / 2
     lobe = lobe if lengthwise else lobe[::-1]
     resonance, per_volt = _strongest(response, frequency, quality, lobe)
