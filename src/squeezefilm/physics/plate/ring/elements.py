@@ -18,7 +18,7 @@ from scipy import sparse
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import ConvergenceError
+from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.core.hard_limits import RING_ELEMENTS, require_within
 from squeezefilm.physics.plate.elements.box_model import require_aspect
 from squeezefilm.physics.plate.elements.lobatto import apart, gauss_points, lagrange, lobatto_nodes
@@ -39,59 +39,6 @@ def gathered(parts: list[Entries], size: int) -> sparse.csc_matrix:
     """The sum of all elements' entries, shape (size, size)."""
     row, column, values = (np.concatenate([part[k] for part in parts]) for k in range(3))
     return sparse.coo_matrix((values, (row, column)), shape=(size, size)).tocsc()
-
-
-def shifted_inverse(
-    matrix: sparse.csc_matrix, mass: sparse.csc_matrix, shift: float
-) -> LinearOperator:
-    """(K − `shift` M)⁻¹; unknowns of the matrix beyond those of the mass are potentials, which
-    have none and carry no load."""
-    n, size = mass.shape[0], matrix.shape[0]
-    inertia = mass.tocoo()
-    padded_mass = sparse.coo_matrix((inertia.data, (inertia.row, inertia.col)), shape=(size, size))
-    factors = splu(
-        (matrix - shift * padded_mass).tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
-    padded = np.zeros(size)
-
-    def solve(b: si.FloatArray) -> si.FloatArray:
-        padded[:n] = np.ravel(b)
-        answer: si.FloatArray = factors.solve(padded)[:n]
-        return answer
-
-    return LinearOperator((n, n), matvec=solve, dtype=float)
-
-
-def nearest_modes(
-    matrix: sparse.csc_matrix,
-    mass: sparse.csc_matrix,
-    shift: float,
-    count: int,
-    name: str,
-) -> tuple[si.FloatArray, si.FloatArray]:
-    """The `count` ω² nearest to a shift, rising, and their vectors of unit modal mass.
-
-    Raises `ConvergenceError`, which calls the modes by `name`.
-    """
-    try:
-        squares, vectors = eigsh(
-            mass,  # not used: OPinv holds the potential too
-            k=count,
-            M=mass,
-            sigma=shift,
-            OPinv=shifted_inverse(matrix, mass, shift),
-            v0=np.random.default_rng(1).standard_normal(mass.shape[0]),
-            tol=1e-11,
-        )
-    except (RuntimeError, ValueError) as error:  # ARPACK's and SuperLU's
-        raise ConvergenceError(
-            f"{name} did not converge ({error}); ask for fewer modes or another degree"
-        ) from error
-    order = np.argsort(squares)
-    return squares[order], vectors[:, order]
 
 
 _SAME = 5e-10
@@ -373,3 +320,60 @@ def _unknowns(
     unknown[at, _HOOP] = unknown[at, _RADIAL]
     sign[at, _HOOP] = -1.0
     return unknown, sign, count, potentials, used.ravel()
+
+
+def shift_near(system: HarmonicSystem, near: si.Hertz) -> float:
+    """The shift of ω² for modes near a frequency (Hz), kept off rigid-body modes at zero."""
+    scale = abs(system.matrix.diagonal()[: system.displacements] / system.mass.diagonal()).min()
+    return (2 * np.pi * near) ** 2 * (1 + 1e-7) - 1e-7 * float(scale)
+
+
+def shifted_inverse(system: HarmonicSystem, shift: float) -> LinearOperator:
+    """(K − `shift` M)⁻¹; unknowns of the matrix beyond those of the mass are potentials, which
+    have none and carry no load."""
+    n, size = system.displacements, system.matrix.shape[0]
+    inertia = system.mass.tocoo()
+    padded_mass = sparse.coo_matrix((inertia.data, (inertia.row, inertia.col)), shape=(size, size))
+    factors = splu(
+        (system.matrix - shift * padded_mass).tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    padded = np.zeros(size)
+
+    def solve(b: si.FloatArray) -> si.FloatArray:
+        padded[:n] = np.ravel(b)
+        answer: si.FloatArray = factors.solve(padded)[:n]
+        return answer
+
+    return LinearOperator((n, n), matvec=solve, dtype=float)
+
+
+def nearest_modes(
+    system: HarmonicSystem, near: si.Hertz, count: int
+) -> tuple[si.FloatArray, si.FloatArray]:
+    """The `count` ω² nearest to a frequency (Hz), rising, and their vectors of unit modal mass.
+
+    Raises `InputError` for as many modes as there are unknowns, `ConvergenceError`.
+    """
+    n, shift = system.displacements, shift_near(system, near)
+    if count >= n:
+        raise InputError(f"{count} modes were asked for of {n} unknowns; ask for fewer")
+    try:
+        squares, vectors = eigsh(
+            system.mass,  # not used: OPinv holds the potential too
+            k=count,
+            M=system.mass,
+            sigma=shift,
+            OPinv=shifted_inverse(system, shift),
+            v0=np.random.default_rng(1).standard_normal(n),
+            tol=1e-11,
+        )
+    except (RuntimeError, ValueError) as error:  # ARPACK's and SuperLU's
+        raise ConvergenceError(
+            f"the modes of harmonic {system.harmonic} near {near:.6g} Hz did not converge "
+            f"({error}); ask for fewer modes or another degree"
+        ) from error
+    order = np.argsort(squares)
+    return squares[order], vectors[:, order]

@@ -22,6 +22,7 @@ from squeezefilm.physics.plate.ring.elements import (
     harmonic_system,
     nearest_modes,
     ring_mesh,
+    shift_near,
     shifted_inverse,
 )
 from squeezefilm.physics.plate.ring.section import AnnularSection, SectorDrive
@@ -113,9 +114,9 @@ def annular_modes(
     mesh = ring_mesh(section)
     fine = harmonic_system(section, harmonic, degree, mesh)
     coarse = harmonic_system(section, harmonic, degree - 1, mesh)
-    squares, vectors = _eigenpairs(fine, near, count)
+    squares, vectors = nearest_modes(fine, near, count)
     # A mode at the rim of the list may be another one at the lower degree: ask for two more.
-    rough, _ = _eigenpairs(coarse, near, count + 2)
+    rough, _ = nearest_modes(coarse, near, count + 2)
     growth = 1 / ((degree / (degree - 1)) ** 2 - 1)
     modes = []
     for square, vector in zip(squares, vectors.T, strict=True):
@@ -160,7 +161,7 @@ def bending_frequency(
     """The frequency of B(0, `diameters`) (Hz), as `bending_mode` has it, without an estimate of its
     error: at half the cost. Raises what `bending_mode` raises."""
     system = harmonic_system(section, diameters, degree)
-    squares, vectors = _eigenpairs(system, 0.0, 6)
+    squares, vectors = nearest_modes(system, 0.0, 6)
     modes = [
         _mode(section, system, float(square), vector, 1.0)
         for square, vector in zip(squares, vectors.T, strict=True)
@@ -224,12 +225,12 @@ def annular_admittance(
     mesh = ring_mesh(section)
     for m in harmonics:
         system = harmonic_system(section, m, degree, mesh)
-        squares, vectors = _eigenpairs(system, middle, modes)
+        squares, vectors = nearest_modes(system, middle, modes)
         weight = abs(drive.coefficient(m)) ** 2
         # What the modes left out add hardly depends on frequency: take it in the middle, from a
         # direct solve, at a point moved off the resonances by the shift.
-        shift = _shift(system, middle)
-        inverse = shifted_inverse(system.matrix, system.mass, shift)
+        shift = shift_near(system, middle)
+        inverse = shifted_inverse(system, shift)
         static = float(system.force @ inverse(system.force))
         for square, vector in zip(squares, vectors.T, strict=True):
             force2 = float(vector @ system.force) ** 2  # vectors have unit modal mass
@@ -240,28 +241,6 @@ def annular_admittance(
         charge += weight * static
     admittance: si.ComplexArray = 1j * omega * charge
     return admittance
-
-
-def _shift(system: HarmonicSystem, near: si.Hertz) -> float:
-    """The shift of ω² for modes near a frequency, kept off rigid-body modes at zero."""
-    scale = abs(system.matrix.diagonal()[: system.displacements] / system.mass.diagonal()).min()
-    return (2 * math.pi * near) ** 2 * (1 + 1e-7) - 1e-7 * float(scale)
-
-
-def _eigenpairs(
-    system: HarmonicSystem, near: si.Hertz, count: int
-) -> tuple[si.FloatArray, si.FloatArray]:
-    """The ω² nearest to a frequency, rising, and their vectors of unit modal mass."""
-    n = system.displacements
-    if count >= n:
-        raise InputError(f"{count} modes were asked for of {n} unknowns; ask for fewer")
-    return nearest_modes(
-        system.matrix,
-        system.mass,
-        _shift(system, near),
-        count,
-        f"the modes of harmonic {system.harmonic} near {near:.6g} Hz",
-    )
 
 
 def _mode(
