@@ -125,7 +125,7 @@ NOT_CALLED = {
     physics.plate.elements.box_model.Medium.gradient_matrix
     physics.plate.elements.box_model.kept_products physics.plate.elements.box_model.held_components
     physics.plate.elements.box_model.require_aspect physics.plate.elements.cross_section.slice_codes
-    physics.plate.elements.elimination.LDLSteps physics.plate.solid.coarse_modes.tied_electrodes
+    physics.plate.elements.elimination.LDLSteps physics.plate.ring.elements.shift_near
     physics.plate.solid.coarse_modes.CoarseModes physics.plate.solid.coarse_modes.chosen_modes
     physics.plate.solid.coarse_modes.class_fits physics.plate.solid.coarse_modes.coarse_modes
     physics.plate.solid.forecast.estimated_frequency
@@ -147,7 +147,7 @@ NOT_CALLED = {
     physics.plate.ring.elements.node_coordinates physics.plate.solid.symmetry.PlateModel
     physics.plate.solid.resonances.driven_modes physics.plate.solid.resonances.antinode
     physics.plate.solid.symmetry.forbidden_by physics.plate.solid.layers.Resolution
-    physics.plate.solid.layers.merged physics.plate.solid.layers.nearest
+    physics.plate.elements.lobatto.apart physics.plate.solid.layers.nearest
     physics.plate.solid.layers.snapped physics.plate.solid.mesh.plate_model
     physics.plate.solid.mesh.wave_number physics.plate.solid.symmetry.PlateModel.evaluation
     physics.plate.solid.symmetry.PlateModel.field physics.plate.solid.symmetry.PlateModel.force
@@ -161,7 +161,7 @@ NOT_CALLED = {
     physics.plate.solid.refined_modes.RefinedModes physics.plate.solid.refined_modes.extrapolated
     physics.plate.solid.refined_modes.refined_modes physics.plate.solid.refined_modes.with_label
     physics.plate.solid.forecast.bare_frequency physics.plate.solid.forecast.pieced_frequency
-    physics.plate.elements.nodal_lines.line_counts
+    physics.plate.elements.nodal_lines.line_counts physics.plate.elements.nodal_lines.largest_lobe
     physics.plate.beam_modes.scaled_mode physics.plate.beam_modes.wave_numbers
     physics.plate.beam_pieces.pieced_beam_mode
     physics.plate.elements.slab_factor.SlabFactor physics.plate.elements.slabs.Slabs.grid
