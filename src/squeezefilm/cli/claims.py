@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, answer, app, print_json, working, written_to
+from squeezefilm.cli.app import AsJson, answer, app, working, written_to
 from squeezefilm.core.errors import InputError
 
 
@@ -72,7 +72,11 @@ def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bo
     from squeezefilm.core import presets
     from squeezefilm.core.kit.folder import checkout
     from squeezefilm.validation.published_friction import compare_folder
-    from squeezefilm.validation.report.published import show_comparisons, write_comparisons
+    from squeezefilm.validation.report.published import (
+        show_comparisons,
+        write_comparisons,
+        write_friction_docs,
+    )
 
     if write_docs:
         # Minutes of work lie before the writing.
@@ -81,12 +85,5 @@ def _measured_curves(data: Path, out: Path | None, as_json: bool, write_docs: bo
         compared = compare_folder(presets.friction_folder() if published else data, step)
         written = None if out is None else write_comparisons(compared, out)
     if write_docs:
-        from squeezefilm.validation.report.published import write_friction_docs
-
         typer.echo(f"wrote {write_friction_docs(compared)}", err=True)
-    if as_json:
-        print_json(compared.summary())
-        return
-    show_comparisons(compared)
-    if written is not None:
-        typer.echo(f"page: {written}")
+    answer(as_json, compared, show_comparisons, page=written)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, answer, app, print_json, to_be_solved, working, written_to
+from squeezefilm.cli.app import AsJson, answer, app, to_be_solved, working, written_to
 from squeezefilm.core.errors import InputError
 
 if TYPE_CHECKING:
@@ -102,12 +102,8 @@ def fit(
         fitted = _fitted(checked, display, step)
         response = response_fit(fitted)
         written = None if out is None else write_fit(checked, fitted, out, response)
-    if as_json:
-        print_json(fit_summary(checked, fitted, response))
-    else:
-        show_fit(checked, fitted, response)
-        if written is not None:
-            typer.echo(f"page: {written}")
+    summary = fit_summary(checked, fitted, response)
+    answer(as_json, summary, lambda _: show_fit(checked, fitted, response), page=written)
     if not fitted.adequacy.adequate:
         raise typer.Exit(1)
 
@@ -196,11 +192,8 @@ def predict_unseen(
     described = to_be_solved(display, quiet=as_json)
     with working(as_json) as step:
         prediction = predict_measurement(described, ask, out, seed=seed, progress=step)
-    if as_json:
-        print_json(to_json(prediction))
-        return
-    for line in (*prediction_lines(prediction), f"prediction: {out}"):
-        typer.echo(line)
+    lines = "\n".join(prediction_lines(prediction))
+    answer(as_json, to_json(prediction), lambda _: typer.echo(lines), prediction=out)
 
 
 @measure.command()
@@ -227,8 +220,6 @@ def score(
         found, left_out = score_prediction(prediction, folder, described, progress=step)
     if keep:
         keep_scores(display, prediction, found)
-    if as_json:
-        print_json({"scores": to_json(found), "left_out": list(left_out)})
-        return
-    for line in (*(left.sentence for left in found), *(f"left out: {why}" for why in left_out)):
-        typer.echo(line)
+    summary = {"scores": to_json(found), "left_out": list(left_out)}
+    lines = [*(score.sentence for score in found), *(f"left out: {why}" for why in left_out)]
+    answer(as_json, summary, lambda _: typer.echo("\n".join(lines)))

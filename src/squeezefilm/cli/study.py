@@ -14,7 +14,6 @@ from squeezefilm.cli.app import (
     answer,
     app,
     given,
-    print_json,
     reachable,
     read_option,
     working,
@@ -130,11 +129,8 @@ def presets(as_json: AsJson = False) -> None:
     from squeezefilm.study.design.study_design import load_design
 
     listing = [{"name": name, "title": load_design(name).title} for name in study_names()]
-    if as_json:
-        print_json(listing)
-    else:
-        for entry in listing:
-            typer.echo(f"{entry['name']}: {entry['title']}")
+    lines = "\n".join(f"{entry['name']}: {entry['title']}" for entry in listing)
+    answer(as_json, listing, lambda _: typer.echo(lines))
 
 
 @study.command()

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, print_json, working, written_to
+from squeezefilm.cli.app import AsJson, answer, working, written_to
 from squeezefilm.cli.study import Store, study
 
 
@@ -16,10 +16,8 @@ def status(store: Store, as_json: AsJson = False) -> None:
     from squeezefilm.study.report.terminal import show_status
 
     with StudyStore.open(store) as found:
-        if as_json:
-            print_json({"study": found.study["name"], "participants": found.participants()})
-        else:
-            show_status(found)
+        summary = {"study": found.study["name"], "participants": found.participants()}
+        answer(as_json, summary, lambda _: show_status(found))
 
 
 @study.command()
@@ -141,9 +139,5 @@ def analyze(
             from squeezefilm.study.report.page import write_overview
 
             page = write_overview(analyses, out, step)
-    if as_json:
-        print_json({display: analysis.summary() for display, analysis in analyses.items()})
-        return
-    show_analyses(analyses)
-    if page is not None:
-        typer.echo(f"page: {page}")
+    summary = {display: analysis.summary() for display, analysis in analyses.items()}
+    answer(as_json, summary, lambda _: show_analyses(analyses), page=page)

@@ -21,7 +21,6 @@ from squeezefilm.cli.app import (
     answer,
     app,
     given,
-    print_json,
     working,
     written_to,
 )
@@ -235,10 +234,7 @@ def export(
 
     with working(as_json) as step:
         done = export_trace(trace, to, step)
-    if as_json:
-        print_json(to_json(done))
-    else:
-        show_export(done)
+    answer(as_json, to_json(done), lambda _: show_export(done))
 
 
 @dataclass(frozen=True)
@@ -268,9 +264,7 @@ def check(asked: CheckOptions) -> None:
     with working(asked.as_json) as step:
         read = given(asked, leave="drive display as_json")
         result = check_drive(asked.drive, asked.display, **read, progress=step)
-    if asked.as_json:
-        print_json({**to_json(result), "passed": result.passed})
-    else:
-        show_check(result)
+    summary = {**to_json(result), "passed": result.passed}
+    answer(asked.as_json, summary, lambda _: show_check(result))
     if not result.passed:
         raise typer.Exit(1)

@@ -22,6 +22,7 @@ from squeezefilm.core.config.provenance import (
     split_provenance,
     stated_sources,
     tree_values,
+    value_at,
 )
 from squeezefilm.core.config.references import COPIED_FROM, References
 from squeezefilm.core.config.schema import family, model_of, reads_from_file
@@ -134,16 +135,14 @@ def _depth(tree: Any) -> int:
 
 def _distribution(built: Any, key: str, spread: Spread, source: _Source) -> Distribution:
     """The distribution of the value at a dotted path of what was built."""
-    owner, parts = built, key.split(".")
-    for part in parts[:-1]:
-        owner = owner[int(part)] if isinstance(owner, tuple) else getattr(owner, part)
+    value, hint = value_at(built, key)
     try:
-        unit = si.unit_of(si.hints_of(type(owner))[parts[-1]])
+        unit = si.unit_of(hint)
         if unit is None:
             raise InputError("this is no quantity and has no uncertainty; leave it out")
-        return distribution_of(getattr(owner, parts[-1]), unit, spread)
+        return distribution_of(value, unit, spread)
     except InputError as error:
-        place = [int(part) if part.isdigit() else part for part in parts]
+        place = [int(part) if part.isdigit() else part for part in key.split(".")]
         raise source.error(str(error), place) from error
 
 

@@ -187,11 +187,11 @@ def tree_values(
 
 def _is_number(built: Any, path: str) -> bool:
     """True for a quantity or a count; a word, or one of a few, needs no source."""
-    _, hint = _value(built, path)
+    _, hint = value_at(built, path)
     return si.unit_of(hint) is not None or hint is int or int in typing.get_args(hint)[:1]
 
 
-def _value(built: Any, path: str) -> tuple[Any, Any]:
+def value_at(built: Any, path: str) -> tuple[Any, Any]:
     """The value at a dotted path of what was built, and its annotation (None for a list's)."""
     value, hint = built, None
     for part in path.split("."):
@@ -207,7 +207,7 @@ def _if_unchanged(built: Any, original: Any, path: str, provenance: Provenance) 
     theirs = original.provenance.get(path)
     if theirs is None or not provenance.source or theirs.source != provenance.source:
         return provenance
-    (now, hint), (was, _) = _value(built, path), _value(original, path)
+    (now, hint), (was, _) = value_at(built, path), value_at(original, path)
     if now == was:
         return provenance
     unit = si.unit_of(hint)
