@@ -40,8 +40,11 @@ def reproduce(
         return
     from squeezefilm.core.kit.folder import checkout
     from squeezefilm.validation.command import reproduce as run
-    from squeezefilm.validation.report.page import write_reproduction, write_validation_docs
-    from squeezefilm.validation.report.terminal import show_claims
+    from squeezefilm.validation.report.page import (
+        show_claims,
+        write_reproduction,
+        write_validation_docs,
+    )
 
     if write_docs:
         # Minutes of work lie before the writing.

@@ -31,7 +31,7 @@ def claims(stands_in: StandsIn, tmp_path: Path) -> SimpleNamespace:
     """What `reproduce` calls."""
     return SimpleNamespace(
         asked=stands_in("validation.command:reproduce", reproduced()),
-        shown=stands_in("validation.report.terminal:show_claims"),
+        shown=stands_in("validation.report.page:show_claims"),
         page=stands_in("validation.report.page:write_reproduction", tmp_path / "index.html"),
         checkout=stands_in("core.kit.folder:checkout"),
         docs=stands_in(

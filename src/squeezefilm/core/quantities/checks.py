@@ -5,7 +5,7 @@ no such number before anything is computed with it; `closed_form` does the same 
 registers it. Both refuse to give a number that is not finite: arguments so extreme that a float
 cannot hold what comes of them raise `OutOfRangeError`.
 
-Bounds stand in the annotation too (`squeezefilm.core.quantities.bounds`), or a hard limit
+Bounds stand in the annotation too (`squeezefilm.core.quantities.require`), or a hard limit
 (`squeezefilm.core.hard_limits`): ``Annotated[Metre, SIDE]``. What depends on other values, or is
 refused in another way, stands with `require`.
 """
@@ -26,7 +26,7 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.core.quantities.bounds import bounds_of
+from squeezefilm.core.quantities.require import bounds_of
 from squeezefilm.core.quantities.rules import Rule, rule_of
 
 __all__ = ["CLOSED_FORMS", "checked_numbers", "closed_form", "outermost_checked"]

@@ -15,9 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.quantities.bounds import ROWS, Limit, bounds_of
 from squeezefilm.core.quantities.require import (
     HOLDS,
+    ROWS,
+    Limit,
+    bounds_of,
     is_whole,
     require,
     require_one_of,

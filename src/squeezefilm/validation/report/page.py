@@ -1,15 +1,17 @@
-"""Page of `reproduce`: the page of validation, and the paper's figures redrawn."""
+"""Output of `reproduce`: its terminal lines, the page of validation, its report with figures."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from html import escape
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import checkout, json_text, markdown_table, write_folder
 from squeezefilm.core.kit.page_style import as_html, html_table, page, section, stamped
+from squeezefilm.core.kit.terminal import bullets, heading, plain_console, table
 from squeezefilm.core.results import write_whole
 from squeezefilm.design.analysis.paper_procedure import PaperDesign
 from squeezefilm.validation.command import ClaimResult, Reproduction
@@ -24,6 +26,9 @@ from squeezefilm.validation.report.published import (
     show_values,
     verdict_table,
 )
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 _HEADER = """# Validation
 
@@ -65,9 +70,9 @@ def _parts(result: Reproduction) -> Iterator[Part]:
     yield Part("Why", [why], level=3)
     if asked:
         head, rows = direction_table(result.results)
-        table = head, [(*row[:-1], f"**{row[-1]}**") for row in rows]
+        found = head, [(*row[:-1], f"**{row[-1]}**") for row in rows]
         models: list[Item] = [*model_sentences()]
-        yield Part("Directions of friction that others observed, model by model", [models, table])
+        yield Part("Directions of friction that others observed, model by model", [models, found])
         by_model: list[Item] = [
             (
                 f"**{items[0].claim.statement}**",
@@ -162,8 +167,8 @@ def write_reproduction(
     tell = progress or (lambda _: None)
     summary, title = result.summary(), "The paper's claims, recomputed"
     body = "".join(_html(part) for part in _parts(result))
-    for heading, svg in reproduction_figures(tell):
-        body += section(escape(heading), _framed(svg), "figure")
+    for name, svg in reproduction_figures(tell):
+        body += section(escape(name), _framed(svg), "figure")
     source = (
         "Source: Biet, Giraud, Lemaire-Semail, <em>The implementation of tactile feedback using "
         "squeeze film effect devices</em>. Published friction against amplitude is compared by "
@@ -211,3 +216,68 @@ def _marked(text: str) -> str:
 def _framed(drawing: str) -> str:
     """A drawing (an SVG element) as a figure that scrolls."""
     return f'<figure><div class="scroll" tabindex="0">{drawing}</div></figure>'
+
+
+_VERDICT_STYLES = {
+    "reproduces": "green",
+    "holds": "green",
+    "misprint": "cyan",
+    "sign only": "cyan",
+    "true by construction": "cyan",
+    "reachable with parameters of our choice": "cyan",
+    "does not reproduce": "yellow",
+    "does not hold": "yellow",
+}
+
+
+def show_claims(result: Reproduction) -> None:
+    """Print every published claim: printed, recomputed, verdict; the directions of friction in
+    every model; then where and why; the errata; what the verdicts mean."""
+    console = plain_console()
+    plain, asked = plain_claims(result.results), directions(result.results)
+    columns = ("claim", "printed", "as printed", "recomputed", "verdict")
+    table(console, columns, [_claim_row(item) for item in plain], fixed=(0,), styles=_style)
+    if asked:
+        heading(console, "Directions of friction that others observed, at one frozen set of values")
+        _say(console, model_sentences())
+        head, rows = direction_table(result.results)
+        names = [item.claim.id if item is items[0] else "" for items in asked for item in items]
+        named = [(name, *row[2:]) for name, row in zip(names, rows, strict=True)]
+        table(console, head[1:], named, fixed=(0, 1), styles=_style)
+    heading(console, "Where and why")
+    for item in plain:
+        heading(console, f"{item.claim.id}: {item.verdict}")
+        _say(console, [f"{item.claim.where}: {item.claim.statement}", *_reasons(item)])
+    for items in asked:
+        claim = items[0].claim
+        heading(console, claim.id)
+        _say(console, [f"{claim.where}: {claim.statement}"])
+        for item in items:
+            _say(console, [f"{item.claim.model}: {item.verdict}", *_reasons(item)])
+    if result.errata:
+        heading(console, "Errata of the paper")
+        errata = [
+            (e.equation, f"{e.printed}  must be  {e.corrected}: {e.why}", "") for e in result.errata
+        ]
+        bullets(console, errata)
+    head, counted = verdict_table(result.results)
+    heading(console, f"{len(result.results)} claims, and what their verdicts say")
+    table(console, head, counted, fixed=(1,), styles=lambda row: _VERDICT_STYLES.get(row[0], ""))
+
+
+def _style(row: Sequence[str]) -> str:
+    return _VERDICT_STYLES.get(row[-1], "")
+
+
+def _claim_row(item: ClaimResult) -> tuple[str, ...]:
+    values = (item.found.printed_formula_value, item.found.value)
+    shown = (show_values(value, item.claim.unit) for value in values)
+    return item.claim.id, show_printed(item), *shown, item.verdict
+
+
+def _reasons(item: ClaimResult) -> list[str]:
+    return [f"why: {item.claim.why}", *([item.found.note] if item.found.note else [])]
+
+
+def _say(console: Console, texts: Iterable[str]) -> None:
+    bullets(console, [("", text, "") for text in texts])

@@ -26,7 +26,7 @@ from squeezefilm.core.config import load, load_text
 from squeezefilm.core.config.schema import family, reads_from_file
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import ConfigError, InputError, QuantityError
-from squeezefilm.core.quantities.bounds import bounds_of
+from squeezefilm.core.quantities.require import bounds_of
 from squeezefilm.design.search.requirements import Requirements, load_requirements
 from squeezefilm.instruments.twin.settings import TwinSettings
 from squeezefilm.measure.recordings.description import KINDS as RECORDINGS

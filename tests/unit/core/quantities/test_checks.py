@@ -23,9 +23,17 @@ from squeezefilm.core.quantities import (
     MetreLike,
     Unit,
 )
-from squeezefilm.core.quantities.bounds import Above, AtLeast, AtMost, Below, bounds_of
 from squeezefilm.core.quantities.checks import CLOSED_FORMS, checked_numbers, closed_form
-from squeezefilm.core.quantities.require import real_numbers, require, require_one_of
+from squeezefilm.core.quantities.require import (
+    Above,
+    AtLeast,
+    AtMost,
+    Below,
+    bounds_of,
+    real_numbers,
+    require,
+    require_one_of,
+)
 
 M = Unit("m")
 

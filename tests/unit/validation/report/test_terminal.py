@@ -8,7 +8,7 @@ from tests.unit.printed import printed
 
 from squeezefilm.design.analysis.published_claims import Claim, Verdict
 from squeezefilm.validation.command import ClaimResult
-from squeezefilm.validation.report.terminal import show_claims
+from squeezefilm.validation.report.page import show_claims
 from squeezefilm.validation.values import ClaimValue
 
 
