@@ -34,8 +34,11 @@ from squeezefilm.measure.report.page import (
 from squeezefilm.physics.uncertainty.uncertainty import FrictionBand
 from squeezefilm.validation.populations import PopulationComparison
 from squeezefilm.validation.published_friction import FolderComparison, TotalScore
-from squeezefilm.validation.report.pooled import coverage_rows
-from squeezefilm.validation.report.published import show_comparisons, write_comparisons
+from squeezefilm.validation.report.published import (
+    coverage_rows,
+    show_comparisons,
+    write_comparisons,
+)
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from squeezefilm.design.analysis.published_claims import MEANINGS, Claim, Verdict
 from squeezefilm.validation.command import ClaimResult
 from squeezefilm.validation.frozen import MODELS
-from squeezefilm.validation.report.published import (
+from squeezefilm.validation.report.page import (
     directions,
     missed_lists,
     model_sentences,

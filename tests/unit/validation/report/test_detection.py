@@ -8,7 +8,7 @@ from tests.unit.drawn import words
 
 from squeezefilm.measure.recordings.kinds import DetectionThresholds, Told
 from squeezefilm.validation.populations import RIVALS, DetectionComparison
-from squeezefilm.validation.report.pooled import (
+from squeezefilm.validation.report.published import (
     DETECTION_HEAD,
     detection_figure,
     detection_rows,

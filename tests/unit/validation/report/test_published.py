@@ -11,14 +11,15 @@ from squeezefilm.validation.report import published
 
 
 def test_curves_come_first_then_people_then_thresholds(monkeypatch: pytest.MonkeyPatch) -> None:
-    pooled = published.pooled
-    for room, names in (
-        (published, "conditions inside_words model_rows comparison_figure"),
-        (pooled, "people_rows people_words people_figure detection_rows detection_figure"),
-    ):
-        for name in names.split():
-            monkeypatch.setattr(room, name, lambda of, name=name: f"{name} of {of.told.name}")
-    monkeypatch.setattr(pooled, "detection_words", lambda of: [f"words of {of.told.name}", "more"])
+    names = (
+        "conditions inside_words model_rows comparison_figure people_rows people_words "
+        "people_figure detection_rows detection_figure"
+    )
+    for name in names.split():
+        monkeypatch.setattr(published, name, lambda of, name=name: f"{name} of {of.told.name}")
+    monkeypatch.setattr(
+        published, "detection_words", lambda of: [f"words of {of.told.name}", "more"]
+    )
     one = SimpleNamespace(
         told=SimpleNamespace(name="a"), adequacy=SimpleNamespace(sentence="it fits"), curve=None
     )
@@ -37,7 +38,7 @@ def test_curves_come_first_then_people_then_thresholds(monkeypatch: pytest.Monke
         "How far each model is off", "What each model gives", "What each rival gives",
     ]  # fmt: skip
     assert [found.head for found in (curve, many, threshold)] == [
-        published.MODELS_HEAD, pooled.PEOPLE_HEAD, pooled.DETECTION_HEAD,
+        published.MODELS_HEAD, published.PEOPLE_HEAD, published.DETECTION_HEAD,
     ]  # fmt: skip
     rows: list[Any] = [found.rows for found in (curve, many, threshold)]
     assert rows == ["model_rows of a", "people_rows of b", "detection_rows of c"]
