@@ -18,6 +18,8 @@ from dataclasses import dataclass, field
 from importlib import resources
 from typing import Any
 
+import numpy as np
+
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.analysis.analyze import analyze
@@ -39,7 +41,8 @@ from squeezefilm.physics.uncertainty.parameters import with_values
 
 @dataclass(frozen=True)
 class VerbOption:
-    """An operating option: the unit of its numbers, or for words what reads one.
+    """An operating option: the unit of its numbers, or for words what reads one. A number of a
+    display that a sweep varies is one too, maybe a `whole` one.
 
     Numbers are `bounds`, words for `si.require`; `between` separates several words in a text. A
     word may name a file where `of_file` says so.
@@ -51,19 +54,41 @@ class VerbOption:
     read: Callable[[str], Any] = str
     between: str = ","
     of_file: bool = False
+    whole: bool = False
+
+    def value(self, given: Any) -> float | str:
+        """A value as it stands in a table: a word, or the number (SI) of a text or a number.
+        Raises `InputError` for one that is none, of another dimension, or not allowed."""
+        if self.unit is None:
+            if not isinstance(given, str):
+                raise InputError(f"{self.name} = {given!r:.60} is no text; write a name")
+            self.read(given)
+            return given
+        if isinstance(given, str):
+            return self.number(self.quantity(given))
+        if isinstance(given, bool) or not isinstance(given, int | float | np.number):
+            raise InputError(
+                f"{self.name} = {given!r:.60} is no number and no text; write a quantity"
+            )
+        if not np.isfinite(given):
+            raise InputError(f"{self.name} = {given!r} is not finite; write a finite number")
+        return self.number(float(given))
+
+    def quantity(self, text: str) -> float:
+        """The number (SI) that a text says. Raises `InputError` for what is none of its unit."""
+        try:
+            return si.parse_quantity(text, self.unit or si.Unit("1"))
+        except InputError as error:
+            raise InputError(f"{self.name}: {error}", quantity=self.name) from error
 
     def number(self, value: float) -> float:
-        """A number of this option. Raises `InputError` for one outside its bounds."""
+        """A number (SI) of this option. Raises `InputError` for one outside its bounds."""
         si.require(self.name, value, self.unit or si.Unit("1"), **self.bounds)
-        return value
-
-    def word(self, given: Any) -> str:
-        """A word of this option as it stands in a table. Raises `InputError` for one that is not
-        known."""
-        if not isinstance(given, str):
-            raise InputError(f"{self.name} = {given!r:.60} is no text; write a name")
-        self.read(given)
-        return given
+        if not self.whole:
+            return value
+        if not value.is_integer():
+            raise InputError(f"{self.name} = {value} must be a whole number; choose steps that are")
+        return int(value)
 
     def argument(self, value: Any) -> Any:
         """The value as an argument of a verb."""

@@ -4,22 +4,31 @@ actuator.thickness=1 mm..3 mm:9          nine values, evenly spaced, ends includ
 voltage=1 V..100 V:5:log                 evenly spaced in the logarithm
 actuator.glue.thickness=20 um, 50 um     a list; one value alone fixes it
 surface=adhesive, bare                   words, where words are wanted
+
+Samples in place of a grid are points drawn in ranges without steps, together one axis.
+
+actuator.thickness=1 mm..3 mm            uniform between the ends
+voltage=1 V..100 V:log                   uniform in the logarithm
+
+They are the first points of a scrambled Sobol sequence (Sobol 1967, Owen 1998), which fill the
+space more evenly than chance; with the same seed and ranges more samples begin with the same ones.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.formats.traces import csv_rows, text_of_file
-from squeezefilm.core.hard_limits import SWEEP_STEPS, require_within
+from squeezefilm.core.hard_limits import SWEEP_POINTS, SWEEP_STEPS, require_within
 from squeezefilm.design.sweep.answers import OPTIONS, VerbOption
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.parameters import number_paths, unit_at
@@ -28,7 +37,9 @@ Value = float | str
 DISPLAY = "display"
 """The name of the axis along which whole displays differ."""
 
-_RANGE = re.compile(r"(?P<first>.+?)\.\.(?P<last>.+?):\s*(?P<steps>\d+)\s*(?::\s*(?P<log>log))?\s*")
+_LOG = r"(?::\s*(?P<log>log))?\s*"
+_STEPS = re.compile(rf"(?P<first>.+?)\.\.(?P<last>.+?):\s*(?P<steps>\d+)\s*{_LOG}")
+_RANGE = re.compile(rf"(?P<first>[^:]+?)\.\.(?P<last>[^:]+?)\s*{_LOG}")
 
 
 @dataclass(frozen=True)
@@ -64,15 +75,51 @@ class Axis:
         return np.array([float(row[0]) for row in self.steps])
 
 
-def axis_of_text(text: str, display: Display) -> Axis:
-    """An axis from ``"actuator.thickness=1 mm..3 mm:9"``. Raises as `axis_of`."""
-    name, equals, values = text.partition("=")
-    if not equals or not name.strip() or not values.strip():
-        raise InputError(
-            f"vary '{text:.80}' says not what is varied and over which values; write "
-            '"actuator.thickness=1 mm..3 mm:9" or "voltage=10 V, 15 V, 20 V"'
-        )
-    return axis_of(name.strip(), values.strip(), display)
+def axes_of(
+    display: Display,
+    vary: Mapping[str, Any] | Sequence[str],
+    over: str | Path | None = None,
+    sample: tuple[int | None, int] = (None, 0),
+) -> tuple[Axis, ...]:
+    """The axes of a sweep of a display: samples (how many, and their seed) in those of `vary` that
+    are ranges without steps, each other name of it, and the rows of a file.
+
+    Raises `InputError` for a name that is varied twice, for samples without a range, and what the
+    axes raise.
+    """
+    named, axes = named_values(vary), list[Axis]()
+    count, seed = sample
+    if count is not None:
+        require_within(SWEEP_POINTS, count, "samples")
+        si.require("seed", seed, at_least=0)
+        ranges = [(name, match) for name, values in named if (match := _range_in(values))]
+        axes.append(_sampled([_drawn_range(*given, display) for given in ranges], count, seed))
+        named = [(name, values) for name, values in named if not _range_in(values)]
+    axes += [axis_of(name, values, display) for name, values in named]
+    if over is not None:
+        axes.append(axis_of_file(over, display))
+    names = [name for axis in axes for name in axis.names]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise InputError(f"{twice} is varied twice; vary it once", quantity=twice)
+    return tuple(axes)
+
+
+def named_values(vary: Mapping[str, Any] | Sequence[str]) -> list[tuple[str, Any]]:
+    """Names with their values, which texts like ``"voltage=1 V..30 V:9"`` may say. Raises
+    `InputError` for a text that says not what is varied."""
+    if isinstance(vary, Mapping):
+        return list(vary.items())
+    named = []
+    for text in [vary] if isinstance(vary, str) else vary:
+        name, _, values = text.partition("=")
+        if not name.strip() or not values.strip():
+            raise InputError(
+                f"vary '{text:.80}' says not what is varied and over which values; write "
+                '"actuator.thickness=1 mm..3 mm:9" or "voltage=10 V, 15 V, 20 V"'
+            )
+        named.append((name.strip(), values.strip()))
+    return named
 
 
 def axis_of(name: str, values: Any, display: Display) -> Axis:
@@ -83,36 +130,25 @@ def axis_of(name: str, values: Any, display: Display) -> Axis:
     of the operating options. Raises `InputError` for a name that is not known, with those near it,
     and for a value that is none, of another dimension, or twice the same.
     """
-    option, unit, whole = what_is_varied(name, display)
-    logarithmic = False
-    if isinstance(values, str):
-        spaced = _RANGE.fullmatch(values)
-        if spaced is not None and unit is not None:
-            logarithmic = spaced["log"] is not None
-            steps: list[Value] = [
-                number if option is None else option.number(number)
-                for number in _spaced(name, spaced, unit)
-            ]
-        else:
-            if ".." in values and unit is not None:
-                raise InputError(
-                    f"{name}={values} has no number of steps; write it behind a colon, {values}:9, "
-                    "or draw samples in it with sample 200"
-                )
-            parts = values.split("," if option is None else option.between)
-            steps = [_value(name, part.strip(), option, unit) for part in parts]
-    elif np.ndim(values) == 0:
-        steps = [_value(name, values, option, unit)]
+    option, logarithmic = what_is_varied(name, display), False
+    if not isinstance(values, str):
+        steps = [option.value(value) for value in ([values] if np.ndim(values) == 0 else values)]
+    elif option.unit is not None and (spaced := _STEPS.fullmatch(values)):
+        logarithmic = spaced["log"] is not None
+        steps = [option.number(number) for number in _spaced(option, spaced)]
     else:
-        steps = [_value(name, value, option, unit) for value in values]
+        if ".." in values and option.unit is not None:
+            raise InputError(
+                f"{name}={values} has no number of steps; write it behind a colon, {values}:9, "
+                "or draw samples in it with sample 200"
+            )
+        steps = [option.value(part.strip()) for part in values.split(option.between)]
     require_within(SWEEP_STEPS, len(steps), f"steps of {name}")
-    if whole:
-        steps = [_whole(name, value) for value in steps]
     if len(set(steps)) < len(steps):
         raise InputError(
             f"{name} takes a value twice; give each once, or fewer steps", quantity=name
         )
-    return Axis((name,), (unit,), tuple((value,) for value in steps), logarithmic)
+    return Axis((name,), (option.unit,), tuple((value,) for value in steps), logarithmic)
 
 
 def axis_of_file(path: str | Path, display: Display) -> Axis:
@@ -126,20 +162,22 @@ def axis_of_file(path: str | Path, display: Display) -> Axis:
     if len(rows) < 2:
         raise ConfigError("has no header and row; write names, and below them values", file=path)
     heads = [_head(cell) for cell in rows[0][1]]
+    options = [what_is_varied(name, display) for name, _ in heads]
+    steps = []
     for line, row in rows[1:]:
         if len(row) != len(heads):
             raise ConfigError(
                 f"has {len(row)} cells where the header has {len(heads)}", file=path, line=line
             )
-    columns: list[Axis] = []
-    for number, (name, symbol) in enumerate(heads):
-        cells = [(line, f"{row[number].strip()} {symbol}".strip()) for line, row in rows[1:]]
-        columns.append(_column(name, cells, display, path))
-    steps = zip(*(column.steps for column in columns), strict=True)
+        values = []
+        for option, (name, symbol), cell in zip(options, heads, row, strict=True):
+            try:
+                values.append(option.value(f"{cell.strip()} {symbol}".strip()))
+            except InputError as error:
+                raise ConfigError(str(error), file=path, line=line, key=name) from error
+        steps.append(tuple(values))
     return Axis(
-        tuple(name for name, _ in heads),
-        tuple(column.units[0] for column in columns),
-        tuple(tuple(value for (value,) in row) for row in steps),
+        tuple(name for name, _ in heads), tuple(option.unit for option in options), tuple(steps)
     )
 
 
@@ -157,33 +195,16 @@ def _head(cell: str) -> tuple[str, str]:
     return (match[1], (match[2] or "").strip()) if match else (cell, "")
 
 
-def _column(
-    name: str, cells: Sequence[tuple[int, str]], display: Display, path: str | Path
-) -> Axis:
-    """A column of a file, each cell with its line; the same value may stand there more than
-    once."""
-    option, unit, whole = what_is_varied(name, display)
-    steps = []
-    for line, cell in cells:
-        try:
-            value = _value(name, cell, option, unit)
-            steps.append((_whole(name, value) if whole else value,))
-        except InputError as error:
-            raise ConfigError(str(error), file=path, line=line, key=name) from error
-    return Axis((name,), (unit,), tuple(steps))
-
-
-def what_is_varied(name: str, display: Display) -> tuple[VerbOption | None, si.Unit | None, bool]:
-    """The operating option of a name, if it is one; the unit of its numbers; whether they are
-    whole."""
+def what_is_varied(name: str, display: Display) -> VerbOption:
+    """The operating option of a name, or the number of the display at that path, which has no
+    bounds here."""
     if name in OPTIONS:
-        option = OPTIONS[name]
-        return option, option.unit, False
+        return OPTIONS[name]
     try:
         unit, whole = unit_at(display, name)
     except InputError as error:
         raise InputError(f"cannot vary '{name}': {_instead(name, display, error)}") from error
-    return None, unit, whole
+    return VerbOption(name, unit, whole=whole)
 
 
 def _instead(name: str, display: Display, error: InputError) -> str:
@@ -201,79 +222,83 @@ def _instead(name: str, display: Display, error: InputError) -> str:
     )
 
 
-def _spaced(name: str, asked: re.Match[str], unit: si.Unit) -> Iterator[float]:
+def _spaced(option: VerbOption, asked: re.Match[str]) -> Iterator[float]:
     """The values of a range, its ends as they are written."""
-    first, last = (quantity_of_text(name, asked[end].strip(), unit) for end in ("first", "last"))
+    name, ends = option.name, [asked[end].strip() for end in ("first", "last")]
+    first, last = map(option.quantity, ends)
     steps = int(asked["steps"])
     require_within(SWEEP_STEPS, steps, f"steps of {name}")
     if steps < 2 or first == last:
         raise InputError(
-            f"{name} from {asked['first'].strip()} to {asked['last'].strip()} in {steps} steps is "
-            "no range; give two ends and at least 2 steps, or one value alone"
+            f"{name} from {ends[0]} to {ends[1]} in {steps} steps is no range; give two ends and "
+            "at least 2 steps, or one value alone"
         )
     if asked["log"] is None:
         middle = np.linspace(first, last, steps)
     elif min(first, last) > 0:
         middle = np.geomspace(first, last, steps)
     else:
-        raise InputError(
-            f"{name} cannot be spaced by its logarithm from {asked['first'].strip()}; start above 0"
-        )
+        raise InputError(f"{name} cannot be spaced by its logarithm from {ends[0]}; start above 0")
     # 1.1 mm, and not 1.1000000000000001 mm.
     yield from (first, *(float(f"{value:.12g}") for value in middle[1:-1]), last)
 
 
-def _value(name: str, given: Any, option: VerbOption | None, unit: si.Unit | None) -> Value:
-    if unit is None:
-        assert option is not None
-        return option.word(given)
-    if isinstance(given, str):
-        number = quantity_of_text(name, given, unit)
-        return number if option is None else option.number(number)
-    if isinstance(given, bool) or not isinstance(given, int | float | np.number):
-        raise InputError(f"{name} = {given!r:.60} is no number and no text; write a quantity")
-    if not np.isfinite(given):
-        raise InputError(f"{name} = {given!r} is not finite; write a finite number")
-    return float(given) if option is None else option.number(float(given))
+class _DrawnRange(NamedTuple):
+    """A range in which samples are drawn: its ends (SI), and whether in the logarithm."""
+
+    option: VerbOption
+    low: float
+    high: float
+    logarithmic: bool
+
+    def values(self, shares: si.FloatArray) -> list[float]:
+        """The values at shares of the range, from 0 to 1."""
+        low, high = self.low, self.high
+        if self.option.whole:
+            drawn = np.floor(low + shares * (high - low + 1))
+        elif self.logarithmic:
+            drawn = low * (high / low) ** shares
+        else:
+            drawn = low + shares * (high - low)
+        return [self.option.number(float(f"{value:.12g}")) for value in drawn.tolist()]
 
 
-def quantity_of_text(name: str, text: str, unit: si.Unit) -> float:
-    """The number (SI) of a text for a name. Raises `InputError` for what is none of its unit."""
-    try:
-        return si.parse_quantity(text, unit)
-    except InputError as error:
-        raise InputError(f"{name}: {error}", quantity=name) from error
+def _range_in(values: Any) -> re.Match[str] | None:
+    return _RANGE.fullmatch(values) if isinstance(values, str) else None
 
 
-def _whole(name: str, value: Value) -> int:
-    if not float(value).is_integer():
-        raise InputError(f"{name} = {value} must be a whole number; choose steps that are")
-    return int(value)
+def _drawn_range(name: str, asked: re.Match[str], display: Display) -> _DrawnRange:
+    option = what_is_varied(name, display)
+    if option.unit is None:
+        raise InputError(f"{name} takes words, which have no range; name them with commas between")
+    ends = [asked[end].strip() for end in ("first", "last")]
+    low, high = sorted(map(option.quantity, ends))
+    if low == high or (asked["log"] and low <= 0):
+        raise InputError(
+            f"{name} from {ends[0]} to {ends[1]} is no range to draw in; give two ends"
+            f"{', above 0 for a logarithm' if asked['log'] else ''}"
+        )
+    return _DrawnRange(option, low, high, asked["log"] is not None)
 
 
-def axes_of(
-    display: Display, vary: Mapping[str, Any] | Sequence[str], over: str | Path | None
-) -> tuple[Axis, ...]:
-    """The axes of a sweep of a display: each name of `vary`, and the rows of a file.
+def _sampled(ranges: Sequence[_DrawnRange], count: int, seed: int) -> Axis:
+    """The axis of so many samples in ranges, of which there must be one."""
+    from scipy.stats import qmc
 
-    Raises `InputError` for a name that is varied twice, and what the axes raise.
-    """
-    if isinstance(vary, str):
-        vary = [vary]
-    axes = (
-        [axis_of(name, values, display) for name, values in vary.items()]
-        if isinstance(vary, Mapping)
-        else [axis_of_text(text, display) for text in vary]
+    if not ranges:
+        raise InputError(
+            'samples are drawn in ranges, and none is given; give vary = "actuator.thickness='
+            '1 mm..3 mm", without a number of steps',
+            quantity="sample",
+        )
+    # Whole powers of two, of which the first are taken: a sequence has no other beginning.
+    shares = qmc.Sobol(len(ranges), scramble=True, rng=seed).random_base2(
+        math.ceil(math.log2(max(count, 2)))
+    )[:count]
+    columns = [drawn.values(shares[:, k]) for k, drawn in enumerate(ranges)]
+    return Axis(
+        tuple(drawn.option.name for drawn in ranges),
+        tuple(drawn.option.unit for drawn in ranges),
+        tuple(zip(*columns, strict=True)),
+        sampled=tuple("log" if drawn.logarithmic else "linear" for drawn in ranges),
     )
-    if over is not None:
-        axes.append(axis_of_file(over, display))
-    require_each_once(axes)
-    return tuple(axes)
-
-
-def require_each_once(axes: Sequence[Axis]) -> None:
-    """Refuse a name that is varied twice. Raises `InputError`."""
-    names = [name for axis in axes for name in axis.names]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice is not None:
-        raise InputError(f"{twice} is varied twice; vary it once", quantity=twice)

@@ -1,20 +1,10 @@
-"""The points of a sweep, made and checked before anything is computed.
-
-Samples in place of a grid: points drawn in ranges, together one axis of a sweep.
-
-actuator.thickness=1 mm..3 mm            uniform between the ends
-voltage=1 V..100 V:log                   uniform in the logarithm
-
-They are the first points of a scrambled Sobol sequence (Sobol 1967, Owen 1998), which fill the
-space more evenly than chance; with the same seed and ranges more samples begin with the same ones.
-"""
+"""The points of a sweep, made and checked before anything is computed."""
 
 from __future__ import annotations
 
 import functools
 import itertools
 import math
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,134 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import SWEEP_POINTS, require_within
-from squeezefilm.design.sweep.answers import (
-    FOLLOWED,
-    OPTIONS,
-    VERBS,
-    AskedNumber,
-    VerbOption,
-    asked_for,
-)
-from squeezefilm.design.sweep.axes import (
-    DISPLAY,
-    Axis,
-    axes_of,
-    quantity_of_text,
-    require_each_once,
-    what_is_varied,
-)
+from squeezefilm.design.sweep.answers import FOLLOWED, OPTIONS, VERBS, AskedNumber, asked_for
+from squeezefilm.design.sweep.axes import DISPLAY, Axis, axes_of
 from squeezefilm.design.sweep.points import Point
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.uncertainty.parameters import value_at, with_values
 from squeezefilm.physics.uncertainty.uncertainty import SAMPLES
-
-_RANGE = re.compile(r"(?P<first>[^:]+?)\.\.(?P<last>[^:]+?)\s*(?::\s*(?P<log>log))?\s*")
-
-
-@dataclass(frozen=True)
-class SampledAxes:
-    """Axes of a sampled sweep: the samples' axis, if there are ranges, and the rest as given."""
-
-    axes: tuple[Axis, ...]
-    others: Mapping[str, Any] | Sequence[str]
-
-
-@dataclass(frozen=True)
-class _DrawnRange:
-    """A range: its ends (SI), whether it is drawn in its logarithm, whether in whole numbers."""
-
-    name: str
-    unit: si.Unit
-    option: VerbOption | None
-    first: float
-    last: float
-    logarithmic: bool
-    whole: bool
-
-    def values(self, shares: si.FloatArray) -> list[float]:
-        """The values at shares of the range, from 0 to 1."""
-        low, high = self.first, self.last
-        if self.whole:
-            drawn = np.floor(low + shares * (high - low + 1))
-        elif self.logarithmic:
-            drawn = low * (high / low) ** shares
-        else:
-            drawn = low + shares * (high - low)
-        values = [float(f"{value:.12g}") for value in drawn.tolist()]
-        if self.whole:
-            return [int(value) for value in values]
-        return values if self.option is None else [self.option.number(value) for value in values]
-
-
-def axes_of_ranges(
-    display: Display, vary: Mapping[str, Any] | Sequence[str], count: int | None, seed: int
-) -> SampledAxes:
-    """The axis of `count` samples in those of `vary` that are ranges without steps.
-
-    Raises `InputError` for samples without a range, a count or a seed that is none, and for ends
-    that are no range.
-    """
-    if count is None:
-        return SampledAxes((), vary)
-    require_within(SWEEP_POINTS, count, "samples")
-    si.require("seed", seed, at_least=0)
-    if isinstance(vary, str):
-        vary = [vary]
-    pairs = (
-        list(vary.items())
-        if isinstance(vary, Mapping)
-        else [(text.partition("=")[0].strip(), text.partition("=")[2].strip()) for text in vary]
-    )
-    ranges: dict[int, _DrawnRange] = {}
-    for number, (name, values) in enumerate(pairs):
-        match = _RANGE.fullmatch(values) if isinstance(values, str) else None
-        if match is not None:
-            ranges[number] = _range(name, match, display)
-    if not ranges:
-        raise InputError(
-            'samples are drawn in ranges, and none is given; give vary = "actuator.thickness='
-            '1 mm..3 mm", without a number of steps',
-            quantity="sample",
-        )
-    others: Mapping[str, Any] | Sequence[str]
-    if isinstance(vary, Mapping):
-        others = {name: values for k, (name, values) in enumerate(pairs) if k not in ranges}
-    else:
-        others = [text for k, text in enumerate(vary) if k not in ranges]
-    return SampledAxes((_axis(list(ranges.values()), count, seed),), others)
-
-
-def _axis(ranges: Sequence[_DrawnRange], count: int, seed: int) -> Axis:
-    from scipy.stats import qmc
-
-    # Whole powers of two, of which the first are taken: a sequence has no other beginning.
-    shares = qmc.Sobol(len(ranges), scramble=True, rng=seed).random_base2(
-        math.ceil(math.log2(max(count, 2)))
-    )[:count]
-    columns = [axis.values(shares[:, k]) for k, axis in enumerate(ranges)]
-    return Axis(
-        tuple(axis.name for axis in ranges),
-        tuple(axis.unit for axis in ranges),
-        tuple(zip(*columns, strict=True)),
-        sampled=tuple("log" if axis.logarithmic else "linear" for axis in ranges),
-    )
-
-
-def _range(name: str, match: re.Match[str], display: Display) -> _DrawnRange:
-    option, unit, whole = what_is_varied(name, display)
-    if unit is None:
-        raise InputError(f"{name} takes words, which have no range; name them with commas between")
-    ends = (match[end].strip() for end in ("first", "last"))
-    low, high = sorted(quantity_of_text(name, end, unit) for end in ends)
-    if low == high or (match["log"] and low <= 0):
-        raise InputError(
-            f"{name} from {match['first'].strip()} to {match['last'].strip()} is no range to draw "
-            f"in; give two ends{', above 0 for a logarithm' if match['log'] else ''}"
-        )
-    return _DrawnRange(name, unit, option, low, high, match["log"] is not None, whole)
 
 
 def plan_of(
@@ -167,10 +37,8 @@ def plan_of(
     if not displays:
         raise InputError("there is no display to sweep; name at least one")
     asked = asked_for([ask] if isinstance(ask, str) else ask)
-    varied = axes_of_ranges(displays[0], vary, *sample)
-    axes = (*varied.axes, *axes_of(displays[0], varied.others, over))
-    require_each_once(axes)
-    if varied.axes and any(answer.verb == FOLLOWED for answer in asked):
+    axes = axes_of(displays[0], vary, over, sample)
+    if any(axis.sampled for axis in axes) and any(answer.verb == FOLLOWED for answer in asked):
         raise InputError("modes are followed over a grid, not over samples; give ranges steps")
     if len(displays) > 1:
         labels = tuple((name,) for name in told_apart(displays))

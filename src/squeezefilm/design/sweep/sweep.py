@@ -58,7 +58,7 @@ def sweep(asked: SweepRequest) -> Sweep:
             quickest verb that knows a name is asked. ``followed`` follows modes by their shapes.
         over: a CSV file whose header names what is varied, a point in each row.
         sample: how many points to draw in the ranges of `vary` without steps (``"1 mm..3 mm"``,
-            ``"1 V..100 V:log"``), see `design.sweep.plan`; more of them keep those before.
+            ``"1 V..100 V:log"``), see `design.sweep.axes`; more of them keep those before.
         seed: of the samples.
         jobs: processes; more than one in a script needs ``if __name__ == "__main__":``.
         scheduler: a Dask cluster's, ``"tcp://host:8786"``; its workers answer in place of `jobs`.

@@ -8,7 +8,7 @@ import pytest
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.quantities import Unit
 from squeezefilm.design.sweep.answers import OPTIONS
-from squeezefilm.design.sweep.axes import Axis, axes_of, axis_of, axis_of_file, axis_of_text
+from squeezefilm.design.sweep.axes import Axis, axes_of, axis_of, axis_of_file
 from squeezefilm.physics.display import load_display
 
 PLATE = load_display("biet2008-plate")
@@ -20,7 +20,7 @@ def steps(axis: Axis) -> list[object]:
 
 
 def test_a_range_is_evenly_spaced_with_its_ends_as_written() -> None:
-    axis = axis_of_text("actuator.thickness=1 mm..3 mm:9", PLATE)
+    (axis,) = axes_of(PLATE, "actuator.thickness=1 mm..3 mm:9")
     assert axis.columns == ("actuator.thickness_m",)
     assert steps(axis) == [k / 4e3 for k in range(4, 13)]
     assert not axis.logarithmic
@@ -85,7 +85,7 @@ def test_whole_numbers_stay_whole_and_all_of_a_list_change_together() -> None:
 )
 def test_what_is_none_is_refused_with_what_would_do(text: str, message: str) -> None:
     with pytest.raises(InputError, match=message):
-        axis_of_text(text, PLATE)
+        axes_of(PLATE, text)
 
 
 def test_what_is_no_text_and_no_number_is_refused() -> None:
@@ -119,11 +119,11 @@ def test_a_file_is_an_axis_whose_columns_change_together(tmp_path: Path) -> None
 
 
 def test_a_name_is_varied_once(tmp_path: Path) -> None:
-    both = axes_of(STATOR, {"voltage": "1 V, 2 V", "normal_force": ["0.3 N"]}, None)
+    both = axes_of(STATOR, {"voltage": "1 V, 2 V", "normal_force": ["0.3 N"]})
     assert [len(axis) for axis in both] == [2, 1]
     with pytest.raises(InputError, match="voltage is varied twice"):
-        axes_of(STATOR, ["voltage=1 V", "voltage=2 V"], None)
-    assert axes_of(STATOR, "voltage=1 V", None) == axes_of(STATOR, ["voltage=1 V"], None)
+        axes_of(STATOR, ["voltage=1 V", "voltage=2 V"])
+    assert axes_of(STATOR, "voltage=1 V") == axes_of(STATOR, ["voltage=1 V"])
 
 
 def test_options_become_arguments_of_verbs() -> None:

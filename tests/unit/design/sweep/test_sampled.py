@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.sweep.plan import axes_of_ranges, plan_of
+from squeezefilm.design.sweep.axes import axes_of
+from squeezefilm.design.sweep.plan import plan_of
 from squeezefilm.physics.display import load_display
 
 PLATE = load_display("biet2008-plate")
@@ -12,9 +13,8 @@ RANGES = ["actuator.thickness=1 mm..3 mm", "voltage=1 V..100 V:log"]
 
 
 def test_they_fill_their_ranges_evenly_and_the_logarithm_where_asked() -> None:
-    varied = axes_of_ranges(PLATE, [*RANGES, "surface=adhesive, bare"], 64, 0)
-    (axis,) = varied.axes
-    assert varied.others == ["surface=adhesive, bare"]
+    axis, other = axes_of(PLATE, [*RANGES, "surface=adhesive, bare"], sample=(64, 0))
+    assert other.steps == (("adhesive",), ("bare",))
     assert axis.names == ("actuator.thickness", "voltage")
     assert axis.sampled == ("linear", "log")
     thickness, volts = np.array(axis.steps).T
@@ -24,18 +24,19 @@ def test_they_fill_their_ranges_evenly_and_the_logarithm_where_asked() -> None:
 
 
 def test_more_of_one_seed_begin_with_the_same_and_another_seed_has_others() -> None:
-    few, more = (axes_of_ranges(PLATE, RANGES, count, 3).axes[0].steps for count in (5, 40))
+    few, more = (axes_of(PLATE, RANGES, sample=(count, 3))[0].steps for count in (5, 40))
     assert more[:5] == few
-    assert axes_of_ranges(PLATE, RANGES, 5, 4).axes[0].steps != few
+    assert axes_of(PLATE, RANGES, sample=(5, 4))[0].steps != few
     given = {"actuator.thickness": "1 mm..3 mm", "voltage": "1 V..100 V:log", "speed": 0.1}
-    varied = axes_of_ranges(PLATE, given, 5, 3)
-    assert varied.axes[0].steps == few
-    assert varied.others == {"speed": 0.1}
-    assert axes_of_ranges(PLATE, RANGES, None, 0).others == RANGES
+    axis, other = axes_of(PLATE, given, sample=(5, 3))
+    assert axis.steps == few
+    assert (other.names, other.steps) == (("speed",), ((0.1,),))
+    with pytest.raises(InputError, match="no number of steps"):
+        axes_of(PLATE, RANGES)
 
 
 def test_whole_numbers_stay_whole() -> None:
-    (axis,) = axes_of_ranges(PLATE, "actuator.nodal_lines=4..8", 50, 0).axes
+    (axis,) = axes_of(PLATE, "actuator.nodal_lines=4..8", sample=(50, 0))
     assert {value for (value,) in axis.steps} == {4, 5, 6, 7, 8}
 
 
@@ -52,7 +53,7 @@ def test_whole_numbers_stay_whole() -> None:
 )
 def test_what_cannot_be_drawn_is_refused(vary: list[str], count: int, message: str) -> None:
     with pytest.raises(InputError, match=message):
-        axes_of_ranges(PLATE, vary, count, 0)
+        axes_of(PLATE, vary, sample=(count, 0))
 
 
 def test_modes_are_not_followed_over_samples() -> None:
