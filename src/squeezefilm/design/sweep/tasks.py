@@ -9,9 +9,10 @@ asked for once, whoever dies.
 from __future__ import annotations
 
 import collections
+import itertools
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any, Generic, TypeVar
 
 from squeezefilm.core.blas_threads import one_blas_thread
 
@@ -28,8 +29,8 @@ class Lost:
     )
 
 
-class Workers(Protocol):
-    """Processes that answer."""
+class Workers:
+    """Base of all who answer; each has its own way to ask for groups of tasks (`_asked`)."""
 
     def answers(
         self,
@@ -42,26 +43,43 @@ class Workers(Protocol):
         `function` is one of a module; it, its arguments and what it returns can be pickled. Tasks
         that are `alike` (equal values; those that need the same plate solved) follow each other
         at one worker where that costs no time. A task whose worker died is tried again, at last
-        alone; `Lost` stands for one that nobody survived. What the function raises is raised here
-        and ends the asking, so that a refusal which is an answer has to be returned. It may be
-        called again, one asking after the other; workers stay as they are, with what they have
-        loaded and solved. Where the iteration is closed early, what is under way is ended. Raises
-        `WorkersError` where those who answer are gone altogether.
+        alone, since what it needs may be all there is; `Lost` stands for one that nobody survived.
+        What the function raises is raised here and ends the asking, so that a refusal which is an
+        answer has to be returned. It may be called again, one asking after the other; workers stay
+        as they are, with what they have loaded and solved. Where the iteration is closed early,
+        what is under way is ended. Raises `WorkersError` where those who answer are gone
+        altogether.
         """
-        ...
+        alone: list[K] = []
+        for key, answer in self._asked(function, tasks, grouped(tasks, alike)):
+            if isinstance(answer, Lost):
+                alone.append(key)
+            else:
+                yield key, answer
+        for key in alone:
+            yield from self._asked(function, tasks, [[key]])
 
-
-class ThisProcess:
-    """Process of this program alone: answers in the order of the tasks but for those alike."""
-
-    def answers(
+    def _asked(
         self,
         function: Callable[..., A],
         tasks: Mapping[K, tuple[Any, ...]],
-        alike: Mapping[K, Hashable] | None = None,
+        groups: Sequence[Sequence[K]],
     ) -> Iterator[tuple[K, A | Lost]]:
-        """Answers as by `Workers.answers`; nothing needs to be picklable, and nobody dies alone."""
-        for key in (key for group in grouped(tasks, alike) for key in group):
+        """Answers to groups of tasks; `Lost` for one whose worker died."""
+        raise NotImplementedError
+
+
+class ThisProcess(Workers):
+    """Process of this program alone: answers in the order of the groups; nothing needs to be
+    picklable, and nobody dies alone."""
+
+    def _asked(
+        self,
+        function: Callable[..., A],
+        tasks: Mapping[K, tuple[Any, ...]],
+        groups: Sequence[Sequence[K]],
+    ) -> Iterator[tuple[K, A | Lost]]:
+        for key in itertools.chain.from_iterable(groups):
             yield key, computed(function, tasks[key])
 
 
@@ -82,22 +100,6 @@ def grouped(
     for key in tasks:
         groups.setdefault(alike[key], []).append(key)
     return list(groups.values())
-
-
-def tried_again(
-    ask: Callable[[Sequence[Sequence[K]]], Iterator[tuple[K, A | Lost]]],
-    groups: Sequence[Sequence[K]],
-) -> Iterator[tuple[K, A | Lost]]:
-    """Answers to what is asked in groups; tasks that were lost are asked again at last, each alone,
-    since what it needs may be all there is."""
-    alone: list[K] = []
-    for key, answer in ask(groups):
-        if isinstance(answer, Lost):
-            alone.append(key)
-        else:
-            yield key, answer
-    for key in alone:
-        yield from ask([[key]])
 
 
 class Shares(Generic[K]):

@@ -8,12 +8,11 @@ with workers(jobs=2) as pool:                      # or workers(scheduler="tcp:/
 from __future__ import annotations
 
 import contextlib
-import functools
 import logging
 import multiprocessing
 import signal
 import time
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
@@ -33,8 +32,6 @@ from squeezefilm.design.sweep.tasks import (
     ThisProcess,
     Workers,
     computed,
-    grouped,
-    tried_again,
 )
 
 _LOOK: si.Second = 0.02  # between two looks for answers
@@ -43,8 +40,10 @@ _PATIENCE: si.Second = 120.0
 """Longest silence of a scheduler, and longest wait for the first worker of a cluster."""
 
 
-class Cluster:
-    """The workers of the scheduler at an address, as many as there are at any time.
+class Cluster(Workers):
+    """The workers of the scheduler at an address, as many as there are at any time: they come and
+    go. A task is tried again as often as the scheduler's `allowed-failures` says, then once alone;
+    where the asking is closed early, workers end the task they are at.
 
     Raises `MissingPackageError` where Dask is not installed, and on entry `WorkersError` where
     nothing answers at the address.
@@ -76,19 +75,6 @@ class Cluster:
         # One that is gone is not waited for.
         with contextlib.suppress(Exception):
             self._client.close(timeout=2)
-
-    def answers(
-        self,
-        function: Callable[..., A],
-        tasks: Mapping[K, tuple[Any, ...]],
-        alike: Mapping[K, Hashable] | None = None,
-    ) -> Iterator[tuple[K, A | Lost]]:
-        """Answers as by `Workers.answers`. Workers come and go; a task is tried again as often as
-        the scheduler's `allowed-failures` says, and then once alone. Where the iteration is closed
-        early, workers end the task they are at."""
-        yield from tried_again(
-            functools.partial(self._asked, function, tasks), grouped(tasks, alike)
-        )
 
     def _asked(
         self,
@@ -190,7 +176,7 @@ def _work(
     return computed(function, arguments)
 
 
-class Processes:
+class Processes(Workers):
     """`jobs` processes, begun when they have something to do, or at once where it is known what
     they will be asked (`first`), which takes a second or two to load; they end at the end of the
     block, and with this process."""
@@ -212,24 +198,12 @@ class Processes:
     def __exit__(self, *_: object) -> None:
         self._end()
 
-    def answers(
-        self,
-        function: Callable[..., A],
-        tasks: Mapping[K, tuple[Any, ...]],
-        alike: Mapping[K, Hashable] | None = None,
-    ) -> Iterator[tuple[K, A | Lost]]:
-        """Answers as by `Workers.answers`."""
-        yield from tried_again(
-            functools.partial(self._asked, function, tasks), grouped(tasks, alike)
-        )
-
     def _asked(
         self,
         function: Callable[..., A],
         tasks: Mapping[K, tuple[Any, ...]],
         groups: Sequence[Sequence[K]],
     ) -> Iterator[tuple[K, A | Lost]]:
-        """Answers of the processes; `Lost` for one that a process died of."""
         shares = Shares(groups)
         running: dict[Future[A], tuple[int, K]] = {}
 
@@ -321,8 +295,6 @@ def workers(
     ``if __name__ == "__main__":``.
     """
     if scheduler is not None:
-        from squeezefilm.design.sweep.workers import Cluster
-
         with Cluster(scheduler, tell or (lambda _: None)) as cluster:
             yield cluster
     elif jobs == 1:
