@@ -3,6 +3,7 @@ the file that keeps what they said, so that a sweep that was stopped goes on."""
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import json
 import math
@@ -39,21 +40,14 @@ def _checked_line(values: dict[str, Any]) -> bytes:
     return text[:-1] + b',"check":"%08x"}' % zlib.crc32(text)
 
 
-def _is_damaged(line: bytes) -> bool:
-    """True where a line is not what was written: by its checksum, or, without one, no JSON."""
-    if (check := _check_of(line)) is not None:
-        return check != zlib.crc32(line[:-_CHECK_SIZE] + b"}")
-    try:
-        parsed_json(line)
-    except ValueError:
-        return True
-    return False
-
-
-def _check_of(line: bytes) -> int | None:
-    """The checksum that a line states; None for one without."""
-    match = _CHECK.fullmatch(line[-_CHECK_SIZE:])
-    return None if match is None else int(match[1], 16)
+def _values_of(line: bytes) -> Any:
+    """The values on a line; None for one of another version, without a checksum. Raises
+    `ValueError` for a damaged one: of another checksum than it states, or no JSON."""
+    stated = _CHECK.fullmatch(line[-_CHECK_SIZE:])
+    if stated and int(stated[1], 16) != zlib.crc32(line[:-_CHECK_SIZE] + b"}"):
+        raise ValueError("not what was written")
+    values = parsed_json(line)
+    return values if stated else None
 
 
 class Lines:
@@ -87,16 +81,17 @@ class Lines:
             content = line.strip()
             if not content or (content.startswith(b"{") and not content.endswith(b"}")):
                 continue
-            if _is_damaged(content):
+            try:
+                values = _values_of(content)
+            except ValueError:
                 damaged.append((number, here, content))
                 continue
-            if _check_of(content) is None:
-                continue
-            try:
-                take(parsed_json(content))
             # Any fault of a value, where another version meant something else by it.
-            except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError):
-                continue
+            with contextlib.suppress(
+                ValueError, LookupError, TypeError, AttributeError, ArithmeticError
+            ):
+                if values is not None:
+                    take(values)
         if damaged:
             self._set_aside(data, damaged)
 
@@ -204,11 +199,9 @@ def answered(
     plates = {number: point.display.actuator for number, point in enumerate(points)}
     tasks = {number: (point,) for number, point in enumerate(points)}
     for number, outcome in pool.answers(answer, tasks, plates):
-        yield number, _lost(outcome) if isinstance(outcome, Lost) else outcome
-
-
-def _lost(lost: Lost) -> Answer:
-    return Answer({}, reason=lost.reason, lasting=False)
+        if isinstance(outcome, Lost):
+            outcome = Answer({}, reason=outcome.reason, lasting=False)
+        yield number, outcome
 
 
 FILE = "answers.jsonl"

@@ -39,11 +39,13 @@ def counted(texts: Iterable[str]) -> tuple[tuple[str, int], ...]:
 @dataclass(frozen=True)
 class SweptColumn:
     """A number over the points: its name with its unit, the unit, the values (SI; NaN for none),
-    shape (points,)."""
+    shape (points,). Of words that were varied the unit is 1, the values number the `words`."""
 
     name: str
     unit: si.Unit
     values: si.FloatArray
+    words: tuple[str, ...] = ()
+    logarithmic: bool = False
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -165,18 +167,6 @@ _FEWEST = 8
 """Smallest number of points that tell of shares."""
 
 
-@dataclass(frozen=True, eq=False)
-class Varied:
-    """A value that was varied: its column's name, its unit (None for words), and at each point a
-    number (for words the number of the word)."""
-
-    name: str
-    unit: si.Unit | None
-    values: si.FloatArray
-    words: tuple[str, ...] = ()
-    logarithmic: bool = False
-
-
 @dataclass(frozen=True)
 class Share:
     """Shares of the variance: by itself, with all interactions, and their standard errors (0 where
@@ -201,7 +191,7 @@ class Effects:
     points: int
 
 
-def varied_values(sweep: Sweep) -> tuple[Varied, ...]:
+def varied_values(sweep: Sweep) -> tuple[SweptColumn, ...]:
     """The values that were varied and take several values."""
     made = []
     places = list(itertools.product(*(range(len(axis)) for axis in sweep.axes)))
@@ -214,10 +204,10 @@ def varied_values(sweep: Sweep) -> tuple[Varied, ...]:
             if unit is None:
                 words = tuple(dict.fromkeys(str(word) for word in said))
                 values = np.array([float(words.index(str(word))) for word in said])
-                made.append(Varied(name, None, values, words))
+                made.append(SweptColumn(name, si.Unit("1"), values, words))
             else:
                 log = axis.sampled[k] == "log" if axis.sampled else axis.logarithmic
-                made.append(Varied(name, unit, np.array(said, float), (), log))
+                made.append(SweptColumn(name, unit, np.array(said, float), (), log))
     return tuple(made)
 
 
@@ -260,7 +250,7 @@ def _of_grid(column: SweptColumn, grid: si.FloatArray) -> Effects:
 
 
 def _of_points(
-    column: SweptColumn, varied: Sequence[Varied], there: NDArray[np.bool_]
+    column: SweptColumn, varied: Sequence[SweptColumn], there: NDArray[np.bool_]
 ) -> Effects | None:
     """The shares of a fit by orthogonal polynomials; None where the points are too few."""
     y = column.values[there]
@@ -298,7 +288,7 @@ def _of_points(
     return Effects(column, shares, pairs, max(1.0 - left, 0.0), len(y))
 
 
-def _functions(value: Varied, there: NDArray[np.bool_]) -> list[si.FloatArray]:
+def _functions(value: SweptColumn, there: NDArray[np.bool_]) -> list[si.FloatArray]:
     """Functions of one varied value that are orthonormal over its range: Legendre's polynomials of
     numbers, contrasts of words; none of a value that is the same at all points."""
     x = np.log(value.values[there]) if value.logarithmic else value.values[there]
@@ -319,7 +309,7 @@ def _functions(value: Varied, there: NDArray[np.bool_]) -> list[si.FloatArray]:
 
 
 def _terms(
-    counts: Sequence[int], degree: int, varied: Sequence[Varied]
+    counts: Sequence[int], degree: int, varied: Sequence[SweptColumn]
 ) -> Iterator[tuple[int, ...]]:
     """Terms, each by the function of each value that it multiplies (0: none), of a total degree; a
     contrast of words counts as degree 1."""

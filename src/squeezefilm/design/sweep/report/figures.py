@@ -9,16 +9,16 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
-from squeezefilm.design.sweep.answers import without_units
 from squeezefilm.design.sweep.report.terminal import (
     labelled,
     mode_of,
     name_of,
     quantity_of,
+    read_easily,
     scaled,
     step_words,
 )
-from squeezefilm.design.sweep.swept import Sweep, SweptColumn, Varied, varied_values
+from squeezefilm.design.sweep.swept import Sweep, SweptColumn, varied_values
 from squeezefilm.design.sweep.tradeoffs import non_dominated
 
 if TYPE_CHECKING:
@@ -185,13 +185,9 @@ def _map(
     axes.grid(visible=False)
 
 
+_WISHES = {1: ", less is better", -1: ", more is better", 0: ""}
 MOST_ANSWERS, MOST_VARIED, MOST_PAIRS = 4, 5, 6
 _BINS = 8
-
-
-def varied_name(value: Varied) -> str:
-    """A varied value's name without its unit, words apart."""
-    return without_units(value.name).replace("_", " ")
 
 
 def drawn_columns(sweep: Sweep) -> list[SweptColumn]:
@@ -200,7 +196,7 @@ def drawn_columns(sweep: Sweep) -> list[SweptColumn]:
     return several[:MOST_ANSWERS]
 
 
-def means(value: Varied, values: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
+def means(value: SweptColumn, values: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
     """The mean answer at each step of a varied value, or in each eighth of the points where it
     takes more than sixteen values: places and means."""
     there = np.isfinite(values)
@@ -225,20 +221,19 @@ def effects_figure(sweep: Sweep) -> Figure:
     )
     grid = figure.subplots(len(columns), len(varied), squeeze=False, sharey="row", sharex="col")
     for row, column in zip(grid, columns, strict=True):
-        scale, unit = scaled(column.values, column.unit)
+        values, label = read_easily(column)
         for axes, value in zip(row, varied, strict=True):
-            _effect(axes, value, scale * column.values)
-        row[0].set_ylabel(_short(labelled(name_of(column), unit)))
+            _effect(axes, value, values)
+        row[0].set_ylabel(_short(label))
     for axes, value in zip(grid[-1], varied, strict=True):
-        symbol = "" if value.words else scaled(value.values, value.unit)[1]
-        axes.set_xlabel(_short(labelled(varied_name(value), symbol)))
+        axes.set_xlabel(_short(read_easily(value)[1]))
         if value.words:
             axes.set_xticks(range(len(value.words)), [style.plain(w, 12) for w in value.words])
     return figure
 
 
-def _effect(axes: Axes, value: Varied, values: si.FloatArray) -> None:
-    factor = 1.0 if value.words else scaled(value.values, value.unit)[0]
+def _effect(axes: Axes, value: SweptColumn, values: si.FloatArray) -> None:
+    factor = scaled(value.values, value.unit)[0]
     axes.plot(factor * value.values, values, ".", ms=3, color=style.MUTED, alpha=0.5)
     x, y = means(value, values)
     axes.plot(factor * x, y, "-o", ms=4, color=style.BLUE)
@@ -282,17 +277,13 @@ def tradeoffs_figure(drawn: tuple[Sweep, tuple[tuple[str, int], ...]]) -> Figure
     )
     grid = figure.subplots(down, across, squeeze=False)
     for axes, (x, y) in zip(grid.ravel(), pairs, strict=False):
-        (fx, ux), (fy, uy) = scaled(x.values, x.unit), scaled(y.values, y.unit)
-        axes.plot(fx * x.values, fy * y.values, ".", color=style.MUTED, ms=5)
+        across_values, across_label = read_easily(x, _WISHES[better.get(x.name, 0)])
+        values, label = read_easily(y, _WISHES[better.get(y.name, 0)])
+        axes.plot(across_values, values, ".", color=style.MUTED, ms=5)
         if better:
-            axes.plot(fx * x.values[marked], fy * y.values[marked], "o", color=style.ORANGE, ms=5)
-        axes.set_xlabel(_short(labelled(_wish(x, better), ux)))
-        axes.set_ylabel(_short(labelled(_wish(y, better), uy)))
+            axes.plot(across_values[marked], values[marked], "o", color=style.ORANGE, ms=5)
+        axes.set_xlabel(_short(across_label))
+        axes.set_ylabel(_short(label))
     for spare in grid.ravel()[len(pairs) :]:
         spare.set_axis_off()
     return figure
-
-
-def _wish(column: SweptColumn, better: dict[str, int]) -> str:
-    words = {1: ", less is better", -1: ", more is better"}
-    return name_of(column) + words.get(better.get(column.name, 0), "")

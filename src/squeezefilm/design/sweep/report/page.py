@@ -30,13 +30,12 @@ from squeezefilm.design.sweep.report.figures import (
     effects_figure,
     sweep_figure,
     tradeoffs_figure,
-    varied_name,
 )
-from squeezefilm.design.sweep.report.terminal import labelled, name_of, scaled
+from squeezefilm.design.sweep.report.terminal import cells, name_of
 from squeezefilm.design.sweep.swept import (
     Effects,
     Sweep,
-    Varied,
+    SweptColumn,
     counted,
     effects_of,
     varied_values,
@@ -118,16 +117,16 @@ def _reasons(sweep: Sweep) -> list[str]:
     return [f"{reason} ({count} points)" for reason, count in said]
 
 
-def _decisive(effects: Sequence[Effects], varied: Sequence[Varied]) -> str:
+def _decisive(effects: Sequence[Effects], varied: Sequence[SweptColumn]) -> str:
     """Tables of the shares, and of the pairs, of every answer."""
     out = ""
     for effect in effects:
         rows = [
-            (varied_name(v), _share(s.first, s.first_error), _share(s.total, s.total_error))
+            (name_of(v), _share(s.first, s.first_error), _share(s.total, s.total_error))
             for v, s in zip(varied, effect.shares, strict=True)
         ]
         pairs = [
-            (f"{varied_name(varied[i])} and {varied_name(varied[j])}", _share(share, error))
+            (f"{name_of(varied[i])} and {name_of(varied[j])}", _share(share, error))
             for (i, j), (share, error) in sorted(effect.pairs.items(), key=lambda p: -p[1][0])[:10]
         ]
         told = (
@@ -162,31 +161,10 @@ def _best(sweep: Sweep, better: tuple[tuple[str, int], ...]) -> str:
     values = np.column_stack([wanted[c.name] * c.values for c in columns])
     rows = np.flatnonzero(non_dominated(values))
     rows = rows[np.argsort(values[rows, 0], kind="stable")]
-    scales = [scaled(c.values, c.unit) for c in columns]
-    settings = {
-        varied_value.name: (
-            varied_value,
-            scaled(varied_value.values, varied_value.unit) if not varied_value.words else (1.0, ""),
-        )
-        for varied_value in varied_values(sweep)
-    }
-    head = [
-        "Row",
-        *(labelled(varied_name(value), symbol) for value, (_, symbol) in settings.values()),
-        *(labelled(name_of(c), symbol) for c, (_, symbol) in zip(columns, scales, strict=True)),
-    ]
+    table = [cells(column) for column in (*varied_values(sweep), *columns)]
+    head = ["Row", *(label for label, _ in table)]
     lines = [
-        [
-            str(row + 1),
-            *(
-                value.words[int(value.values[row])]
-                if value.words
-                else f"{factor * value.values[row]:.4g}"
-                for value, (factor, _) in settings.values()
-            ),
-            *(f"{f * c.values[row]:.4g}" for c, (f, _) in zip(columns, scales, strict=True)),
-        ]
-        for row in rows[:_MOST_ROWS].tolist()
+        [str(row + 1), *(words[row] for _, words in table)] for row in rows[:_MOST_ROWS].tolist()
     ]
     caption = f"{len(rows)} of {len(sweep.reasons)} points; rows are those of the table, from 1"
     return section("Points that no other beats", text_table(caption, head, lines))

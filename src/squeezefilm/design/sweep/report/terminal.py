@@ -57,11 +57,19 @@ def step_words(axis: Axis, number: int) -> str:
     )
 
 
-def cells(values: si.FloatArray, unit: si.Unit) -> tuple[str, list[str]]:
-    """The unit in which numbers are read easily, and the numbers in it; a dash where there is
-    none."""
-    factor, symbol = scaled(values, unit)
-    return symbol, ["–" if np.isnan(v) else f"{factor * v:.4g}" for v in values.tolist()]
+def read_easily(column: SweptColumn, more: str = "") -> tuple[si.FloatArray, str]:
+    """The values of a column in a unit in which they are read easily, and its label: the name,
+    `more` behind it, and that unit."""
+    factor, symbol = scaled(column.values, column.unit)
+    return factor * column.values, labelled(f"{name_of(column)}{more}", symbol)
+
+
+def cells(column: SweptColumn) -> tuple[str, list[str]]:
+    """The label of a column, and its values as a table has them; a dash where there is none."""
+    values, label = read_easily(column)
+    if column.words:
+        return label, [column.words[int(value)] for value in values]
+    return label, ["–" if np.isnan(value) else f"{value:.4g}" for value in values.tolist()]
 
 
 def labelled(name: str, symbol: str) -> str:
@@ -96,10 +104,7 @@ def sweep_columns(sweep: Sweep) -> list[tuple[str, list[str]]]:
         for part in each_name(axis):
             steps = [step_words(part, k) for k in range(len(part))]
             columns.append((name_of(part), [steps[point[number]] for point in every]))
-    for column in sweep.columns:
-        symbol, words = cells(column.values, column.unit)
-        columns.append((labelled(name_of(column), symbol), words))
-    return columns
+    return [*columns, *map(cells, sweep.columns)]
 
 
 def in_lines(name: str) -> str:
