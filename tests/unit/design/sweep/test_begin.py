@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.design.sweep import plan
+from squeezefilm.design.sweep import sweep
 from squeezefilm.design.sweep.answers import OPTIONS
-from squeezefilm.design.sweep.plan import Plan
+from squeezefilm.design.sweep.sweep import Plan
 
 
 def axis(name: str, *numbers: float) -> Any:
@@ -33,6 +33,6 @@ def test_following_begins_nearest_to_the_displays_own_values(
     axes: Any, shape: tuple[int, ...], begin: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     own = {"a": 2.1, "b": 3.9, "c": None, next(iter(OPTIONS)): 2.1}
-    monkeypatch.setattr(plan, "value_at", lambda display, path: (own[path], None))
+    monkeypatch.setattr(sweep, "value_at", lambda display, path: (own[path], None))
     asked: Any = SimpleNamespace(axes=axes, displays=["display"], shape=shape)
     assert Plan.begin(asked) == begin

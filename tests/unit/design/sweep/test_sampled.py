@@ -5,7 +5,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.sweep.axes import axes_of
-from squeezefilm.design.sweep.plan import plan_of
+from squeezefilm.design.sweep.sweep import SweepRequest, plan_of
 from squeezefilm.physics.display import load_display
 
 PLATE = load_display("biet2008-plate")
@@ -59,6 +59,5 @@ def test_what_cannot_be_drawn_is_refused(vary: list[str], count: int, message: s
 def test_modes_are_not_followed_over_samples() -> None:
     with pytest.raises(InputError, match="modes are followed over a grid, not over samples"):
         plan_of(
-            load_display("biet2008-plate"), {"actuator.thickness": "1 mm..2 mm"}, "followed", None,
-            (8, 1),
-        )  # fmt: skip
+            SweepRequest(PLATE, vary=["actuator.thickness=1 mm..2 mm"], ask="followed", sample=8)
+        )

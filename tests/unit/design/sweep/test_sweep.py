@@ -184,14 +184,14 @@ def test_no_display_is_no_sweep() -> None:
 
 
 def test_predict_is_not_asked_where_analyze_is_and_intervals_are_drawn_where_asked() -> None:
-    from squeezefilm.design.sweep.plan import plan_of
+    from squeezefilm.design.sweep.sweep import plan_of
 
-    display = sf.load_display(STATOR)
-    both = plan_of(display, VOLTS, "relative_friction,envelope_bandwidth", None)
+    asked, display = "relative_friction,envelope_bandwidth", sf.load_display(STATOR)
+    both = plan_of(SweepRequest(display, vary=VOLTS, ask=asked))
     assert both.verbs == ("analyze",)
     assert [both.verb_of(one) for one in both.asked] == ["analyze", "analyze"]
     assert both.points[0][0]["analyze"].samples == 0
-    drawn = plan_of(display, VOLTS, "friction.relative_friction_interval", None)
+    drawn = plan_of(SweepRequest(display, vary=VOLTS, ask="friction.relative_friction_interval"))
     assert drawn.points[0][0]["friction"].samples > 0
 
 
