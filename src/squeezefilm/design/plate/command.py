@@ -23,7 +23,6 @@ from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring
 from squeezefilm.design.plate.solved import Hurry, ModeRow, Remarks, SolvedBody
 from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.plate.beam_response import BeamResponse, beam_response
-from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.elements.nodal_lines import line_distance
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.modes import Label, PlateModes, check_band
@@ -31,15 +30,18 @@ from squeezefilm.physics.plate.solid.resonances import antinode, label_name
 from squeezefilm.physics.plate.solid.response import HarmonicResponse
 from squeezefilm.physics.plate.solid.solve import solve_modes
 from squeezefilm.physics.plate.solid.working import SolidMode, response_frequencies, solid_mode
-from squeezefilm.physics.plate.sound import SoundField, sound_field
-from squeezefilm.physics.plate.working_mode import WorkingMode, solid_working_mode
+from squeezefilm.physics.plate.sound import sound_field
+from squeezefilm.physics.plate.working_mode import solid_working_mode
 from squeezefilm.physics.plausibility.checks import require_plausible
 
 # Estimated error (relative) of the band's modes above which a finer mesh is taken.
 _BESIDE = 3e-3
+_REMARKS = Remarks(
+    "(estimated)", "largest, upper face", "from the losses of its materials", "loudest direction"
+)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class PlateAnalysis(SolvedBody):
     """The solved plate: table of modes, the working mode as every verb has it, its response.
 
@@ -47,52 +49,13 @@ class PlateAnalysis(SolvedBody):
     `response` is that of `solid`, at the number of frequencies that was asked for.
     """
 
-    display: Display
     plate: RectangularPlate
-    mode: WorkingMode
     solid: SolidMode
     working_label: Label
     modes: PlateModes
-    rows: tuple[ModeRow, ...]
-    working: ModeRow
     response: HarmonicResponse
-    resonance: int
     beam_frequency: si.Hertz
     beam_amplitude_per_volt: si.MetrePerVolt
-    sound: SoundField
-    objections: tuple[str, ...] = ()
-
-    remarks = Remarks(
-        "(estimated)",
-        "largest, upper face",
-        "from the losses of its materials",
-        "loudest direction",
-    )
-
-    @property
-    def largest_per_volt(self) -> si.MetrePerVolt:
-        """See `SolidMode` (m/V)."""
-        return self.solid.largest_per_volt
-
-    @property
-    def circuit(self) -> EquivalentCircuit | None:
-        """See `SolidMode.circuit`."""
-        return self.solid.circuit
-
-    @property
-    def circuit_said(self) -> str:
-        """See `SolidMode.circuit_said`."""
-        return self.solid.circuit_said
-
-    @property
-    def model(self) -> str:
-        """Name of the model that made the numbers."""
-        return self.modes.model
-
-    @property
-    def status(self) -> str:
-        """Words for how good the table is."""
-        return self.modes.status
 
     def _particulars(self) -> dict[str, Any]:
         return {
@@ -165,6 +128,12 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         ),
         response=response,
         resonance=at,
+        largest_per_volt=solid.largest_per_volt,
+        circuit=solid.circuit,
+        circuit_said=solid.circuit_said,
+        model=solved.modes.model,
+        status=solved.modes.status,
+        remarks=_REMARKS,
         beam_frequency=solved.beam.mode.frequency,
         beam_amplitude_per_volt=solved.beam.amplitude_per_volt,
         sound=sound_field(solid.radiating(display.drive.voltage, solid.frequency)),

@@ -26,7 +26,7 @@ from squeezefilm.design.plate.listed_modes import (
     with_neighbours,
     with_working_mode,
 )
-from squeezefilm.design.plate.ring import mode_row, modes_in_band
+from squeezefilm.design.plate.ring import largest_error, mode_row, modes_in_band
 from squeezefilm.design.plate.ring_pair import RingPair, ring_pair
 from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.plate.layout import AnnularStator, RectangularPlate
@@ -253,6 +253,6 @@ def _of_ring(
         if not isinstance(display.actuator, AnnularStator)
         else Suggestion(None, "A stator works in the mode that was measured of it."),
         model=working.model + (", fitted stator" if body.fit is not None else ""),
-        frequency_error=max(row.frequency_error / row.frequency for row in rows),
+        frequency_error=largest_error(rows),
         pair=ring_pair(display, body, working) if working.harmonic else None,
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Annotated, Any
 
@@ -15,7 +16,6 @@ from squeezefilm.core.progress import NO_HURRY, Deadline, Pace, SayProgress
 from squeezefilm.core.results import to_json
 from squeezefilm.design.plate.solved import ALONE, ModeRow, Remarks, SolvedBody, sweep_around
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.elements.box_model import require_half_wave
 from squeezefilm.physics.plate.layout import AnnularStator, DiscPlate
 from squeezefilm.physics.plate.ring.body import (
@@ -34,7 +34,7 @@ from squeezefilm.physics.plate.ring.response import (
 )
 from squeezefilm.physics.plate.solid.modes import check_band
 from squeezefilm.physics.plate.sound import SoundField, ring_surface, sound_field
-from squeezefilm.physics.plate.working_mode import WorkingMode, ring_working_mode
+from squeezefilm.physics.plate.working_mode import ring_working_mode
 from squeezefilm.physics.plausibility.checks import require_plausible
 from squeezefilm.physics.plausibility.expected import expectation
 
@@ -46,7 +46,7 @@ _DISC, _STATOR, _BAND = (0.2, 0.8), (3.0, 3.2), 0.12
 _RADII_OF_SOUND = slice(None, None, 4)
 
 
-@dataclass(frozen=True, eq=False, repr=False)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class RingAnalysis(SolvedBody):
     """A solved disc or stator: table of modes, the working mode, its response and circuit.
 
@@ -55,34 +55,12 @@ class RingAnalysis(SolvedBody):
     stands beside it.
     """
 
-    display: Display
     body: RingBody
     modes: tuple[AnnularMode, ...]
-    rows: tuple[ModeRow, ...]
-    mode: WorkingMode
     annular: AnnularMode
-    working: ModeRow
     half_wavelength_along: Direction
     circles: si.MetreArray
     response: RingResponse
-    circuit: EquivalentCircuit | None
-    sound: SoundField
-    objections: tuple[str, ...] = ()
-
-    @property
-    def resonance(self) -> int:
-        """The number of the response's frequency with the largest amplitude."""
-        return self.response.resonance
-
-    @property
-    def largest_per_volt(self) -> si.MetrePerVolt:
-        """Amplitude at the touched face's highest point, at resonance, as computed (m/V)."""
-        return float(self.response.maximum[self.resonance])
-
-    @property
-    def circuit_said(self) -> str:
-        """Reason why there is no circuit; empty where there is one."""
-        return "" if self.circuit is not None else "none: the channel does not drive this mode"
 
     @property
     def computed_per_volt(self) -> si.MetrePerVolt | None:
@@ -97,29 +75,6 @@ class RingAnalysis(SolvedBody):
     def scan_radius(self) -> si.Metre:
         """Radius of the scan around: the mean radius of the surface."""
         return float(np.mean(self.body.section.surface_radii))
-
-    @property
-    def model(self) -> str:
-        """Name of the model that made the numbers."""
-        return self.annular.model + (", fitted stator" if self.body.fit is not None else "")
-
-    @property
-    def status(self) -> str:
-        """Words for how good the table is."""
-        worst = max(row.frequency_error / row.frequency for row in self.rows)
-        return f"{len(self.rows)} modes in the band, within {worst:.1e} (estimated)"
-
-    @property
-    def remarks(self) -> Remarks:
-        """Remarks beside the numbers."""
-        return Remarks(
-            "(estimated)" + ("; fitted, not predicted" if self.body.fit is not None else ""),
-            "largest, touched face",
-            "from the losses of its materials"
-            if self.body.quality_factor is None
-            else "of the assembly, as described",
-            "loudest direction, touched face only",
-        )
 
     def _particulars(self) -> dict[str, Any]:
         return {
@@ -176,30 +131,59 @@ def analyze_ring(
     limits = band or (0.92 * working.frequency, 1.08 * working.frequency)
     whole = deadline is None or deadline.allows(_BAND * (body.label[1] + 2))
     modes = modes_in_band(body, limits, tell) if whole else (working,)
-    _, along = half_wavelength_of(working)
     tell(f"response at {points} frequencies")
-    sweep = sweep_around(working.frequency, working.quality_factor, points | 1)
-    beside = {working.harmonic - 1, working.harmonic + 1} if working.harmonic else set()
-    harmonics = sorted({working.harmonic, *beside, *(mode.harmonic for mode in modes)})
-    response = ring_response(body, working, sweep, harmonics)
+    response = _response(body, working, modes, points)
     driven = working.modal_force(body.drive) > 1e-9 * abs(working.modal_force_all_round)
     circuit = ring_circuit(body, working, response) if driven else None
     capacitance = static_capacitance(body, circuit)
+    rows = tuple(mode_row(body, listed, capacitance) for listed in modes)
     tell("airborne sound")
     return RingAnalysis(
         display=display,
         body=body,
         modes=modes,
-        rows=tuple(mode_row(body, listed, capacitance) for listed in modes),
+        rows=rows,
         mode=ring_working_mode(actuator, body, working),
         annular=working,
         working=mode_row(body, working, capacitance),
-        half_wavelength_along=along,
+        half_wavelength_along=half_wavelength_of(working)[1],
         circles=nodal_circles(working),
         response=response,
+        resonance=response.resonance,
+        largest_per_volt=float(response.maximum[response.resonance]),
         circuit=circuit,
+        circuit_said="" if driven else "none: the channel does not drive this mode",
         sound=_sound(display, working, response),
+        model=working.model + (", fitted stator" if body.fit is not None else ""),
+        status=f"{len(rows)} modes in the band, within {largest_error(rows):.1e} (estimated)",
+        remarks=_remarks(body),
         objections=(*require_plausible(display), *(() if whole else (ALONE,))),
+    )
+
+
+def _response(
+    body: RingBody, working: AnnularMode, modes: Iterable[AnnularMode], points: int
+) -> RingResponse:
+    """The response around a mode by its own harmonic, those beside it, and those of `modes`."""
+    sweep = sweep_around(working.frequency, working.quality_factor, points | 1)
+    beside = {working.harmonic - 1, working.harmonic + 1} if working.harmonic else set()
+    harmonics = sorted({working.harmonic, *beside, *(mode.harmonic for mode in modes)})
+    return ring_response(body, working, sweep, harmonics)
+
+
+def largest_error(rows: Iterable[ModeRow]) -> si.Dimensionless:
+    """Largest estimated error of a frequency among modes, as a share of it."""
+    return max(row.frequency_error / row.frequency for row in rows)
+
+
+def _remarks(body: RingBody) -> Remarks:
+    return Remarks(
+        "(estimated)" + ("; fitted, not predicted" if body.fit is not None else ""),
+        "largest, touched face",
+        "from the losses of its materials"
+        if body.quality_factor is None
+        else "of the assembly, as described",
+        "loudest direction, touched face only",
     )
 
 

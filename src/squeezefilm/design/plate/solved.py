@@ -13,7 +13,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.progress import Deadline, Pace
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.plate.circuit import DrivenResponse
+from squeezefilm.physics.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.physics.plate.electronics import ElectricalLoad, electrical_load
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.forecast import (
@@ -24,6 +24,7 @@ from squeezefilm.physics.plate.solid.forecast import (
 )
 from squeezefilm.physics.plate.solid.modes import Label, PlateModes
 from squeezefilm.physics.plate.sound import SoundField
+from squeezefilm.physics.plate.working_mode import WorkingMode
 from squeezefilm.physics.plausibility.expected import expectation
 
 if TYPE_CHECKING:
@@ -64,31 +65,31 @@ class Remarks:
     loudest: str
 
 
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class SolvedBody(Result):
     """Solved plate, disc or stator: its modes, the working one, response and sound.
 
     `mode` is the working mode as every verb has it, whose free amplitude per volt at the antinode
     `amplitude_per_volt` is; `largest_per_volt` (m/V) is the largest of the touched face at the same
     frequency, number `resonance` of the response. `circuit_said` is what is to be said of the
-    circuit, or why there is none. `objections` say what of its description is doubtful, and what a
-    budget left out.
+    circuit, or why there is none; `model` made the numbers, `status` says how good the table of
+    modes is. `objections` say what of its description is doubtful, and what a budget left out.
     """
 
     display: Display
     rows: tuple[ModeRow, ...]
+    mode: WorkingMode
     working: ModeRow
-    sound: SoundField
     response: DrivenResponse
-    # A field of one and computed by another, which no narrower type allows.
-    mode: Any
-    resonance: Any
-    largest_per_volt: Any
-    circuit: Any
-    circuit_said: Any
-    model: Any
-    status: Any
-    remarks: Any
-    objections: Any = ()
+    resonance: int
+    largest_per_volt: si.MetrePerVolt
+    circuit: EquivalentCircuit | None
+    circuit_said: str
+    sound: SoundField
+    model: str
+    status: str
+    remarks: Remarks
+    objections: tuple[str, ...] = ()
     _shown: ClassVar[str] = (
         "display.name working.label working.frequency working.quality_factor amplitude_per_volt "
         "model"
@@ -97,7 +98,7 @@ class SolvedBody(Result):
     @property
     def amplitude_per_volt(self) -> si.MetrePerVolt:
         """Free amplitude per volt at the antinode, at resonance (m/V): the working mode's."""
-        return float(self.mode.amplitude_per_volt)
+        return self.mode.amplitude_per_volt
 
     @functools.cached_property
     def load(self) -> ElectricalLoad:

@@ -15,7 +15,7 @@ from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.progress import Pace
 from squeezefilm.design.plate import ring, ring_pair
 from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring, mode_row, modes_in_band
-from squeezefilm.design.plate.solved import ALONE, ModeRow
+from squeezefilm.design.plate.solved import ALONE, ModeRow, Remarks
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.ring.body import StatorAssumptions, ring_body
@@ -78,6 +78,8 @@ def found(working: AnnularMode | None = None, motion: np.ndarray = MOTION, **cha
     own = working or mode()
     row = ModeRow("B(1,2)", 40e3, 4.0, 100.0, 2e-8, 0.2, 0.1, 31e-3)
     parts: dict[str, Any] = {
+        "resonance": 1, "largest_per_volt": 6e-8, "circuit_said": "", "model": "a-model",
+        "status": "2 modes", "remarks": Remarks("", "", "", ""),
         "display": load_display("winfield2007-tpad"), "body": body(own), "modes": (own,),
         "rows": (row, dataclasses.replace(row, frequency=42e3, frequency_error=8.4)),
         "annular": own, "mode": WORKING,
@@ -90,25 +92,12 @@ def found(working: AnnularMode | None = None, motion: np.ndarray = MOTION, **cha
     return RingAnalysis(**{**parts, **changes})
 
 
-def test_the_largest_amplitude_is_at_whatever_frequency_the_face_moves_most() -> None:
-    for number in (1, 2):
-        one = found(response=swept(MOTION, number))
-        assert one.resonance == number
-        assert one.largest_per_volt == pytest.approx(6e-8)
-        assert one.amplitude_per_volt == WORKING.amplitude_per_volt
-
-
 def test_only_a_stator_has_a_computed_amplitude_beside_its_own() -> None:
     """At an antinode of the mean circumference, where it was measured."""
     assert found().computed_per_volt is None
     stator = found(display=load_display("biet2008-stator"))
     assert stator.scan_radius == pytest.approx(20e-3)
     assert stator.computed_per_volt == pytest.approx(2e-8)
-
-
-def test_a_status_is_of_the_worst_mode() -> None:
-    assert found().status == "2 modes in the band, within 2.0e-04 (estimated)"
-    assert found().model == "a-model"
 
 
 FIT = SimpleNamespace(
@@ -148,10 +137,7 @@ def test_a_summary_has_every_number_under_its_name() -> None:
 
 
 def test_a_fit_is_said_with_its_bounds() -> None:
-    one = found(body=body(fit=FIT))
-    said = one.summary()
-    assert said["model"] == "a-model, fitted stator"
-    fit = said["fit"]
+    fit = found(body=body(fit=FIT)).summary()["fit"]
     assert fit.pop("assumed")["driven_sectors"] == StatorAssumptions.driven_sectors
     assert fit == {
         "ring_thickness_m": 3.1e-3,
@@ -302,6 +288,12 @@ def test_an_analysis_is_around_the_working_mode(parts: dict[str, Any]) -> None:
     assert parts["static_capacitance"] == (parts["body"], CIRCUIT)
     assert [row.label for row in one.rows] == ["B(1,0)", "B(1,2)", "B(1,5)"]
     assert one.working == mode_row(parts["body"], own, 1e-9)
+    assert (one.model, one.remarks.quality) == ("a-model", "of the assembly, as described")
+    assert one.status == "3 modes in the band, within 1.0e-04 (estimated)"
+    # At whatever frequency the face moves most.
+    assert one.resonance == one.response.resonance == 1
+    assert one.largest_per_volt == pytest.approx(6e-8)
+    assert one.amplitude_per_volt == one.mode.amplitude_per_volt
     assert one.circles == pytest.approx([15e-3])
     assert one.half_wavelength_along == "circumference"
     # What sounds is the velocity at the display's 20 V.
@@ -320,6 +312,7 @@ def test_another_mode_and_band_can_be_asked_for(parts: dict[str, Any]) -> None:
     assert parts["ring_response"][2].size == 201
     # Four sectors in turn do not drive cos 3θ: there is no circuit.
     assert one.circuit is None
+    assert one.circuit_said == "none: the channel does not drive this mode"
     assert parts["static_capacitance"] == (parts["body"], None)
     for band in ((50e3, 40e3), (-1.0, 40e3)):
         with pytest.raises(InputError, match="band"):
@@ -338,9 +331,18 @@ def test_a_sharp_mode_without_diameters_has_no_neighbours(parts: dict[str, Any])
 def test_a_stator_is_beside_what_was_measured_of_it(parts: dict[str, Any]) -> None:
     told: list[str] = []
     one = analyze_ring(load_display("biet2008-stator"), progress=told.append)
+    assert (one.model, one.remarks.frequency) == ("a-model", "(estimated)")
     # 2 µm at 140 V.
     assert one.amplitude_per_volt == pytest.approx(2e-6 / 140)
     assert told[0] == "fitting the stator's thickness"
+
+
+def test_a_fitted_body_is_said_to_be_fitted(parts: dict[str, Any]) -> None:
+    parts["body"] = body(fit=FIT, quality_factor=None)
+    one = analyze_ring(load_display("biet2008-stator"))
+    assert one.model == "a-model, fitted stator"
+    assert one.remarks.frequency == "(estimated); fitted, not predicted"
+    assert one.remarks.quality == "from the losses of its materials"
 
 
 def frozen(budget: float) -> Pace:

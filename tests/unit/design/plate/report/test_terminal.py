@@ -10,7 +10,7 @@ from tests.unit.made_results import WARM, WARM_LINES, made_result
 from tests.unit.printed import printed
 
 from squeezefilm.design.film import FilmAnswer, FilmRequest
-from squeezefilm.design.plate.command import PlateAnalysis
+from squeezefilm.design.plate.command import _REMARKS, PlateAnalysis
 from squeezefilm.design.plate.report.terminal import show_plate
 from squeezefilm.design.plate.solved import ModeRow
 from squeezefilm.design.report.film import show_film
@@ -51,7 +51,9 @@ def plate(**changes: Any) -> Any:
             distances=(0.3,),
             sound_pressure_level_dB=np.array([120.4]),
         ),
-        "modes": SimpleNamespace(model="piezoelectric_solid_3d", status="12 modes"),
+        "model": "piezoelectric_solid_3d",
+        "status": "12 modes",
+        "remarks": _REMARKS,
         "heat": WARM,
         "objections": ("a doubt",),
     }

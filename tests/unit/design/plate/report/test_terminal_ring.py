@@ -10,7 +10,7 @@ from tests.unit.made_results import WARM, WARM_LINES, made_result
 from tests.unit.printed import printed
 
 from squeezefilm.design.plate.report.terminal import fit_sentences, show_plate
-from squeezefilm.design.plate.ring import RingAnalysis
+from squeezefilm.design.plate.ring import RingAnalysis, _remarks
 from squeezefilm.design.plate.solved import ModeRow
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.ring.body import StatorAssumptions
@@ -63,7 +63,8 @@ def ring(**changes: Any) -> Any:
         "heat": WARM,
         "objections": ("a doubt",),
     }  # fmt: skip
-    return made_result(RingAnalysis, **{**values, **changes})
+    told = {**values, **changes}
+    return made_result(RingAnalysis, **told, remarks=_remarks(told["body"]))
 
 
 def said(columns: int = 250, **changes: Any) -> list[str]:
