@@ -12,7 +12,7 @@ from squeezefilm.core import presets
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.presets import display_names, materials, names
 from squeezefilm.design.analysis.analysis import Analysis
-from squeezefilm.design.analysis.report.point_rows import display_values
+from squeezefilm.design.analysis.report.rows import display_values
 
 
 def test_presets_are_listed_with_what_is_assumed(printed: Callable[[], str]) -> None:

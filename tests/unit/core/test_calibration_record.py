@@ -16,7 +16,7 @@ from squeezefilm.core.calibration_record import (
 from squeezefilm.core.config.load import load_text, written_values
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.analysis.report.point_rows import display_values
+from squeezefilm.design.analysis.report.rows import display_values
 from squeezefilm.lab.designing.form import edited, form
 from squeezefilm.lab.designing.numbers import calibration_of
 from squeezefilm.physics.display import Display, load_display

@@ -9,7 +9,6 @@ from squeezefilm.core import quantities as si
 
 Row = tuple[str, str, str]
 
-
 M, HZ, S, N, V = si.Unit("m"), si.Unit("Hz"), si.Unit("s"), si.Unit("N"), si.Unit("V")
 _TYPED_MICRO = re.compile(r"(?<=\d )u(?=[msNVAFWH]\b)")
 _TYPED_OHM = re.compile(r"(?<=\d )([kMmµG]?)ohm\b")
@@ -17,6 +16,7 @@ _TYPED_POWER = re.compile(r"(?:(?<=\d )|(?<=\d kg/)|(?<=\d N/)|(?<=\d C/))([kcm�
 _RAISED = {"2": "²", "3": "³"}
 _MINUS = re.compile(r"(?<![\w.\-−–/])-(?=\d)")
 A, W, SPEED, PER_VOLT = si.Unit("A"), si.Unit("W"), si.Unit("m/s"), si.Unit("m/V")
+KELVIN, OHM, HENRY, FARAD = si.Unit("K"), si.Unit("ohm"), si.Unit("H"), si.Unit("F")
 
 
 def shown(value: float, unit: si.Unit, digits: int = 4) -> str:

@@ -14,11 +14,12 @@ from squeezefilm.core.kit.model_looks import look_of
 from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, V, printable, shown
 from squeezefilm.core.kit.page_style import FigureOf, drawn_figures, picture_files
 from squeezefilm.core.kit.terminal import heading, plain_console, table
-from squeezefilm.design.analysis.report.point_rows import place_rows, reduction_row
 from squeezefilm.design.analysis.report.rows import (
     group_words,
     influence_rows,
     interval_rows,
+    place_rows,
+    reduction_row,
     show_missed,
     wanted_rows,
     weight_rows,

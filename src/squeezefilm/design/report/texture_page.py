@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.formats.traces import Table, csv_text, parquet_bytes
 from squeezefilm.core.formats.wav import Waveform, wav_bytes
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
-from squeezefilm.core.kit.numbers import HZ, M, N, S, V, printable, shown
+from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, S, V, printable, shown
 from squeezefilm.core.kit.page_style import (
     bullets,
     drawn_figures,
@@ -38,9 +37,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
-    from squeezefilm.physics.texture_files.hjif import HjifExport
-
-_SPEED = si.Unit("m/s")
 
 
 def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
@@ -57,7 +53,7 @@ def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
             "Least friction µ′/µ",
             f"{result.least_friction:.3f}",
             f"{p.model}, {shown(p.normal_force, N)} on {p.surface.name}, "
-            f"{shown(result.mean_speed, _SPEED)}",
+            f"{shown(result.mean_speed, SPEED)}",
         ),
         ("Finger", "", result.display.whose_finger),
         ("Time constant", shown(result.time_constant, S, 3), "of the envelope, finger on it"),

@@ -2,7 +2,7 @@
 
 import dataclasses
 
-from squeezefilm.design.analysis.report.point_rows import electronics_rows
+from squeezefilm.design.analysis.report.rows import electronics_rows
 from squeezefilm.physics.plate.electronics import AmplifierCheck, ElectricalLoad
 
 LOAD = ElectricalLoad(

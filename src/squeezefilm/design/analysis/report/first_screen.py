@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.kit.numbers import HZ, A, M, Row, V, W, shown, signed, span
+from squeezefilm.core.kit.numbers import HZ, KELVIN, A, M, Row, V, W, shown, signed, span
 from squeezefilm.design.analysis.curves import PAPER_CRITERION
 from squeezefilm.design.analysis.verdict import NOTICED_DIFFERENCE, probability_words
 from squeezefilm.design.plate.mode_doubts import why_undriven
@@ -16,7 +16,6 @@ from squeezefilm.physics.uncertainty.parameters import parameter_name
 if TYPE_CHECKING:
     from squeezefilm.design.analysis.analysis import Analysis
 
-KELVIN = si.Unit("K")
 MOST_DOUBTS = 3
 HEAD = ("Quantity", "Value", "90 % interval")
 """Heads of the numbers."""

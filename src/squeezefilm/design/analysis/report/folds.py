@@ -6,31 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
-from squeezefilm.core.kit.numbers import Row
-from squeezefilm.design.analysis.report.first_screen import doubted, first_screen
-from squeezefilm.design.analysis.report.point_rows import (
-    display_values,
-    electronics_rows,
-    place_rows,
-)
-from squeezefilm.design.analysis.report.rows import (
-    MISSED_HEADING,
-    group_words,
-    influence_rows,
-    interval_rows,
-    missed_directions,
-    models,
-    sensitivity_rows,
-    theory_rows,
-    wanted_rows,
-    weight_rows,
-)
-from squeezefilm.design.plate.report.terminal import heat_rows
-
-if TYPE_CHECKING:
-    from squeezefilm.design.analysis.analysis import Analysis
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from squeezefilm.core import quantities as si
@@ -40,14 +15,32 @@ from squeezefilm.core.kit.numbers import (
     SPEED,
     M,
     N,
+    Row,
     S,
     V,
     printable,
     shown,
     span,
 )
-from squeezefilm.design.analysis.report.point_rows import reduction_row
-from squeezefilm.design.analysis.report.rows import felt_rows
+from squeezefilm.design.analysis.report.first_screen import doubted, first_screen
+from squeezefilm.design.analysis.report.rows import (
+    MISSED_HEADING,
+    display_values,
+    electronics_rows,
+    felt_rows,
+    group_words,
+    influence_rows,
+    interval_rows,
+    missed_directions,
+    models,
+    place_rows,
+    reduction_row,
+    sensitivity_rows,
+    theory_rows,
+    wanted_rows,
+    weight_rows,
+)
+from squeezefilm.design.plate.report.terminal import heat_rows
 from squeezefilm.physics.chain.pad_place import place_words
 
 if TYPE_CHECKING:

@@ -1,21 +1,25 @@
-"""Rows of what one decides from (intervals, voltages, what is felt, what each value does), and of
-the models and the uncertainty behind it."""
+"""Rows of a working point and what one decides from: place, load, intervals, influences, models."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.kit.numbers import HZ, M, V, shown
+from squeezefilm.core.config.schema import leaves
+from squeezefilm.core.kit.numbers import FARAD, HENRY, HZ, A, M, Row, V, W, dotted, shown
 from squeezefilm.core.kit.terminal import bullets, heading
 from squeezefilm.design.analysis.published_claims import missed_by
+from squeezefilm.physics.chain.active_area import CRITERIA, percent
+from squeezefilm.physics.chain.pad_place import place_words
+from squeezefilm.physics.display import Display
 from squeezefilm.physics.perception.felt import FINEST_TRIED
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from squeezefilm.core.kit.numbers import Row
     from squeezefilm.design.analysis.analysis import Analysis
+    from squeezefilm.design.analysis.area_odds import JudgedArea
     from squeezefilm.design.analysis.felt import FeltAt, FeltGratings
     from squeezefilm.design.analysis.sensitivities import (
         DisplaySensitivities,
@@ -23,11 +27,12 @@ if TYPE_CHECKING:
         Shift,
     )
     from squeezefilm.design.analysis.wanted import Wanted
+    from squeezefilm.physics.chain.prediction import Prediction
+    from squeezefilm.physics.plate.electronics import ElectricalLoad
     from squeezefilm.physics.uncertainty.intervals import GroupInfluence
     from squeezefilm.physics.uncertainty.parameters import Knowledge
     from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
-_W = si.Unit("W")
 SHOWN = 12
 
 
@@ -38,9 +43,9 @@ def interval_rows(unsure: UncertainFriction | None) -> list[Row]:
     low, high = (shown(end, M, 3) for end in unsure.amplitude_interval)
     rows = [("", f"{low} to {high}", f"{100 * unsure.level:.0f} % interval of the amplitude")]
     if unsure.power is not None:
-        rows.append(("Power taken", shown(unsure.power, _W, 3), "plate and finger, cold"))
+        rows.append(("Power taken", shown(unsure.power, W, 3), "plate and finger, cold"))
     if unsure.power_interval is not None:
-        low, high = (shown(end, _W, 3) for end in unsure.power_interval)
+        low, high = (shown(end, W, 3) for end in unsure.power_interval)
         rows.append(("", f"{low} to {high}", f"{100 * unsure.level:.0f} % interval of the power"))
     return rows
 
@@ -221,29 +226,24 @@ def theory_rows(analysis: Analysis) -> list[tuple[str, str, str, str]]:
 
 def influence_rows(unsure: UncertainFriction, knowledge: Knowledge, most: int) -> list[list[str]]:
     """Rows of what in a group makes a friction uncertain, the most important first: path, what is
-    drawn of it, its share of the variance with all its company, and whose range or weights these
-    are."""
-    group = [
-        influence for influence in unsure.influences if influence.parameter.knowledge == knowledge
-    ]
-    return [
-        [
-            influence.parameter.path,
-            spread_words(influence.parameter.spread, law=hasattr(influence.parameter, "options")),
-            f"{100 * influence.total:.0f} ± {si.percent(influence.total_error)}",
-            "as described"
-            if influence.parameter.origin == "given"
-            else "assumed weights"
-            if hasattr(influence.parameter, "options")
-            else "assumed range",
-        ]
-        for influence in group[:most]
-    ]
-
-
-def spread_words(spread: tuple[str, ...], *, law: bool) -> str:
-    """Options with their weights, or from where to where a value is drawn."""
-    return ", ".join(spread) if law else " to ".join(spread)
+    drawn of it (options with their weights, or from where to where), its share of the variance with
+    all its company, and whose range or weights these are."""
+    rows = []
+    for influence in unsure.influences:
+        drawn = influence.parameter
+        if drawn.knowledge != knowledge:
+            continue
+        law = hasattr(drawn, "options")
+        assumed = "assumed weights" if law else "assumed range"
+        rows.append(
+            [
+                drawn.path,
+                (", " if law else " to ").join(drawn.spread),
+                f"{100 * influence.total:.0f} ± {si.percent(influence.total_error)}",
+                "as described" if drawn.origin == "given" else assumed,
+            ]
+        )
+    return rows[:most]
 
 
 def group_words(influence: GroupInfluence) -> str:
@@ -273,3 +273,113 @@ def show_missed(console: Console, model: str) -> None:
     """Print what measurements say and a friction model does not."""
     heading(console, MISSED_HEADING.format(model))
     bullets(console, [("–", text, "yellow") for text in missed_directions(model)])
+
+
+# amplifier; each a quantity, its value, a remark.
+
+
+def place_rows(p: Prediction, judged: JudgedArea | None) -> list[Row]:
+    """Rows of the place meant and of friction over the active area: quantity, value, remark."""
+    where = place_words(p.place)
+    said = p.place_said.replace(f"{where}, ", "").replace(f", {where}", "")
+    rows = [("Place of the finger", where, said)]
+    area = None if judged is None else judged.area
+    if area is None or area.best_place is None or area.worst_place is None:
+        return [
+            *rows,
+            ("µ′/µ over the active area", "not known", "" if area is None else area.why_not),
+        ]
+    places = f"at {place_words(area.best_place)} and {place_words(area.worst_place)}"
+    shares = ", ".join(
+        f"{percent(area.share_below(criterion))} below {criterion:.2f}" for criterion in CRITERIA
+    )
+    return [
+        *rows,
+        (
+            "µ′/µ over the active area",
+            f"{area.best:.2f} to {area.worst:.2f}",
+            f"{places}; median {area.median:.2f}; {shares}",
+        ),
+    ]
+
+
+def reduction_row(p: Prediction) -> Row:
+    """Row of what vibration takes away of the friction."""
+    reduction, coefficient = f"{p.friction_reduction:.3f}", f"{p.friction_coefficient:.3g}"
+    return "Friction reduction µ − µ′", reduction, f"of µ = {coefficient}"
+
+
+def electronics_rows(load: ElectricalLoad | None) -> list[Row]:
+    """Current, power, slew, inductors, and which class of amplifier can do it."""
+    if load is None:
+        return [
+            ("Electrical load", "not known", "it takes a voltage, and an admittance solved near it")
+        ]
+    at = f"at {shown(load.voltage, V)} and {shown(load.frequency, HZ)}, without a finger"
+    each = f"{load.channels} ceramics in parallel, {{}} each on average"
+    rows = [("Electrical load", "assumed in part", load.assumed)] if load.assumed else []
+    if load.capacitance is not None and load.capacitance_per_channel is not None:
+        own = shown(load.capacitance_per_channel, FARAD, 3)
+        together = each.format(own) if load.channels > 1 else "beside the mode"
+        rows.append(("Electrode capacitance", shown(load.capacitance, FARAD, 3), together))
+    split = f"; {each.format(shown(load.current_per_channel, A, 3))}" if load.channels > 1 else ""
+    rows += [
+        ("Drive current, peak", shown(load.current, A, 3), at + split),
+        (
+            "Drive power",
+            shown(load.real_power, W, 3),
+            f"of {load.apparent_power:.3g} VA apparent; power factor {load.power_factor:.2f}",
+        ),
+        ("Slew rate", f"{load.slew_rate / 1e6:.3g} V/µs", "the sine's steepest slope"),
+    ]
+    if load.parallel_inductance is not None and load.series_inductance is not None:
+        rows += [
+            (
+                "Matching inductor",
+                f"{shown(load.parallel_inductance, HENRY, 3)} parallel",
+                f"the amplifier then gives {shown(load.matched_current, A, 3)} at the same voltage",
+            ),
+            (
+                "",
+                f"{shown(load.series_inductance, HENRY, 3)} in series",
+                f"the amplifier then gives {shown(load.matched_voltage, V, 3)} for "
+                f"{shown(load.voltage, V, 3)} at the ceramics",
+            ),
+        ]
+    for number, check in enumerate(load.amplifiers):
+        rows.append(
+            (
+                "Amplifier" if number == 0 else "",
+                "can" if check.suffices else "cannot",
+                f"{check.kind}, such as {check.part}: {check.why} ({check.source})",
+            )
+        )
+    return rows
+
+
+@dataclass(frozen=True)
+class Value:
+    """A value of a display's description: its path, its text, where it is from."""
+
+    path: str
+    text: str
+    source: str
+    evidence: str
+
+
+def display_values(display: Display) -> list[Value]:
+    """Every value of a display with its unit, its source and the evidence behind it.
+
+    Members of lists are counted from 1, as the messages of `core.config.load` count them.
+    """
+    rows = []
+    for path, value, hint, _ in leaves(display):
+        unit = si.unit_of(hint)
+        origin = display.provenance.get(".".join(str(part) for part in path))
+        if isinstance(value, float | int) and not isinstance(value, bool):
+            text = shown(value, unit, 6) if unit is not None else f"{value}"
+        else:
+            text = str(value)
+        source, evidence = ("", "") if origin is None else (origin.source, origin.evidence)
+        rows.append(Value(dotted(path), text, source, evidence))
+    return rows

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, write_folder
-from squeezefilm.core.kit.numbers import HZ, shown
+from squeezefilm.core.kit.numbers import HZ, PER_VOLT, SPEED, shown
 from squeezefilm.core.kit.page_style import FigureOf, drawn_figures, picture_files
 from squeezefilm.core.kit.terminal import bullets, heading, plain_console, table
 from squeezefilm.physics.chain.pad_place import place_words
@@ -26,7 +25,6 @@ if TYPE_CHECKING:
     from squeezefilm.design.plate.ring_pair import RingPair
     from squeezefilm.physics.plate.working_mode import WorkingMode
 
-_PER_VOLT, _SPEED = si.Unit("m/V"), si.Unit("m/s")
 _HEAD = ("mode", "frequency", "per volt", "neighbour", "away", "adds", "")
 # So many shapes are drawn: those that move most.
 _SHAPES = 12
@@ -43,7 +41,7 @@ def mode_list_rows(result: ModeList) -> list[tuple[str, ...]]:
             (
                 ("→ " if mode is working else "  ") + mode.label,
                 shown(mode.frequency, HZ, 4),
-                shown(mode.alone_per_volt, _PER_VOLT, 3),
+                shown(mode.alone_per_volt, PER_VOLT, 3),
                 mode.neighbour or "",
                 "" if far is None else f"{far:.3g}",
                 "" if far is None else _percent(mode.neighbour_share),
@@ -131,7 +129,7 @@ def _solved_said(mode: WorkingMode) -> str:
     """The display's own mode with all others in, as every other verb has it."""
     return (
         f"{mode.label} with the contribution of all other modes: "
-        f"{shown(mode.amplitude_per_volt, _PER_VOLT)} at its antinode ({place_words(mode.lobe)}); "
+        f"{shown(mode.amplitude_per_volt, PER_VOLT)} at its antinode ({place_words(mode.lobe)}); "
         "squeezefilm plate and analyze give the same."
     )
 
@@ -143,7 +141,7 @@ def pair_rows(pair: RingPair) -> list[tuple[str, str, str, str]]:
             f"{shown(at.split, HZ, 3)} ({at.half_bandwidths:.3g} half-bandwidths)",
             f"{at.standing_wave_ratio:.3g}",
             f"{100 * at.travelling:.2g} %",
-            shown(at.crest_speed, _SPEED, 2),
+            shown(at.crest_speed, SPEED, 2),
         )
         for at in pair.splits
     ]
@@ -184,7 +182,7 @@ def shapes(result: ModeList) -> Figure:
         axes.contourf(x, y, mode.shape.T, [-1.01, 0, 1.01], colors=[style.MINUS, style.PLUS])
         axes.contour(x, y, mode.shape.T, [-0.5, 0.5], colors=style.MUTED, linewidths=0.6)
         axes.contour(x, y, mode.shape.T, [0], colors=style.INK, linewidths=0.9)
-        per_volt = shown(mode.alone_per_volt, _PER_VOLT, 3)
+        per_volt = shown(mode.alone_per_volt, PER_VOLT, 3)
         axes.set_title(f"{mode.name}  {mode.frequency / 1e3:.2f} kHz\n{per_volt}", fontsize=9)
         axes.set(aspect="equal")
     return figure

@@ -7,7 +7,11 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import (
+    FARAD,
+    HENRY,
     HZ,
+    KELVIN,
+    OHM,
     PER_VOLT,
     A,
     M,
@@ -32,8 +36,6 @@ if TYPE_CHECKING:
     from squeezefilm.physics.plate.ring.body import StatorFit
     from squeezefilm.physics.plate.sound import SoundField
     from squeezefilm.physics.plate.warming import Warming
-
-KELVIN = si.Unit("K")
 
 
 def heat_rows(heat: Warming | None) -> list[Row]:
@@ -110,9 +112,6 @@ def sound_rows(sound: SoundField, direction: str) -> list[Row]:
         )
     ]
 
-
-OHM = si.Unit("ohm")
-HENRY, FARAD = si.Unit("H"), si.Unit("F")
 
 # Of the working mode's amplitude per volt: below it a mode is called not driven.
 _DRIVEN = 1e-4

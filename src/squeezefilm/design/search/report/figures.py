@@ -45,7 +45,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from squeezefilm.design.search.candidate import Evaluated
-    from squeezefilm.design.search.found import DesignSearch
 
 MARKED = "plate-"
 """Beginning of the id of the mark of a plate of the front, which its name ends."""

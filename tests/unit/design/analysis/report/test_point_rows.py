@@ -9,7 +9,7 @@ from tests.unit.made_curves import AMPLITUDE, made
 
 from squeezefilm.design.analysis.area_odds import judged_area
 from squeezefilm.design.analysis.report.figures import deciding
-from squeezefilm.design.analysis.report.point_rows import place_rows
+from squeezefilm.design.analysis.report.rows import place_rows
 from squeezefilm.physics.chain.active_area import percent
 from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.pad_place import place_words
