@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +12,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp, to_json
-from squeezefilm.design.fabrication.test_plan import PlanFacts, TestStep, test_plan
+from squeezefilm.design.fabrication.test_plan import TestStep, test_plan
 from squeezefilm.design.fabrication.wiring import (
     BillRow,
     Electrode,
@@ -62,8 +63,7 @@ class Fabrication(Result):
 
     `parts` are its solid bodies, `bill` what is bought or cut, `blind` what is expected of the
     built display with intervals, to be scored by `squeezefilm measure score` (None where nothing
-    can be drawn: `no_intervals` says why), `drawn` which values these intervals are of, `steps` the
-    plan of the bench.
+    can be drawn: `no_intervals` says why), `drawn` which values these intervals are of.
     """
 
     display: Display
@@ -76,7 +76,6 @@ class Fabrication(Result):
     load: ElectricalLoad | None
     blind: BlindPrediction | None
     drawn: tuple[Parameter, ...]
-    steps: tuple[TestStep, ...]
     no_intervals: str = ""
     _shown: ClassVar[str] = (
         "display.name mass prediction.frequency prediction.vibration_amplitude "
@@ -87,6 +86,11 @@ class Fabrication(Result):
     def mass(self) -> float:
         """Mass of all bodies together (kg)."""
         return math.fsum(part.mass for part in self.parts)
+
+    @functools.cached_property
+    def steps(self) -> tuple[TestStep, ...]:
+        """Plan of the bench."""
+        return test_plan(self)
 
     @property
     def expected(self) -> tuple[Predicted, ...]:
@@ -150,12 +154,7 @@ def fabricate(
     if intervals and blind is None:
         blind, why_not = _expected(display, prediction, why_not, seed, tell)
     drawn = () if why_not else calibration_parameters(display)
-    nodal = nodal_lines_of(display.actuator, prediction.mode)
     p = prediction
-    load = load_of_mode(display.actuator, p.mode, p.voltage, p.frequency)
-    mass = math.fsum(part.mass for part in parts)
-    expected = () if blind is None else blind.predictions
-    known = PlanFacts(prediction, expected, mass, nodal, load, uncertainty)
     return Fabrication(
         display=display,
         prediction=prediction,
@@ -163,11 +162,10 @@ def fabricate(
         parts=parts,
         electrodes=electrodes,
         bill=bill_of(display.actuator, parts, electrodes),
-        nodal=nodal,
-        load=load,
+        nodal=nodal_lines_of(display.actuator, p.mode),
+        load=load_of_mode(display.actuator, p.mode, p.voltage, p.frequency),
         blind=blind,
         drawn=drawn,
-        steps=test_plan(known),
         no_intervals=why_not,
     )
 

@@ -5,15 +5,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
-from squeezefilm.design.fabrication.wiring import NodalLines
-from squeezefilm.measure.calibration.blind import Predicted
 from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.physics.chain.pad_place import place_words
-from squeezefilm.physics.chain.prediction import Prediction
-from squeezefilm.physics.plate.electronics import ElectricalLoad
-from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
+
+if TYPE_CHECKING:
+    from squeezefilm.design.fabrication.fabricate import Fabrication
 
 SMALL_SIGNAL: si.Dimensionless = 0.1
 """Share of the drive's voltage for what is to be linear."""
@@ -51,18 +50,6 @@ class TestStep:
     checks: tuple[Check, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class PlanFacts:
-    """Inputs of the plan: everything is computed already."""
-
-    prediction: Prediction
-    expected: tuple[Predicted, ...]
-    mass: si.Kilogram
-    nodal: NodalLines
-    load: ElectricalLoad | None
-    uncertainty: UncertainFriction | None
-
-
 _OF_DRAWS = "zero-to-peak; as friction's interval, which allows no error of the plate's model"
 _UNITS = {
     "mass": "kg",
@@ -77,7 +64,7 @@ _UNITS = {
 }
 
 
-def test_plan(known: PlanFacts) -> tuple[TestStep, ...]:
+def test_plan(known: Fabrication) -> tuple[TestStep, ...]:
     """The steps, each recording named as `squeezefilm measure calibrate` finds it in its folder."""
     steps = [
         _weighing(known),
@@ -95,7 +82,7 @@ def test_plan(known: PlanFacts) -> tuple[TestStep, ...]:
 test_plan.__test__ = False  # type: ignore[attr-defined] # pytest collects by name
 
 
-def _of(known: PlanFacts, answer: str, what: str, value: float | None, remark: str = "") -> Check:
+def _of(known: Fabrication, answer: str, what: str, value: float | None, remark: str = "") -> Check:
     """A check of an answer, with the interval that was drawn of it."""
     matching = [predicted for predicted in known.expected if predicted.answer == answer]
     interval, level = (matching[0].interval, matching[0].level) if matching else (None, None)
@@ -104,7 +91,7 @@ def _of(known: PlanFacts, answer: str, what: str, value: float | None, remark: s
     return Check(what, answer, _UNITS[answer], value, interval, level, (), remark)
 
 
-def _weighing(known: PlanFacts) -> TestStep:
+def _weighing(known: Fabrication) -> TestStep:
     return TestStep(
         "Weigh it",
         "Weigh the assembly with its glue cured, before leads are soldered.",
@@ -118,7 +105,7 @@ def _volts(volts: si.Volt) -> str:
     return si.format_quantity(volts, _V, 3)
 
 
-def _band(known: PlanFacts) -> str:
+def _band(known: Fabrication) -> str:
     mode = known.prediction.mode
     half = mode.resonance_frequency / (2 * mode.quality_factor)
     low, high = (mode.resonance_frequency + side * _BAND * half for side in (-1, 1))
@@ -134,7 +121,7 @@ def _band(known: PlanFacts) -> str:
     return f"from {ends} in {points} points"
 
 
-def _impedance(known: PlanFacts) -> TestStep:
+def _impedance(known: Fabrication) -> TestStep:
     p, load = known.prediction, known.load
     static = None if load is None else load.capacitance
     checks = [
@@ -160,7 +147,7 @@ def _impedance(known: PlanFacts) -> TestStep:
     )
 
 
-def _response(known: PlanFacts) -> TestStep:
+def _response(known: Fabrication) -> TestStep:
     p = known.prediction
     volts = SMALL_SIGNAL * (p.voltage or 0.0)
     at = place_words(p.mode.lobe)
@@ -178,7 +165,7 @@ def _response(known: PlanFacts) -> TestStep:
     )
 
 
-def _line(known: PlanFacts) -> TestStep:
+def _line(known: Fabrication) -> TestStep:
     p, nodal = known.prediction, known.nodal
     half = p.mode.half_wavelength
     checks = [_of(known, "half_wavelength", "Half wavelength", half)]
@@ -206,7 +193,7 @@ def _line(known: PlanFacts) -> TestStep:
     )
 
 
-def _grid(known: PlanFacts) -> TestStep | None:
+def _grid(known: Fabrication) -> TestStep | None:
     mode = known.prediction.mode
     if mode.solid is None:
         return None
@@ -228,7 +215,7 @@ def _grid(known: PlanFacts) -> TestStep | None:
     )
 
 
-def _decay(known: PlanFacts) -> TestStep:
+def _decay(known: Fabrication) -> TestStep:
     p = known.prediction
     quality = _of(known, "quality_factor", "Quality factor", p.mode.quality_factor)
     ends = None
@@ -254,7 +241,7 @@ def _decay(known: PlanFacts) -> TestStep:
     )
 
 
-def _voltages(known: PlanFacts) -> TestStep | None:
+def _voltages(known: Fabrication) -> TestStep | None:
     p, load, unsure = known.prediction, known.load, known.uncertainty
     if not p.voltage:
         return None
@@ -286,7 +273,7 @@ def _voltages(known: PlanFacts) -> TestStep | None:
     )
 
 
-def _strokes(known: PlanFacts) -> TestStep:
+def _strokes(known: Fabrication) -> TestStep:
     p, unsure = known.prediction, known.uncertainty
     ends = None if unsure is None else unsure.amplitude_interval
     if ends is not None and ends[0] == ends[1]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.folder import csv_text
 from squeezefilm.core.kit.numbers import shown
+from squeezefilm.core.results import to_json
 from squeezefilm.design.fabrication.report.rectangular_sheet import HEAD as CERAMICS
 from squeezefilm.design.fabrication.report.rectangular_sheet import electrode_rows
 from squeezefilm.design.fabrication.report.round_sheet import HEAD as SECTORS
@@ -40,7 +41,6 @@ _PLAN = (
     "measured (SI)",
     "inside",
 )
-_BILL = ("item", "what", "count", "material", "size", "made", "mass_kg", "in_mass", "remark")
 _KEY = ("resonance_frequency", "amplitude_per_volt", "quality_factor", "mass", FRICTION)
 
 
@@ -109,20 +109,10 @@ def bill_rows(bill: Sequence[BillRow]) -> list[tuple[str, ...]]:
 def bill_csv(bill: Sequence[BillRow]) -> str:
     """The bill as CSV, masses in kilograms."""
     rows = [
-        (
-            number,
-            row.what,
-            row.count,
-            row.material,
-            row.size,
-            row.made,
-            row.mass,
-            "yes" if row.in_mass else "no",
-            row.remark,
-        )
+        {"item": number, **to_json(row), "in_mass": "yes" if row.in_mass else "no"}
         for number, row in enumerate(bill, 1)
     ]
-    return csv_text(_BILL, rows)
+    return csv_text(list(rows[0]), [list(row.values()) for row in rows])
 
 
 def layout_rows(made: Fabrication) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
