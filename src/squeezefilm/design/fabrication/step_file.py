@@ -45,22 +45,17 @@ def volume_error(part: Part) -> si.Dimensionless:
 def triangles_of(part: Part) -> si.FloatArray:
     """A part's surface as triangles, shape (triangles, corners 3, coordinates 3) (m), each going
     round anticlockwise as seen from outside."""
-    rim, hole = _outline(part.footprint)
-    whole = isinstance(part.footprint, Sector) and part.footprint.is_whole
-    closed = isinstance(part.footprint, Rectangle) or whole
-    lids = _lid(rim, hole, closed)
-    low, high = (np.full(len(lids), z) for z in (part.bottom, part.top))
-    faces = [_at(lids, high), _at(lids[:, ::-1], low)]
-    # Walls: around the rim with it, around the hole against it, and the two ends of a sector.
-    loops = [(rim, closed)]
-    if hole is not None and len(hole) > 1:
-        loops.append((hole[::-1], closed))
-        if not closed:
-            loops += [(np.array([rim[-1], hole[-1]]), False), (np.array([hole[0], rim[0]]), False)]
-    elif hole is not None:
-        loops += [(np.array([rim[-1], hole[0]]), False), (np.array([hole[0], rim[0]]), False)]
-    for points, goes_round in loops:
-        faces.append(_wall(points, goes_round, part.bottom, part.top))
+    loops, lid = _outline(part.footprint)
+    faces = [_at(lid, part.top), _at(lid[:, ::-1], part.bottom)]
+    for points in loops:
+        low, high = (
+            np.column_stack([points, np.full(len(points), z)]) for z in (part.bottom, part.top)
+        )
+        low_after, high_after = (np.roll(corners, -1, axis=0) for corners in (low, high))
+        faces += [
+            np.stack([low, low_after, high_after], axis=1),
+            np.stack([low, high_after, high], axis=1),
+        ]
     return np.concatenate(faces)
 
 
@@ -69,51 +64,41 @@ def _steps(shape: Sector) -> int:
     return max(2, math.ceil(share * facets_round(shape.outer_radius) * (1 - 1e-12)))
 
 
-def _outline(shape: Rectangle | Sector) -> tuple[si.FloatArray, si.FloatArray | None]:
-    """The rim anticlockwise, shape (points, 2), and the hole's rim facet by facet beside it: None
-    without a hole, one point where a sector comes to one."""
+def _outline(shape: Rectangle | Sector) -> tuple[list[si.FloatArray], si.FloatArray]:
+    """Closed loops that go anticlockwise about the body, shape (points, 2) each, and the face
+    within them seen from above, shape (triangles, 3, 2)."""
     if isinstance(shape, Rectangle):
         x, y = (shape.x, shape.x + shape.length), (shape.y, shape.y + shape.width)
-        return np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])]), None
+        corners = np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1])])
+        return [corners], _fan(corners)
     count = _steps(shape)
     angles = shape.start + (shape.end - shape.start) * np.arange(count + 1) / count
     turn = np.column_stack([np.cos(angles), np.sin(angles)])
-    turn = turn[:-1] if shape.is_whole else turn
-    if shape.inner_radius > 0:
-        return shape.outer_radius * turn, shape.inner_radius * turn
-    return shape.outer_radius * turn, None if shape.is_whole else np.zeros((1, 2))
-
-
-def _lid(rim: si.FloatArray, hole: si.FloatArray | None, closed: bool) -> si.FloatArray:
-    """The face seen from above, shape (triangles, 3, 2)."""
-    if hole is None:
-        return np.stack([np.broadcast_to(rim[0], rim[2:].shape), rim[1:-1], rim[2:]], axis=1)
-    after = np.roll(rim, -1, axis=0) if closed else rim[1:]
-    before = rim if closed else rim[:-1]
-    if len(hole) == 1:
-        return np.stack([np.broadcast_to(hole[0], before.shape), before, after], axis=1)
-    within = np.roll(hole, -1, axis=0) if closed else hole[1:]
-    inner = hole if closed else hole[:-1]
-    return np.concatenate(
-        [np.stack([inner, before, after], axis=1), np.stack([inner, after, within], axis=1)]
+    if shape.is_whole:
+        turn[-1] = turn[0]
+    rim, hole = shape.outer_radius * turn, shape.inner_radius * turn
+    if shape.inner_radius == 0:
+        loop = rim[:-1] if shape.is_whole else np.concatenate([np.zeros((1, 2)), rim])
+        return [loop], _fan(loop)
+    facets = np.concatenate(
+        [
+            np.stack([hole[:-1], rim[:-1], rim[1:]], axis=1),
+            np.stack([hole[:-1], rim[1:], hole[1:]], axis=1),
+        ]
     )
+    if shape.is_whole:
+        return [rim[:-1], hole[:0:-1]], facets
+    return [np.concatenate([rim, hole[::-1]])], facets
 
 
-def _at(flat: si.FloatArray, height: si.FloatArray) -> si.FloatArray:
-    z = np.broadcast_to(height[:, None, None], (len(flat), 3, 1))
-    return np.concatenate([flat, z], axis=2)
+def _fan(corners: si.FloatArray) -> si.FloatArray:
+    """Triangles from the first corner to all others."""
+    first = np.broadcast_to(corners[0], corners[2:].shape)
+    return np.stack([first, corners[1:-1], corners[2:]], axis=1)
 
 
-def _wall(points: si.FloatArray, closed: bool, bottom: si.Metre, top: si.Metre) -> si.FloatArray:
-    """The upright wall along points that go anticlockwise about the body."""
-    after = np.roll(points, -1, axis=0) if closed else points[1:]
-    before = points if closed else points[:-1]
-    z = (np.full((len(before), 1), bottom), np.full((len(before), 1), top))
-    low, high = (np.hstack([before, height]) for height in z)
-    low_after, high_after = (np.hstack([after, height]) for height in z)
-    return np.concatenate(
-        [np.stack([low, low_after, high_after], axis=1), np.stack([low, high_after, high], axis=1)]
-    )
+def _at(flat: si.FloatArray, height: si.Metre) -> si.FloatArray:
+    return np.concatenate([flat, np.full((len(flat), 3, 1), height)], axis=2)
 
 
 @si.checked_numbers
