@@ -15,7 +15,7 @@ from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError, WorkersError
 from squeezefilm.core.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED, require_within
 from squeezefilm.core.progress import SayProgress, about
-from squeezefilm.core.results import stamp
+from squeezefilm.core.results import config_hash, stamp
 from squeezefilm.design.search import worth_solving as choice
 from squeezefilm.design.search.candidate import (
     Design,
@@ -32,7 +32,7 @@ from squeezefilm.design.search.found import DesignSearch, FrontMember, Glimpse, 
 from squeezefilm.design.search.reasons import empty_corners, limit_reasons
 from squeezefilm.design.search.requirements import NamedRequirements
 from squeezefilm.design.search.space import Space
-from squeezefilm.design.search.store import DesignStore, requirements_hash
+from squeezefilm.design.search.store import DesignStore
 from squeezefilm.design.search.tolerance import Made, made_of
 from squeezefilm.design.sweep.tasks import Lost, Workers
 from squeezefilm.design.sweep.workers import workers
@@ -394,5 +394,5 @@ class SearchRun:
             seconds=time.monotonic() - self._began,
             stopped=not self._done,
             provenance=stamp(requirements.base, self._asked.seed)
-            | {"requirements_sha256": requirements_hash(requirements)},
+            | {"requirements_sha256": config_hash(requirements)},
         )

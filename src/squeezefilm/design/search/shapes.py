@@ -27,10 +27,8 @@ from squeezefilm.design.search.stock import (
     Shape,
     StockSheet,  # noqa: F401
     as_drawn,
-    ceramic_named,
     counts,
     cut_to_step,
-    substrate_named,
 )
 from squeezefilm.physics.plate.layout import (
     CeramicPatch,
@@ -138,13 +136,10 @@ class Strips(Shape):
             if self.both_faces
         ]
         return RectangularPlate(
+            **self.common(values, own, quality),
             length=length,
             width=width,
-            thickness=float(values["thickness"]),
             nodal_lines=lines,
-            quality_factor=quality,
-            substrate=substrate_named(str(values["substrate"]), own),
-            ceramic=ceramic_named(str(values["ceramic"]), own),
             patches=(*below, *above),
             glue=self.glue,
         )
@@ -217,14 +212,11 @@ class EdgeStrips(Shape):
             ),
         )
         return RectangularPlate(
+            **self.common(values, own, quality),
             length=length,
             width=width,
-            thickness=float(values["thickness"]),
             nodal_lines=lines,
             lines_across="width",
-            quality_factor=quality,
-            substrate=substrate_named(str(values["substrate"]), own),
-            ceramic=ceramic_named(str(values["ceramic"]), own),
             patches=patches,
             glue=self.glue,
             supports=() if self.gasket is None else _rim(self.gasket, length, width),
@@ -275,11 +267,8 @@ class Disc(Shape):
         """The disc of a choice. Raises `GeometryError` for a ceramic that overhangs."""
         diameter = float(values["diameter"])
         return DiscPlate(
+            **self.common(values, own, quality),
             diameter=diameter,
-            thickness=float(values["thickness"]),
-            quality_factor=quality,
-            substrate=substrate_named(str(values["substrate"]), own),
-            ceramic=ceramic_named(str(values["ceramic"]), own),
             ceramic_outer_diameter=float(values["ceramic_diameter"])
             if "ceramic_diameter" in values
             else cut_to_step(diameter * float(values["cover"])),
@@ -331,11 +320,8 @@ class Ring(Shape):
             )
         m = int(values["nodal_diameters"])
         return DiscPlate(
+            **self.common(values, own, quality),
             diameter=as_drawn(mean + track),
-            thickness=float(values["thickness"]),
-            quality_factor=quality,
-            substrate=substrate_named(str(values["substrate"]), own),
-            ceramic=ceramic_named(str(values["ceramic"]), own),
             ceramic_outer_diameter=as_drawn(mean + track),
             ceramic_thickness=float(values["ceramic_thickness"]),
             inner_diameter=as_drawn(mean - track),

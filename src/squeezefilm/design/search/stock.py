@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from squeezefilm.core import config, presets
 from squeezefilm.core import hard_limits as hard
@@ -48,51 +48,32 @@ class CeramicStock:
 
 
 @dataclass(frozen=True)
-class _Substrate:
-    part: ElasticMaterial
+class _Library:
+    """A material by its kind, as a file that names it has it."""
+
+    substrate: ElasticMaterial | None = None
+    ceramic: Piezoceramic | None = None
     references: ClassVar[References] = References(
         original=lambda name: None,
-        parts={"part": functools.partial(presets.materials.table, kind="substrate")},
+        parts={
+            kind: functools.partial(presets.materials.table, kind=kind)
+            for kind in ("substrate", "ceramic")
+        },
     )
 
 
-@dataclass(frozen=True)
-class _Ceramic:
-    part: Piezoceramic
-    references: ClassVar[References] = References(
-        original=lambda name: None,
-        parts={"part": functools.partial(presets.materials.table, kind="ceramic")},
-    )
+@functools.cache
+def _of_library(name: str, kind: Kind) -> Any:
+    named = presets.materials.named(name, kind).name
+    return getattr(config.load_text(_Library, f'[{kind}]\nmaterial = "{named}"\n'), kind)
 
 
-def substrate_named(name: str, own: RectangularPlate | DiscPlate) -> ElasticMaterial:
-    """The substrate of a name in the library, or that of `own` for "as described".
+def material_named(name: str, kind: Kind, own: RectangularPlate | DiscPlate) -> Any:
+    """The material of a name and kind in the library, or that of `own` for "as described".
 
     Raises `InputError` for a name that is not known.
     """
-    return own.substrate if name == OWN else _substrate(name)
-
-
-def ceramic_named(name: str, own: RectangularPlate | DiscPlate) -> Piezoceramic:
-    """The ceramic of a name in the library, or that of `own` for "as described".
-
-    Raises `InputError` for a name that is not known.
-    """
-    return own.ceramic if name == OWN else _ceramic(name)
-
-
-@functools.cache
-def _substrate(name: str) -> ElasticMaterial:
-    return config.load_text(_Substrate, _named(name, "substrate")).part
-
-
-@functools.cache
-def _ceramic(name: str) -> Piezoceramic:
-    return config.load_text(_Ceramic, _named(name, "ceramic")).part
-
-
-def _named(name: str, kind: Kind) -> str:
-    return f'[part]\nmaterial = "{presets.materials.named(name, kind).name}"\n'
+    return getattr(own, kind) if name == OWN else _of_library(name, kind)
 
 
 def require_known(name: str, kind: Kind) -> None:
@@ -183,6 +164,17 @@ class Shape:
                 quantity="lengths",
             )
         return lengths
+
+    def common(
+        self, values: Mapping[str, Setting], own: Body, quality: si.Dimensionless
+    ) -> dict[str, Any]:
+        """Values that the bodies of all shapes have: thickness, quality factor and materials."""
+        return {
+            "thickness": float(values["thickness"]),
+            "quality_factor": quality,
+            "substrate": material_named(str(values["substrate"]), "substrate", own),
+            "ceramic": material_named(str(values["ceramic"]), "ceramic", own),
+        }
 
     def cost_class(self, values: Mapping[str, Setting]) -> int:
         """The highest class of cost of what a design is built from."""

@@ -3,11 +3,8 @@ on. A search that was stopped asks none of them again, and several hosts may wri
 
 from __future__ import annotations
 
-import hashlib
-import json
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import fields
 from pathlib import Path
 from typing import Any, get_args
 
@@ -31,8 +28,8 @@ def asked_hash(requirements: Requirements, level: Level) -> str:
     asked = [
         computed_by(),
         config_hash(requirements.base),
-        to_json(requirements.shapes),
-        to_json(requirements.workspace),
+        requirements.shapes,
+        requirements.workspace,
         requirements.assembly_quality,
         limits.press,
     ]
@@ -43,27 +40,13 @@ def asked_hash(requirements: Requirements, level: Level) -> str:
             limits.least_area is None,
             limits.most_sound_level is None,
         ]
-    text = json.dumps(asked, sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
-def requirements_hash(requirements: Requirements) -> str:
-    """A hash of all that requirements say, limits and objectives, too."""
-    return config_hash(
-        {field.name: getattr(requirements, field.name) for field in fields(requirements)}
-    )
+    return config_hash(asked)[:16]
 
 
 def _made_hash(requirements: Requirements) -> str:
     """A hash of all that plates as made depend on beside the design and its solved numbers."""
-    also = [
-        to_json(requirements.limits),
-        to_json(requirements.tolerances),
-        requirements.objectives,
-        DRAWS,
-    ]
-    text = json.dumps([asked_hash(requirements, "solved"), also], sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+    also = [requirements.limits, requirements.tolerances, requirements.objectives, DRAWS]
+    return config_hash([asked_hash(requirements, "solved"), also])[:16]
 
 
 class DesignStore:

@@ -90,9 +90,9 @@ def learned(
         and solution.design in screened
         and not screened[solution.design].reason
     ]
-    numbers: dict[Design, int] = {}
-    plate = np.array([numbers.setdefault(after.design.plate, len(numbers)) for _, after in pairs])
-    if len(numbers) < LEAST_PLATES:
+    plate = _numbered([after.design.plate for _, after in pairs])
+    plates = np.unique(plate).size
+    if plates < LEAST_PLATES:
         return None
     places = np.array([_features(space, before) for before, _ in pairs])
     fits, errors, raw = {}, {}, {}
@@ -113,7 +113,7 @@ def learned(
             fits[key] = _spline(x, y)
         else:
             errors[key] = raw[key]
-    return Correction(space, fits, errors, raw, len(numbers))
+    return Correction(space, fits, errors, raw, plates)
 
 
 def _spline(x: si.FloatArray, y: si.FloatArray) -> RBFInterpolator:

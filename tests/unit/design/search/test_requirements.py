@@ -10,7 +10,7 @@ from squeezefilm.core import presets
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.design.search.requirements import load_requirements
 from squeezefilm.design.search.sources import shared_sources
-from squeezefilm.design.search.stock import ceramic_named, substrate_named
+from squeezefilm.design.search.stock import material_named
 from squeezefilm.design.search.store import asked_hash
 from squeezefilm.physics.display import DECAY_LENGTH
 
@@ -53,9 +53,9 @@ def test_a_name_that_is_none_is_answered_with_those_there_are() -> None:
 
 def test_materials_are_those_of_the_library_or_of_the_display() -> None:
     own = requirements().own
-    assert substrate_named("as described", own) is own.substrate
-    assert substrate_named("aluminium 6061", own).density == pytest.approx(2700)
-    assert ceramic_named("PZT-5A", own).density == pytest.approx(7750)
+    assert material_named("as described", "substrate", own) is own.substrate
+    assert material_named("aluminium 6061", "substrate", own).density == pytest.approx(2700)
+    assert material_named("PZT-5A", "ceramic", own).density == pytest.approx(7750)
 
 
 def test_a_search_may_be_for_the_mean_of_people() -> None:

@@ -189,16 +189,9 @@ def _ends(values: si.FloatArray, logarithmic: bool) -> tuple[float, float]:
 
 def _axis(axes: Axes, which: str, values: si.FloatArray, label: str) -> None:
     known = values[np.isfinite(values) & (values > 0)]
-    wide = known.size and known.max() > _WIDE * known.min()
-    if which == "x":
-        axes.set_xlabel(label)
-        if wide:
-            axes.set_xscale("log")
-    else:
-        axes.set_ylabel(label)
-        if wide:
-            axes.set_yscale("log")
-    if wide:
+    axes.set(**{f"{which}label": label})
+    if known.size and known.max() > _WIDE * known.min():
+        axes.set(**{f"{which}scale": "log"})
         style.plain_log(axes.xaxis if which == "x" else axes.yaxis)
 
 

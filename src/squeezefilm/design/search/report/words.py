@@ -176,12 +176,7 @@ def many(count: int, word: str) -> str:
 
 def front_head(requirements: Requirements) -> list[str]:
     """The headings of `front_row`, without the name."""
-    objectives = [criterion_of(objective).said for objective in requirements.objectives]
-    return [*objectives, *_others(requirements), "yield"]
-
-
-def _others(requirements: Requirements) -> list[str]:
-    return [CRITERIA[key].said for key in _told(requirements)[len(requirements.objectives) :]]
+    return [*(CRITERIA[key].said for key in _told(requirements)), "yield"]
 
 
 def _told(requirements: Requirements) -> list[str]:
