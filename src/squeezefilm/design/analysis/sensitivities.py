@@ -9,8 +9,7 @@ tolerance that is assumed here.
 from __future__ import annotations
 
 import dataclasses
-import functools
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple
 
@@ -127,13 +126,6 @@ class DisplaySensitivities:
         }
 
 
-class _ChangedValue(NamedTuple):
-    """A value that is varied, and how a display with another one is made."""
-
-    parameter: Parameter
-    make: Callable[[Display, float], Display]
-
-
 @as_drawn()
 def display_sensitivities(
     display: Display, prediction: Prediction, effort: Effort = "quick"
@@ -154,9 +146,8 @@ def display_sensitivities(
     bench = _Bench(display, p, mixture, effort)
     nominal = bench.friction(display, p.mode)
     rows = []
-    for changed in _every(display, mixture):
-        low, high = (bench.shift(changed, value) for value in changed.parameter.drawn(_ENDS))
-        known = changed.parameter
+    for known in _every(display, mixture):
+        low, high = (bench.shift(known.path, value) for value in known.drawn(_ENDS))
         rows.append(
             DisplaySensitivity(
                 known.path, known.nominal, known.unit.symbol, known.origin, known.source, low, high
@@ -166,34 +157,31 @@ def display_sensitivities(
     return DisplaySensitivities(tuple(rows), nominal, effort, bench.model)
 
 
-def _every(display: Display, mixture: Mixture) -> Iterator[_ChangedValue]:
+def _every(display: Display, mixture: Mixture) -> Iterator[Parameter]:
     """Ranges that the interval draws, and usual tolerances of the plate where there are none."""
-    for drawn in mixture.inputs:
-        if isinstance(drawn, Parameter):
-            yield _ChangedValue(drawn, functools.partial(_with, path=drawn.path))
+    yield from (drawn for drawn in mixture.inputs if isinstance(drawn, Parameter))
     if mixture.prediction.voltage is None:
         return
     # Of a calibrated plate, whose amplitude is drawn as a whole, what its own values may be.
     of_plate = uncertain_parameters(display, mixture.prediction.surface.name, driven=True)
     for parameter in of_plate:
         if parameter.path.startswith("actuator.") and parameter.path not in mixture.paths:
-            yield _ChangedValue(parameter, functools.partial(_with, path=parameter.path))
+            yield parameter
     known_paths = {*mixture.paths, *(parameter.path for parameter in of_plate)}
-    given = {path.replace(".0.", ".*.") for path in known_paths}
+    known_paths |= {path.replace(".0.", ".*.") for path in known_paths}
     for path, usual in _USUAL.items():
         try:
             nominal, unit = value_at(display, path)
         except InputError:
             continue
-        if path in given | known_paths:
+        if path in known_paths:
             continue
         reach = usual.either_way * (1 if usual.absolute else abs(nominal))
         spread = Uniform(nominal - reach, nominal + reach)
-        known = Parameter(path, nominal, unit, spread, "assumed", usual.why)
-        yield _ChangedValue(known, functools.partial(_with, path=path))
+        yield Parameter(path, nominal, unit, spread, "assumed", usual.why)
 
 
-def _with(display: Display, value: float, *, path: str) -> Display:
+def _with(display: Display, path: str, value: float) -> Display:
     """The display with another value at a path; ceramics and supports keep to the plate's size."""
     actuator, nominal = display.actuator, value_at(display, path)[0]
     return with_values(display, {path: value, **_along(actuator, path, value / nominal)})
@@ -233,11 +221,10 @@ class _Bench:
                 self.glued = CoarseShifts(actuator, p.mode)
                 self.model += ", with another glue by the solid on its coarse mesh"
 
-    def shift(self, change: _ChangedValue, value: float) -> Shift:
+    def shift(self, path: str, value: float) -> Shift:
         """Effect of one value in the place of the described one."""
-        path = change.parameter.path
         if path.startswith("actuator."):
-            return self._of_plate(change.make(self.display, value), path, value)
+            return self._of_plate(_with(self.display, path, value), path, value)
         try:
             return Shift(value, 0.0, 0.0, self._outcome({path: value}))
         except SqueezefilmError as error:
