@@ -18,13 +18,14 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import NODAL_LINES, require_within
-from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left
+from squeezefilm.core.progress import Deadline, Pace, SayProgress, said_with_time_left
 from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring
-from squeezefilm.design.plate.solved import Hurry, ModeRow, Remarks, SolvedBody
+from squeezefilm.design.plate.solved import ALONE, ModeRow, Remarks, SolvedBody
 from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.plate.beam_response import BeamResponse, beam_response
 from squeezefilm.physics.plate.elements.nodal_lines import line_distance
 from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.solid.forecast import band_seconds, estimated_frequency, solve_size
 from squeezefilm.physics.plate.solid.modes import Label, PlateModes, check_band
 from squeezefilm.physics.plate.solid.resonances import antinode, label_name
 from squeezefilm.physics.plate.solid.response import HarmonicResponse
@@ -33,6 +34,7 @@ from squeezefilm.physics.plate.solid.working import SolidMode, response_frequenc
 from squeezefilm.physics.plate.sound import sound_field
 from squeezefilm.physics.plate.working_mode import solid_working_mode
 from squeezefilm.physics.plausibility.checks import require_plausible
+from squeezefilm.physics.plausibility.expected import expectation
 
 # Estimated error (relative) of the band's modes above which a finer mesh is taken.
 _BESIDE = 3e-3
@@ -178,23 +180,36 @@ def solved_plate(
     teller: _Teller,
 ) -> SolvedPlate:
     """The solves behind `analyze_plate`; those of the last two plates are kept."""
-    tell, hurry = teller.tell, Hurry.of(plate, label, Pace(teller.budget))
+    tell, deadline = teller.tell, _deadline(plate, label, Pace(teller.budget))
     tell(f"mode ({label[0]},{label[1]}) and its response")
     solid = solid_mode(plate, label, pace=Pace(teller.budget, said_with_time_left(tell)))
     frequency, modes = solid.frequency, solid.modes
+    left_out = [modes.coarseness] if modes.coarseness else []
     wanted = band or (0.92 * frequency, 1.08 * frequency)
-    if hurry.allows_band(plate, wanted):
+    if deadline is None or deadline.allows(band_seconds(plate, wanted[1])):
         tell("all modes in the band")
         shares = said_with_time_left(tell)
         modes = solve_modes(
-            plate, band=wanted, tolerance=_BESIDE, deadline=hurry.whole, progress=shares
+            plate, band=wanted, tolerance=_BESIDE, deadline=deadline, progress=shares
         )
-    return SolvedPlate(
-        solid,
-        modes,
-        beam_response(plate),
-        hurry.left_out(solid.modes, modes),
-    )
+    else:
+        left_out.append(ALONE)
+    return SolvedPlate(solid, modes, beam_response(plate), tuple(left_out))
+
+
+def _deadline(plate: RectangularPlate, label: Label, pace: Pace) -> Deadline | None:
+    """Time at which all of a plate's analysis must be there; None without a budget.
+
+    Raises `OutOfTimeError`, with the answer of a closed estimate, where the budget does not allow
+    the coarse meshes.
+    """
+    deadline = pace.deadline()
+    if deadline is None or pace.budget is None:
+        return None
+    size, seen = solve_size(plate, label, estimated_frequency(plate, label)), expectation(plate)
+    instead = "" if seen is None else f". Without a solve: {seen.sentence}."
+    size.require_within(deadline, pace.budget, instead)
+    return deadline
 
 
 @reads_text

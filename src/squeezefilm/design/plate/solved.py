@@ -10,22 +10,12 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.progress import Deadline, Pace
 from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.physics.plate.electronics import ElectricalLoad, electrical_load
-from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.solid.forecast import (
-    SolveSize,
-    band_seconds,
-    estimated_frequency,
-    solve_size,
-)
-from squeezefilm.physics.plate.solid.modes import Label, PlateModes
 from squeezefilm.physics.plate.sound import SoundField
 from squeezefilm.physics.plate.working_mode import WorkingMode
-from squeezefilm.physics.plausibility.expected import expectation
 
 if TYPE_CHECKING:
     from squeezefilm.physics.plate.warming import Warming
@@ -202,39 +192,3 @@ def half_power(frequency: si.FloatArray, amplitude: si.FloatArray) -> tuple[floa
         share = (level - amplitude[low]) / (amplitude[high] - amplitude[low])
         edges.append(float(frequency[low] + share * (frequency[high] - frequency[low])))
     return edges[0], edges[1]
-
-
-@dataclass(frozen=True)
-class Hurry:
-    """The deadlines of the parts, None where there is no budget: the working mode's leaves time for
-    its response, and the band takes what these two leave."""
-
-    size: SolveSize | None = None
-    whole: Deadline | None = None
-
-    @classmethod
-    def of(cls, plate: RectangularPlate, label: Label, pace: Pace) -> Hurry:
-        """Time that a pace leaves for each part of a plate's analysis.
-
-        Raises `OutOfTimeError`, with the answer of a closed estimate, where the budget does not
-        allow the coarse meshes.
-        """
-        whole = pace.deadline()
-        if whole is None or pace.budget is None:
-            return cls()
-        size = solve_size(plate, label, estimated_frequency(plate, label))
-        seen = expectation(plate)
-        instead = "" if seen is None else f". Without a solve: {seen.sentence}."
-        size.require_within(whole, pace.budget, instead)
-        return cls(size, whole)
-
-    def allows_band(self, plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> bool:
-        """True where modes of a band (Hz, Hz) can be looked for, on the coarse meshes at least."""
-        return self.whole is None or self.whole.allows(band_seconds(plate, band[1]))
-
-    def left_out(self, alone: PlateModes, modes: PlateModes) -> tuple[str, ...]:
-        """Sentences on what the budget left out of the working mode and the band's modes."""
-        said = [alone.coarseness] if alone.coarseness else []
-        if self.whole is not None and modes is alone:
-            said.append(ALONE)
-        return tuple(said)

@@ -5,14 +5,13 @@ from tests.verification.random_plates import random_plate
 
 from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.progress import Pace
-from squeezefilm.design.plate.command import solve_plate
-from squeezefilm.design.plate.solved import Hurry
+from squeezefilm.design.plate.command import _deadline, solve_plate
 from squeezefilm.physics.chain.free_vibration import chosen_mode
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid import mesh
-from squeezefilm.physics.plate.solid.forecast import solve_size
+from squeezefilm.physics.plate.solid.forecast import band_seconds, solve_size
 from squeezefilm.physics.plate.solid.layers import COARSE, NORMAL
 from squeezefilm.physics.plate.solid.modes import COARSE_AMPLITUDE_ERROR, COARSE_ERROR
 from squeezefilm.physics.plate.solid.working import solid_mode
@@ -99,11 +98,12 @@ def test_a_plates_analysis_within_a_budget(display: Display) -> None:
         solve_plate(display, budget=1e-3)
     plate = plate_of(display)
     label = plate.working_label
-    none = Hurry.of(plate, label, Pace())
-    assert none.allows_band(plate, (30e3, 36e3))
-    rich, poor = Hurry.of(plate, label, frozen(1e6)), Hurry.of(plate, label, just_coarse(plate))
-    assert rich.allows_band(plate, (30e3, 36e3))
-    assert not poor.allows_band(plate, (30e3, 36e3))
+    assert _deadline(plate, label, Pace()) is None
+    seconds = band_seconds(plate, 36e3)
+    for budget, enough in ((frozen(1e6), True), (just_coarse(plate), False)):
+        deadline = _deadline(plate, label, budget)
+        assert deadline is not None
+        assert deadline.allows(seconds) == enough
 
 
 @pytest.mark.slow
