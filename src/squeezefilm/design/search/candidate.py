@@ -155,30 +155,31 @@ def evaluate(requirements: Requirements, design: Design, level: Level) -> Evalua
     try:
         with in_passing(), warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            if level == "screened":
-                display = display_of(requirements, design)
-                prediction, numbers = None, screened(requirements, display, design)
+            if level == "solved":
+                answer = _solved(requirements, sourced_display_of(requirements, design), design)
             else:
-                display = sourced_display_of(requirements, design)
-                prediction = predict(display)
-                numbers = _judged(requirements, display, prediction, design)
-                numbers |= numbers_of_solved(requirements, display, prediction)
+                numbers = screened(requirements, display_of(requirements, design), design)
+                answer = Evaluated(design, level, numbers, breaches(numbers, requirements.limits))
     except SqueezefilmError as error:
-        return Evaluated(design, level, {}, reason=str(error), seconds=_since(began))
+        answer = Evaluated(design, level, {}, reason=str(error))
     except Exception as error:
         # One design of thousands: a fault of ours is told, and the others are not lost.
         reason = f"not foreseen: {type(error).__name__}: {error}"
-        return Evaluated(design, level, {}, reason=reason, seconds=_since(began), lasting=False)
-    if prediction is not None and not prediction.mode.has_shape:
-        return Evaluated(design, level, {}, reason=prediction.objections[-1], seconds=_since(began))
-    return Evaluated(
-        design,
-        level,
-        numbers,
-        breaches(numbers, requirements.limits),
-        seconds=_since(began),
-        warnings=() if prediction is None else prediction.warnings,
-    )
+        answer = Evaluated(design, level, {}, reason=reason, lasting=False)
+    return replace(answer, seconds=time.perf_counter() - began)
+
+
+def _solved(
+    requirements: Requirements, display: Display, design: Design, voltage: si.Volt | None = None
+) -> Evaluated:
+    """Result of a design's display solved in three dimensions, at a voltage if not its own."""
+    prediction = predict(display, voltage=voltage)
+    if not prediction.mode.has_shape:
+        return Evaluated(design, "solved", {}, reason=prediction.objections[-1])
+    numbers = _judged(requirements, display, prediction, design)
+    numbers |= numbers_of_solved(requirements, display, prediction)
+    broken = breaches(numbers, requirements.limits)
+    return Evaluated(design, "solved", numbers, broken, warnings=prediction.warnings)
 
 
 def evaluate_all(
@@ -224,12 +225,10 @@ def rough_frequency(requirements: Requirements, design: Design) -> si.Hertz:
 def _judged(
     requirements: Requirements, display: Display, prediction: Prediction, design: Design
 ) -> dict[str, float]:
-    cost = requirements.shapes[design.shape].cost_class(design.settings)
+    # Nobody says what a display is built from that nobody chose.
+    shape = requirements.shapes[design.shape]
+    cost = shape.cost_class(design.settings) if design.values else None
     return numbers_of_prediction(requirements, display, prediction, cost)
-
-
-def _since(began: float) -> si.Second:
-    return time.perf_counter() - began
 
 
 _NOT_CHOSEN = Design(0, ())
@@ -255,16 +254,6 @@ def reference_of(requirements: Requirements) -> Evaluated:
         provenance=shared_sources(requirements) | of_body,
     )
     try:
-        prediction = predict(display, voltage=requirements.drive.voltage)
-        if not prediction.mode.has_shape:
-            return _not_judged(prediction.objections[-1])
-        numbers = numbers_of_prediction(requirements, display, prediction)
-        numbers |= numbers_of_solved(requirements, display, prediction)
+        return _solved(requirements, display, _NOT_CHOSEN, requirements.drive.voltage)
     except SqueezefilmError as error:
-        return _not_judged(str(error))
-    del numbers["cost"]
-    return Evaluated(_NOT_CHOSEN, "solved", numbers, breaches(numbers, requirements.limits))
-
-
-def _not_judged(reason: str) -> Evaluated:
-    return Evaluated(_NOT_CHOSEN, "solved", {}, reason=reason)
+        return Evaluated(_NOT_CHOSEN, "solved", {}, reason=str(error))

@@ -180,7 +180,7 @@ def excess_of(criterion: Criterion, value: float, bound: float) -> float:
 
 
 def numbers_of_prediction(
-    requirements: Requirements, display: Display, p: Prediction, cost: int = 1
+    requirements: Requirements, display: Display, p: Prediction, cost: int | None = None
 ) -> dict[str, float]:
     """The criteria that any prediction tells, of a beam as of a solved plate (SI)."""
     actuator = display.actuator
@@ -198,8 +198,9 @@ def numbers_of_prediction(
         "total_thickness": sum(layer.thickness for layer in section.layers),
         "deflection": _deflection(requirements, display, p, section),
         "stress": _stress(actuator, p, section, free),
-        "cost": float(cost),
     }
+    if cost is not None:
+        numbers["cost"] = float(cost)
     if p.heat is not None:
         numbers["power"] = p.heat.cold_power
         numbers["temperature_rise"] = p.heat.tracked.temperature_rise
