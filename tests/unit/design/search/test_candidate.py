@@ -82,7 +82,7 @@ def test_what_is_solved_has_its_sources_more_numbers_and_warnings(
     predicted.numbers["temperature_rise"] = 75.0
     found = evaluate(WANTED, DESIGN, "solved")
     ((display, how),) = predicted.asked
-    assert how == {}
+    assert how == {"voltage": None}
     assert "actuator.thickness" in display.provenance
     assert found.numbers["area"] == 0.9
     assert found.warnings == ("it warms",)
