@@ -11,13 +11,14 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, NamedTuple
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.distributions import Uniform
 from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.results import Result
 from squeezefilm.design.analysis.coarse_shift import CoarseShifts
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.touch import TOLERANCE
@@ -106,24 +107,16 @@ class DisplaySensitivity:
 
 
 @dataclass(frozen=True)
-class DisplaySensitivities:
+class DisplaySensitivities(Result):
     """All rows, what changes the friction most first and what is not known last;
     `relative_friction` is that as described, by the model that rows are made with, `plate_model`
     what made the shifts of a changed plate."""
 
-    rows: tuple[DisplaySensitivity, ...]
     relative_friction: si.Dimensionless
     effort: Effort
     plate_model: str
-
-    def summary(self) -> dict[str, Any]:
-        """Numbers as plain JSON values."""
-        return {
-            "relative_friction": self.relative_friction,
-            "effort": self.effort,
-            "plate_model": self.plate_model,
-            "rows": [dataclasses.asdict(row) for row in self.rows],
-        }
+    rows: tuple[DisplaySensitivity, ...]
+    _shown: ClassVar[str] = "relative_friction effort plate_model"
 
 
 @as_drawn()
@@ -154,7 +147,7 @@ def display_sensitivities(
             )
         )
     rows.sort(key=lambda row: (not row.known, -row.friction_change))
-    return DisplaySensitivities(tuple(rows), nominal, effort, bench.model)
+    return DisplaySensitivities(nominal, effort, bench.model, tuple(rows))
 
 
 def _every(display: Display, mixture: Mixture) -> Iterator[Parameter]:

@@ -107,9 +107,8 @@ def test_what_moves_most_stands_first_and_what_is_not_known_last() -> None:
         ]
         return DisplaySensitivity(path, 1.5e-3, "m", "assumed", "a guess", ends[0], ends[1])
 
-    found = DisplaySensitivities(
-        (row("a", 0.0, 0.1), row("b", 0.1, 0.0), row("c", None, 0.0)), 0.3, "quick", "a beam"
-    )
+    rows = (row("a", 0.0, 0.1), row("b", 0.1, 0.0), row("c", None, 0.0))
+    found = DisplaySensitivities(0.3, "quick", "a beam", rows)
     assert sensitivity_rows(found) == [
         ["b", "1 mm to 2 mm", "−10 %, +10 %", "–", "0.30, 0.30", "assumed"],
         ["a", "1 mm to 2 mm", "–", "–", "0.20, 0.40", "assumed"],
