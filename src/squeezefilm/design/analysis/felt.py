@@ -291,9 +291,15 @@ def _felt_of(
     pad = draw.display.finger.fingerpad
     periods = []
     for speed, row in zip(speeds, friction, strict=True):
-        known = functools.partial(np.interp, xp=knots, fp=row)
+        known = functools.partial(_tabulated, knots=knots, row=row)
         periods.append(_finest(senses, tau, high, known, Rubbed(base, pad, speed)))
     return periods
+
+
+def _tabulated(
+    amplitude: si.MetreArray, knots: si.MetreArray, row: si.DimensionlessArray
+) -> si.DimensionlessArray:
+    return np.asarray(np.interp(amplitude, knots, row))
 
 
 def _known(value: si.Metre) -> si.Metre | None:
