@@ -16,7 +16,6 @@ from squeezefilm.design.fabrication.report.sheet_parts import (
     Sheet,
     finished,
     scale_for,
-    tolerance_said,
 )
 from squeezefilm.design.fabrication.wiring import ANTIPHASE, Electrode
 from squeezefilm.physics.plate.layout import RectangularPlate
@@ -42,11 +41,11 @@ def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     top = VIEWS[3] - _ABOVE
     # Seen from below, y runs down the sheet.
     sign = -1.0 if below else 1.0
-    sheet = Sheet(scale, (_MIDDLE - size_x / 2, top if below else top - size_y))
+    sheet = Sheet(made.display, scale, (_MIDDLE - size_x / 2, top if below else top - size_y))
     cut = best_cut(made.parts)
     _plan(sheet, made, plate, face, sign)
     _cut_marks(sheet, plate, cut, sign)
-    whole = _dimensions(sheet, made, plate, sign)
+    whole = _dimensions(sheet, plate, sign)
     low = top - size_y - 34.0
     extra = section_view(sheet, made, made.parts, _MIDDLE, low, _keys_of_thickness(plate))
     said = [*_said(plate, face, whole), *extra, *common]
@@ -148,25 +147,16 @@ def _cut_marks(sheet: Sheet, plate: RectangularPlate, cut: Cut, sign: float) -> 
         sheet.write("A", *paper, NUMBER, "middle")
 
 
-def _dimensions(sheet: Sheet, made: Fabrication, plate: RectangularPlate, sign: float) -> bool:
+def _dimensions(sheet: Sheet, plate: RectangularPlate, sign: float) -> bool:
     """Sizes of plate and first ceramic, places of all of them; whether all places have a number."""
-
-    def tolerance(path: str) -> str:
-        return tolerance_said(made.display, path)
-
     low, high = min(0.0, sign * plate.width), max(0.0, sign * plate.width)
-    key = "actuator.length"
-    sheet.across(0.0, plate.length, high, 17.0, value_of=key, suffix=tolerance(key))
-    key = "actuator.width"
-    sheet.upright(low, high, 0.0, -17.0, value_of=key, suffix=tolerance(key), beside=False)
+    sheet.across(0.0, plate.length, high, 17.0, "actuator.length")
+    sheet.upright(low, high, 0.0, -17.0, "actuator.width")
     first, path = plate.patches[0], "actuator.patches.0"
-    edge = high
-    key = f"{path}.length"
-    sheet.across(first.x, first.x + first.length, edge, 9.5, value_of=key, suffix=tolerance(key))
+    sheet.across(first.x, first.x + first.length, high, 9.5, f"{path}.length")
     if first.width < plate.width - 1e-9:
         low_y, high_y = sorted((sign * first.y, sign * (first.y + first.width)))
-        key = f"{path}.width"
-        sheet.upright(low_y, high_y, 0.0, -8.0, value_of=key, suffix=tolerance(key))
+        sheet.upright(low_y, high_y, 0.0, -8.0, f"{path}.width")
     patches = list(enumerate(plate.patches))
     x = {patch.x: (patch.x, patch.x, f"actuator.patches.{n}.x") for n, patch in reversed(patches)}
     y = {

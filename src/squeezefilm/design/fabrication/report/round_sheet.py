@@ -16,7 +16,6 @@ from squeezefilm.design.fabrication.report.sheet_parts import (
     Sheet,
     finished,
     scale_for,
-    tolerance_said,
 )
 from squeezefilm.design.fabrication.wiring import Electrode
 from squeezefilm.physics.plate.layout import AnnularStator, DiscPlate
@@ -39,7 +38,7 @@ def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     outer = shape.outer_radius
     scale = scale_for(2 * outer, 2 * outer, _ROOM)
     reach = 1e3 * scale * outer
-    sheet = Sheet(scale, (_MIDDLE, VIEWS[3] - _ABOVE - reach))
+    sheet = Sheet(made.display, scale, (_MIDDLE, VIEWS[3] - _ABOVE - reach))
     _plan(sheet, made, shape)
     lines = _diameters(actuator)
     for number, (diameter, key, prefix) in enumerate(lines):
@@ -47,13 +46,12 @@ def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
         # From where it leaves the body, so that its lines cross nothing.
         rim = -math.sqrt(max(outer**2 - half**2, 0.0))
         away = -(reach + 8.0 + 7.0 * number) - rim / sheet.unit
-        key_said = tolerance_said(made.display, key)
-        sheet.across(-half, half, rim, away, value_of=key, prefix=prefix, suffix=key_said)
+        sheet.across(-half, half, rim, away, key, prefix=prefix)
     if isinstance(actuator, AnnularStator):
         ends = shape.inner_radius, shape.outer_radius
         rim = math.sqrt(outer**2 - ends[0] ** 2)
         away = reach + 8.0 - rim / sheet.unit
-        sheet.across(*ends, rim, away, y_to=0.0, value_of="actuator.radial_width")
+        sheet.across(*ends, rim, away, "actuator.radial_width", y_to=0.0)
     # Of the teeth one stands for all of them.
     teeth = [part for part in made.parts if part.kind == "substrate"][1:]
     shown = [part for part in made.parts if part not in teeth[1:]]

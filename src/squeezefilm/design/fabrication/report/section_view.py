@@ -122,8 +122,8 @@ def section_view(
             height(part.top),
             where,
             away + (right - where) / sheet.unit,
+            key,
             stretch=stretch,
-            value_of=key,
             suffix=f"{_what(part)}{tolerance}",
             beside=True,
         )

@@ -77,12 +77,14 @@ def scale_for(width: si.Metre, height: si.Metre, room: tuple[float, float]) -> s
 
 @dataclass
 class Sheet:
-    """A drawing as it is composed: `scale` is paper over thing; places on paper are in millimetres
-    from its lower left corner, and `origin` is where the thing's own (0, 0) lies there. Boxes that
-    are `kept_free` (left, bottom, right, top in m) are not crossed by lines that are `interrupted`.
+    """A drawing of a `display` as it is composed: `scale` is paper over thing; places on paper are
+    in millimetres from its lower left corner, and `origin` is where the thing's own (0, 0) lies
+    there. Boxes that are `kept_free` (left, bottom, right, top in m) are not crossed by lines that
+    are `interrupted`.
     The views end at `lowest` (mm), `noted` is what the notes say.
     """
 
+    display: Display
     scale: float
     origin: tuple[float, float]
     items: list[Item] = field(default_factory=list)
@@ -161,16 +163,16 @@ class Sheet:
         x_to: si.Metre,
         y: si.Metre,
         away: float,
+        key: str,
         *,
         y_to: si.Metre | None = None,
-        value_of: str = "",
         prefix: str = "",
-        suffix: str = "",
     ) -> None:
         """A horizontal dimension of two places of the thing at a height (m; the second may be at
         another), its line so many millimetres of paper `away` from it, above where that is
-        positive. Its number stands over the line, or where it is wider than that, at its right."""
-        size = NUMBER * self.unit
+        positive. `key` is that of the description, which may state a tolerance. Its number
+        stands over the line, or where it is wider than that, at its right."""
+        size, suffix = NUMBER * self.unit, tolerance_said(self.display, key)
         at, said = y + away * self.unit, f"{prefix}{millimetres(abs(x_to - x_from))}{suffix}"
         width, extent = len(said) * LETTER * size, abs(x_to - x_from)
         text_x, text_y = (x_from + x_to) / 2, at + 0.9 * size
@@ -181,7 +183,7 @@ class Sheet:
         self.add(
             Dimension(
                 *ends, at, text_x, text_y, size,
-                prefix=prefix, suffix=suffix, value_of=value_of,
+                prefix=prefix, suffix=suffix, value_of=key,
             )
         )  # fmt: skip
 
@@ -191,17 +193,19 @@ class Sheet:
         y_to: si.Metre,
         x: si.Metre,
         away: float,
+        key: str,
         *,
         stretch: float = 1.0,
-        value_of: str = "",
-        suffix: str = "",
+        suffix: str | None = None,
         beside: bool = False,
     ) -> None:
         """A vertical dimension of two places of the thing at an x (m), its line so many millimetres
-        of paper `away`, to the right where that is positive. Its number stands across the line on
+        of paper `away`, to the right where that is positive; `key` as of `across`, a `suffix` in
+        place of its tolerance. Its number stands across the line on
         the far side of it: `beside` it, or above its upper end where it is short."""
         size = NUMBER * self.unit
         at = x + away * self.unit
+        suffix = tolerance_said(self.display, key) if suffix is None else suffix
         said = f"{millimetres(abs(y_to - y_from) / stretch)}{suffix}"
         half = len(said) * LETTER * size / 2
         text_x = at + (half + 0.6 * size) * (1 if away > 0 else -1)
@@ -211,7 +215,7 @@ class Sheet:
         self.add(
             Dimension(
                 x, y_from, x, y_to, at, text_x, text_y, size, upright=True,
-                stretch=stretch, suffix=suffix, value_of=value_of,
+                stretch=stretch, suffix=suffix, value_of=key,
             )
         )  # fmt: skip
 

@@ -290,7 +290,7 @@ def test_scales_are_usual_ones() -> None:
 
 
 def test_a_table_that_is_too_long_says_what_is_left_out() -> None:
-    sheet = Sheet(1.0, (0.0, 0.0))
+    sheet = Sheet(sf.load_display("biet2008-plate"), 1.0, (0.0, 0.0))
     rows = [(f"{k}", "x" * 500) for k in range(200)]
     assert table(sheet, ("No.", "Long"), rows, 280.0, 180.0) > 150.0
     texts = [one.text for one in sheet.items if isinstance(one, Text)]
