@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
@@ -12,18 +11,16 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp, to_json
-from squeezefilm.design.fabrication.test_plan import TestStep, test_plan
+from squeezefilm.design.fabrication.test_plan import BenchFacts, TestStep, test_plan
 from squeezefilm.design.fabrication.wiring import (
     BillRow,
     Electrode,
-    NodalLines,
     bill_of,
     electrodes_of,
     nodal_lines_of,
 )
 from squeezefilm.measure.calibration.blind import (
     BlindPrediction,
-    Predicted,
     load_prediction,
     predicted,
 )
@@ -32,9 +29,9 @@ from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display, NamedDisplay
-from squeezefilm.physics.plate.electronics import ElectricalLoad, load_of_mode
+from squeezefilm.physics.plate.electronics import load_of_mode
 from squeezefilm.physics.plate.layout import AnnularStator, RectangularPlate
-from squeezefilm.physics.plate.parts import Part, parts_of
+from squeezefilm.physics.plate.parts import parts_of
 from squeezefilm.physics.uncertainty.parameters import Parameter
 from squeezefilm.physics.uncertainty.uncertainty import (
     SAMPLES,
@@ -57,8 +54,8 @@ SHARES = (0.5, 1.0)
 """The amplitudes, over that of the display under its finger, at which µ′/µ is predicted."""
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Fabrication(Result):
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Fabrication(BenchFacts, Result):
     """Everything that a workshop and a bench are told of a display.
 
     `parts` are its solid bodies, `bill` what is bought or cut, `blind` what is expected of the
@@ -67,14 +64,8 @@ class Fabrication(Result):
     """
 
     display: Display
-    prediction: Prediction
-    uncertainty: UncertainFriction | None
-    parts: tuple[Part, ...]
     electrodes: tuple[Electrode, ...]
     bill: tuple[BillRow, ...]
-    nodal: NodalLines
-    load: ElectricalLoad | None
-    blind: BlindPrediction | None
     drawn: tuple[Parameter, ...]
     no_intervals: str = ""
     _shown: ClassVar[str] = (
@@ -82,20 +73,10 @@ class Fabrication(Result):
         "prediction.relative_friction"
     )
 
-    @property
-    def mass(self) -> float:
-        """Mass of all bodies together (kg)."""
-        return math.fsum(part.mass for part in self.parts)
-
     @functools.cached_property
     def steps(self) -> tuple[TestStep, ...]:
         """Plan of the bench."""
         return test_plan(self)
-
-    @property
-    def expected(self) -> tuple[Predicted, ...]:
-        """The numbers of `blind`; none without it."""
-        return () if self.blind is None else self.blind.predictions
 
     def summary(self) -> dict[str, Any]:
         """The numbers as plain JSON values, units in the keys."""
