@@ -133,9 +133,10 @@ NOT_CALLED = {
     physics.plate.elements.cross_section.cross_section
     physics.plate.solid.coarse_modes.open_values
     physics.plate.solid.coarse_modes.shunted_frequencies
-    physics.plate.solid.refined_modes.extrapolated_class physics.plate.elements.krylov.modes_below
-    physics.plate.elements.krylov.modes_near physics.plate.elements.krylov.prolonged
-    physics.plate.elements.krylov.with_open_electrodes physics.plate.elements.lobatto.LineMesh
+    physics.plate.solid.refined_modes.extrapolated_class
+    physics.plate.elements.slab_modes.modes_below
+    physics.plate.elements.slab_modes.modes_near physics.plate.elements.slab_modes.prolonged
+    physics.plate.elements.slab_modes.with_open_electrodes physics.plate.elements.lobatto.LineMesh
     physics.plate.elements.lobatto.LineMesh.interpolation
     physics.plate.elements.lobatto.LineMesh.located physics.plate.elements.lobatto.hierarchic_values
     physics.plate.elements.lobatto.lagrange_basis physics.plate.elements.lobatto.line_matrices
@@ -154,7 +155,7 @@ NOT_CALLED = {
     physics.plate.solid.modes.label_of physics.plate.elements.nodal_lines.profiles
     physics.plate.solid.modes.surface_shapes physics.plate.elements.nodal_lines.zero_crossings
     physics.plate.solid.symmetry.mirror_map physics.plate.solid.reduced.ReducedClass
-    physics.plate.solid.reduced.harmonic_solution physics.plate.elements.krylov.orthonormal
+    physics.plate.solid.reduced.harmonic_solution physics.plate.elements.slab_modes.orthonormal
     physics.plate.elements.box_model.require_half_wave physics.plate.solid.reduced.reduced_class
     physics.plate.solid.reduced.resolved_frequency physics.plate.solid.reduced.reduced_model
     physics.plate.solid.solve.solve_for_response physics.plate.solid.reduced.surface_values
@@ -164,7 +165,7 @@ NOT_CALLED = {
     physics.plate.elements.nodal_lines.line_counts physics.plate.elements.nodal_lines.largest_lobe
     physics.plate.beam_modes.scaled_mode physics.plate.beam_modes.wave_numbers
     physics.plate.beam_pieces.pieced_beam_mode
-    physics.plate.elements.slab_factor.SlabFactor physics.plate.elements.slabs.Slabs.grid
+    physics.plate.elements.slab_modes.SlabFactor physics.plate.elements.slabs.Slabs.grid
     physics.plate.elements.slabs.Slabs.mass_times
     physics.plate.elements.slabs.Slabs.places physics.plate.elements.slabs.Slabs.stiffness_times
     physics.plate.elements.slabs.Slabs.weighted_sections physics.render.opcodes.Assembler.emit

@@ -17,8 +17,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.blas_threads import one_blas_thread
-from squeezefilm.physics.plate.elements.krylov import modes_near, prolonged
-from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slab_modes import SlabFactor, modes_near, prolonged
 from squeezefilm.physics.plate.solid.coarse_modes import coarse_modes, open_values
 from squeezefilm.physics.plate.solid.mesh import plate_model
 from squeezefilm.physics.plate.solid.refined_modes import (

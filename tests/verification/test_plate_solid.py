@@ -16,7 +16,7 @@ from squeezefilm.core.errors import ContradictionError, GeometryError, InputErro
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic, PiezoConstants
 from squeezefilm.core.presets import path as preset_path
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slab_modes import SlabFactor
 from squeezefilm.physics.plate.elements.slabs import Slabs
 from squeezefilm.physics.plate.layout import (
     CeramicPatch,
@@ -245,7 +245,7 @@ def test_classes_of_symmetry_together_are_the_whole_plate() -> None:
     shift = (2 * np.pi * 17e3) ** 2
 
     def found(parity: tuple[object, object], count: int) -> list[float]:
-        from squeezefilm.physics.plate.elements.krylov import modes_near
+        from squeezefilm.physics.plate.elements.slab_modes import modes_near
 
         slabs = Slabs(plate_model(plate, 30e3, COARSE, parity).model)  # type: ignore[arg-type]
         start = np.random.default_rng(0).standard_normal((slabs.unknowns, 4))

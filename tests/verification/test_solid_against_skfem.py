@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.physics.plate.elements.box_model import BoxModel, Medium, ModelElectrode
-from squeezefilm.physics.plate.elements.krylov import modes_near
 from squeezefilm.physics.plate.elements.lobatto import LineMesh
-from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slab_modes import SlabFactor, modes_near
 from squeezefilm.physics.plate.elements.slabs import Slabs
 
 from .test_solid_elements import STEEL, monomorph_on_a_uniform_mesh, pzt_5a

@@ -14,9 +14,13 @@ from squeezefilm.physics.plate.elements.box_model import (
     Medium,
     ModelElectrode,
 )
-from squeezefilm.physics.plate.elements.krylov import modes_below, modes_near, with_open_electrodes
 from squeezefilm.physics.plate.elements.lobatto import LineMesh
-from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slab_modes import (
+    SlabFactor,
+    modes_below,
+    modes_near,
+    with_open_electrodes,
+)
 from squeezefilm.physics.plate.elements.slabs import Slabs
 
 FREE: tuple[EndCondition, ...] = ("free", "free", "free", "free")

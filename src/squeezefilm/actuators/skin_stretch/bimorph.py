@@ -27,9 +27,8 @@ from squeezefilm.physics.plate.elements.box_model import (
     isotropic_solid,
     piezoceramic_solid,
 )
-from squeezefilm.physics.plate.elements.krylov import modes_near
 from squeezefilm.physics.plate.elements.lobatto import LineMesh, gauss_points
-from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slab_modes import SlabFactor, modes_near
 from squeezefilm.physics.plate.elements.slabs import Slabs
 
 Wiring = Literal["parallel", "series"]

@@ -15,8 +15,12 @@ from scipy.linalg import eig
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.core.hard_limits import BAND_MODES, require_within
-from squeezefilm.physics.plate.elements.krylov import modes_below, modes_near, with_open_electrodes
-from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slab_modes import (
+    SlabFactor,
+    modes_below,
+    modes_near,
+    with_open_electrodes,
+)
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.layers import COARSE
 from squeezefilm.physics.plate.solid.mesh import plate_model

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.plate.elements.krylov import orthonormal
-from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slab_modes import SlabFactor, orthonormal
 from squeezefilm.physics.plate.elements.slabs import Slabs
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.layers import NORMAL, Resolution

@@ -11,8 +11,12 @@ from scipy.linalg import eigh
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import Deadline
-from squeezefilm.physics.plate.elements.krylov import modes_near, orthonormal, prolonged
-from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slab_modes import (
+    SlabFactor,
+    modes_near,
+    orthonormal,
+    prolonged,
+)
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.coarse_modes import (
     CoarseModes,

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import ConvergenceError
-from squeezefilm.physics.plate.elements import krylov
-from squeezefilm.physics.plate.elements.krylov import modes_near
+from squeezefilm.physics.plate.elements import slab_modes
+from squeezefilm.physics.plate.elements.slab_modes import modes_near
 
 VALUES = np.arange(1.0, 201.0)
 MASS = np.linspace(1.0, 3.0, 200)
@@ -64,7 +64,7 @@ def test_where_none_is_wanted_there_is_none() -> None:
 
 
 def test_one_that_does_not_settle_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(krylov, "_MOST_STEPS", 3)
+    monkeypatch.setattr(slab_modes, "_MOST_STEPS", 3)
     with pytest.raises(ConvergenceError, match="did not converge in 3 steps; ask for a narrower"):
         modes_near(SLABS, solve_about(20.3), 20.3, between(5.5, 35.5), START, tolerance=1e-14)
 

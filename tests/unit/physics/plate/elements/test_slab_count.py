@@ -16,8 +16,7 @@ from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.elements import slabs
 from squeezefilm.physics.plate.elements.box_model import BoxModel
 from squeezefilm.physics.plate.elements.cross_section import CrossSection
-from squeezefilm.physics.plate.elements.krylov import modes_near
-from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slab_modes import SlabFactor, modes_near
 from squeezefilm.physics.plate.layout import CeramicPatch, GlueLayer, RectangularPlate
 from squeezefilm.physics.plate.solid.layers import COARSE, FINE, NORMAL, Resolution
 from squeezefilm.physics.plate.solid.mesh import plate_model

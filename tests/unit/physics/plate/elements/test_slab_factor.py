@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.verification.random_plates import random_plate
 
-from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slab_modes import SlabFactor
 from squeezefilm.physics.plate.solid.layers import COARSE
 from squeezefilm.physics.plate.solid.mesh import plate_model
 from squeezefilm.physics.plate.solid.symmetry import all_classes

@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
-from squeezefilm.physics.plate.elements.krylov import modes_near, with_open_electrodes
-from squeezefilm.physics.plate.elements.slab_factor import SlabFactor
+from squeezefilm.physics.plate.elements.slab_modes import (
+    SlabFactor,
+    modes_near,
+    with_open_electrodes,
+)
 from squeezefilm.physics.plate.layout import CeramicPatch, RectangularPlate
 from squeezefilm.physics.plate.solid.coarse_modes import (
     CoarseModes,
