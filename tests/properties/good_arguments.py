@@ -252,7 +252,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "frequency": np.array([30e3]),
         "position": WAYS,
     },
-    "physics.plate.ring.response.ring_response": {
+    "physics.plate.ring.body.ring_response": {
         "frequencies": np.array([30e3]),
         "harmonics": (0,),
     },

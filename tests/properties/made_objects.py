@@ -54,10 +54,16 @@ from squeezefilm.physics.plate.heat_states import HeatSource
 from squeezefilm.physics.plate.laminate import Laminate, LaminateLayer, plate_laminate
 from squeezefilm.physics.plate.layout import Actuator, CeramicPatch, DiscPlate, RectangularPlate
 from squeezefilm.physics.plate.loaded_mode import LoadedMode
-from squeezefilm.physics.plate.ring.body import RingBody, StatorAssumptions, StatorFit, fit_stator
+from squeezefilm.physics.plate.ring.body import (
+    RingBody,
+    RingResponse,
+    StatorAssumptions,
+    StatorFit,
+    fit_stator,
+    ring_response,
+)
 from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc
 from squeezefilm.physics.plate.ring.modes import AnnularMode, bending_mode
-from squeezefilm.physics.plate.ring.response import RingResponse, ring_response
 from squeezefilm.physics.plate.ring.section import (
     AnnularSection,
     RingLayer,

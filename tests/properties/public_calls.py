@@ -71,7 +71,7 @@ NOT_CALLED = {
     physics.plate.solid.response.HarmonicResponse physics.plate.thermal.ThermalBody
     physics.plate.warming.Warming physics.plate.heat_states.WarmState
     physics.plate.solid.volume.PlateVolume physics.plate.beam_response.BeamResponse
-    physics.plate.ring.body.RingBody physics.plate.ring.response.RingResponse
+    physics.plate.ring.body.RingBody physics.plate.ring.body.RingResponse
     physics.plate.solid.working.SolidMode physics.plate.sound.ExposureGuidance
     physics.plate.sound.SoundField physics.plate.working_mode.ModeLine
     physics.plate.working_mode.WorkingMode physics.plate.surface_shape.BeamSurface

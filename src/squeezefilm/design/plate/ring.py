@@ -21,17 +21,15 @@ from squeezefilm.physics.plate.layout import AnnularStator, DiscPlate
 from squeezefilm.physics.plate.ring.body import (
     Direction,
     RingBody,
+    RingResponse,
     half_wavelength_of,
     nodal_circles,
     ring_body,
-)
-from squeezefilm.physics.plate.ring.modes import DEFAULT_DEGREE, AnnularMode, annular_modes
-from squeezefilm.physics.plate.ring.response import (
-    RingResponse,
     ring_circuit,
     ring_response,
     static_capacitance,
 )
+from squeezefilm.physics.plate.ring.modes import DEFAULT_DEGREE, AnnularMode, annular_modes
 from squeezefilm.physics.plate.solid.modes import check_band
 from squeezefilm.physics.plate.sound import SoundField, ring_surface, sound_field
 from squeezefilm.physics.plate.working_mode import ring_working_mode

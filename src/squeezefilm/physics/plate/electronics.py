@@ -17,9 +17,8 @@ from squeezefilm.physics.plate.circuit import (
     with_static_capacitance,
 )
 from squeezefilm.physics.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
-from squeezefilm.physics.plate.ring.body import RingBody, ring_body
+from squeezefilm.physics.plate.ring.body import RingBody, modal_circuit, ring_body
 from squeezefilm.physics.plate.ring.modes import annular_admittance, clamped_capacitance
-from squeezefilm.physics.plate.ring.response import modal_circuit
 from squeezefilm.physics.plate.solid.working import response_frequencies
 from squeezefilm.physics.plate.working_mode import WorkingMode
 

@@ -18,9 +18,13 @@ from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring, mode_row, 
 from squeezefilm.design.plate.solved import ALONE, ModeRow, Remarks
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
-from squeezefilm.physics.plate.ring.body import StatorAssumptions, ring_body
+from squeezefilm.physics.plate.ring.body import (
+    RingResponse,
+    StatorAssumptions,
+    ring_body,
+    ring_response,
+)
 from squeezefilm.physics.plate.ring.modes import DEFAULT_DEGREE, AnnularMode
-from squeezefilm.physics.plate.ring.response import RingResponse, ring_response
 from squeezefilm.physics.plate.ring.section import SectorDrive
 from squeezefilm.physics.plate.sound import ring_surface, sound_field
 

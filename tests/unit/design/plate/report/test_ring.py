@@ -22,7 +22,7 @@ from squeezefilm.design.plate.report.figures import response, scan, shape
 from squeezefilm.design.plate.report.page import write_plate
 from squeezefilm.design.plate.ring import RingAnalysis
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
-from squeezefilm.physics.plate.ring.response import RingResponse
+from squeezefilm.physics.plate.ring.body import RingResponse
 from squeezefilm.physics.plate.ring.section import SectorDrive
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")

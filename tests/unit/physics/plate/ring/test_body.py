@@ -19,6 +19,8 @@ from squeezefilm.physics.plate.ring.body import (
     half_wavelength_of,
     nodal_circles,
     ring_body,
+    ring_circuit,
+    ring_response,
     stator_assumptions,
 )
 from squeezefilm.physics.plate.ring.elements import harmonic_system, nearest_modes
@@ -28,7 +30,6 @@ from squeezefilm.physics.plate.ring.modes import (
     annular_modes,
     clamped_capacitance,
 )
-from squeezefilm.physics.plate.ring.response import ring_circuit, ring_response
 from squeezefilm.physics.plate.ring.section import bonded_disc
 from squeezefilm.physics.plate.solid.layers import media
 from squeezefilm.physics.plate.working_mode import working_mode

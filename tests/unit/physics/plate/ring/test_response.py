@@ -11,14 +11,14 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
-from squeezefilm.physics.plate.ring import response
-from squeezefilm.physics.plate.ring.modes import AnnularMode
-from squeezefilm.physics.plate.ring.response import (
+from squeezefilm.physics.plate.ring import body
+from squeezefilm.physics.plate.ring.body import (
     RingResponse,
     ring_circuit,
     ring_response,
     static_capacitance,
 )
+from squeezefilm.physics.plate.ring.modes import AnnularMode
 from squeezefilm.physics.plate.ring.section import SectorDrive, alternate_sectors
 
 SURFACE = np.linspace(10e-3, 20e-3, 30)
@@ -56,8 +56,8 @@ def test_motion_is_the_sum_of_the_modes_nearby(monkeypatch: pytest.MonkeyPatch) 
         asked["admittance"] = (section, drive, frequencies, rest)
         return admittance
 
-    monkeypatch.setattr(response, "annular_modes", modes)
-    monkeypatch.setattr(response, "annular_admittance", admitted)
+    monkeypatch.setattr(body, "annular_modes", modes)
+    monkeypatch.setattr(body, "annular_admittance", admitted)
     found = ring_response(BODY, MODES[1], f, [1, 3], terms=3)
     assert asked["modes"] == (
         "a section", 3, {"near": 30e3, "count": 3, "quality_factor": 60.0}
@@ -114,5 +114,5 @@ def test_the_circuit_has_the_modes_branch_and_what_is_beside_it() -> None:
 def test_without_a_circuit_the_held_ceramic_is_the_capacitance(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(response, "clamped_capacitance", lambda section, drive: (section, drive))
+    monkeypatch.setattr(body, "clamped_capacitance", lambda section, drive: (section, drive))
     assert static_capacitance(BODY, None) == ("a section", DRIVE)
