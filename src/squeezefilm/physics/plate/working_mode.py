@@ -173,7 +173,8 @@ def _working_mode(actuator: Actuator, theory: PlateTheory, pace: Pace) -> Workin
             lobe=(0.0, actuator.radial_width / 2),
         )
     if isinstance(actuator, DiscPlate):
-        return _disc(actuator)
+        body = ring_body(actuator)
+        return _solved_ring(body, body.mode())
     if theory == "solid":
         return solid_working_mode(actuator, solid_mode(actuator, pace=pace))
     beam = beam_response(actuator, theory)
@@ -215,11 +216,6 @@ def solid_working_mode(
     )
 
 
-def _disc(disc: DiscPlate) -> WorkingMode:
-    body = ring_body(disc)
-    return _solved_ring(body, body.mode())
-
-
 def ring_working_mode(
     actuator: AnnularStator | DiscPlate, body: RingBody, mode: AnnularMode
 ) -> WorkingMode:
@@ -245,17 +241,12 @@ def _solved_ring(body: RingBody, mode: AnnularMode) -> WorkingMode:
         quality_factor=mode.quality_factor,
         amplitude_per_volt=mode.amplitude_per_volt(body.drive),
         model=mode.model,
-        lobe=(_antinode(mode), 0.0),
+        lobe=(float(mode.surface_radius[np.argmax(np.abs(mode.surface_shape))]), 0.0),
         frequency_error=mode.frequency_error,
         modal_mass=mode.modal_mass,
         line=_diameter(mode),
         disc=mode,
     )
-
-
-def _antinode(mode: AnnularMode) -> si.Metre:
-    """The radius of the surface's highest antinode."""
-    return float(mode.surface_radius[np.argmax(np.abs(mode.surface_shape))])
 
 
 def _diameter(mode: AnnularMode) -> ModeLine:

@@ -202,16 +202,17 @@ def chosen_modes(
     count: int,
 ) -> list[si.IntArray]:
     """The indices of the modes to refine, for each class."""
-    frequencies = [np.sqrt(modes.values) / (2 * np.pi) for modes in found]
+    if band is not None:
+        return [np.arange(modes.values.size) for modes in found]
+    away = [np.abs(np.sqrt(modes.values) / (2 * np.pi) - (near or 0.0)) for modes in found]
     if mode is not None:
-        out = []
-        for modes in found:
-            hits = [i for i, label in enumerate(modes.labels) if label == mode]
-            # Of several with these nodal lines those nearest to the guess: a finer mesh, which
-            # mixes neighbours otherwise, shows which of them has the lines.
-            hits.sort(key=lambda i: abs(np.sqrt(modes.values[i]) / (2 * np.pi) - (near or 0.0)))
-            out.append(np.sort(np.array(hits[:3], dtype=np.int64)))
-        if not any(o.size for o in out):
+        # Of several with these nodal lines those nearest to the guess: a finer mesh, which mixes
+        # neighbours otherwise, shows which of them has the lines.
+        hits = [
+            [i for i in np.argsort(distance).tolist() if modes.labels[i] == mode][:3]
+            for modes, distance in zip(found, away, strict=True)
+        ]
+        if not any(hits):
             seen = ", ".join(str(label) for modes in found for label in modes.labels if label)
             where = "" if near is None else f" near {near:.0f} Hz"
             raise InputError(
@@ -219,17 +220,8 @@ def chosen_modes(
                 "solve near another frequency",
                 quantity="mode",
             )
-        return out
-    if band is not None:
-        return [np.arange(f.size) for f in frequencies]
-    every = sorted(
-        (
-            (abs(f - (near or 0.0)), c, i)
-            for c, fs in enumerate(frequencies)
-            for i, f in enumerate(fs)
-        )
-    )[:count]
-    return [
-        np.array(sorted(i for _, k, i in every if k == c), dtype=np.int64)
-        for c in range(len(found))
-    ]
+        return [np.sort(np.array(numbers, dtype=np.int64)) for numbers in hits]
+    chosen = np.zeros(sum(distance.size for distance in away), dtype=bool)
+    chosen[np.argsort(np.concatenate(away), kind="stable")[:count]] = True
+    ends = np.cumsum([distance.size for distance in away])[:-1]
+    return [np.flatnonzero(part) for part in np.split(chosen, ends)]

@@ -229,9 +229,7 @@ def solve_modes(
         check_band(band)
     if near is None and band is None and mode is None:
         mode = plate.working_label
-    tell = progress or (lambda text, fraction: None)
-    with one_blas_thread():
-        found, _ = _solved(plate, near, band, mode, count, tolerance, driven_only, tell, deadline)
+    found, _ = _solved(plate, near, band, mode, count, tolerance, driven_only, progress, deadline)
     again = functools.partial(
         solve_modes,
         plate,
@@ -258,14 +256,13 @@ def solve_for_response(
     Raises what `solve_modes` raises.
     """
     again = functools.partial(solve_modes, plate, mode=mode, tolerance=tolerance)
-    tell = progress or (lambda text, fraction: None)
-    with one_blas_thread():
-        modes, pieces = _solved(
-            plate, None, None, mode, 1, tolerance, False, tell, deadline, keep_factors=True
-        )
+    modes, pieces = _solved(
+        plate, None, None, mode, 1, tolerance, False, progress, deadline, keep_factors=True
+    )
     return dataclasses.replace(modes, _again=again), pieces
 
 
+@one_blas_thread()
 def _solved(
     plate: RectangularPlate,
     near: float | None,
@@ -274,11 +271,12 @@ def _solved(
     count: int,
     tolerance: float,
     driven_only: bool,
-    tell: ShareProgress,
+    progress: ShareProgress | None,
     deadline: Deadline | None,
     *,
     keep_factors: bool = False,
 ) -> tuple[PlateModes, list[RefinedModes]]:
+    tell = progress or (lambda text, fraction: None)
     classes = drive_classes(plate) if driven_only else all_classes(plate)
     if mode is not None:
         classes = [c for c in all_classes(plate) if class_fits(c, mode)]
