@@ -98,11 +98,11 @@ def significant(task: str, closer: float, studies: int, seed: int) -> float:
     felt = tables(design, (first, second), closer)
     people = studies * SIZE
     if task == "match-to-sample":
-        counts = match_counts(simulate_matches(design, PEOPLE, people, seed, felt))
+        counts = match_counts(simulate_matches(felt, people, seed))
         a, b = (design.stimuli.index(design.stimulus(name)) for name in (first, second))
         scores = distinction_scores(counts, a, b)
     else:
-        answers = simulate_judgements(design, PEOPLE, people, seed, felt)
+        answers = simulate_judgements(felt, people, seed)
         scores = planned_power.pair_scores(answers, first, second)
     return float(np.mean([above_0(one) < 0.05 for one in scores.reshape(studies, SIZE)]))
 
@@ -157,7 +157,7 @@ def contrasted(
     differences of ln Weber fractions."""
     both = dataclasses.replace(SERIES, displays=("biet2008-plate", "biet2008-stator"))
     felt = tables(both, stretch=stretch)
-    answers = simulate_judgements(both, PEOPLE, studies * size, seed, felt)
+    answers = simulate_judgements(felt, studies * size, seed)
     scores = planned_contrast.within_people(answers)[1].reshape(studies, size)
     share = np.mean([planned_contrast.otherwise_than_0(one) < 0.05 for one in scores])
     return float(share), float(scores.mean())

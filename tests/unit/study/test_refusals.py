@@ -23,7 +23,6 @@ from squeezefilm.study.record.database import require_study
 from squeezefilm.study.record.exploration import coverage
 from squeezefilm.study.record.exports import LIST, exported_folders, own_files
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.simulated.participants import simulate_matches
 
 DESIGN, OBSERVER = load_design("friction-jnd"), load_observer()
 
@@ -63,7 +62,6 @@ def a_file(folder: Path) -> object:
             lambda at: rehearse(created(at, station=1, stations=2), OBSERVER, 1),
             "several stations",
         ),
-        (lambda at: simulate_matches(DESIGN, OBSERVER, 2, 1), "no gratings to match"),
         (lambda at: plan_study(DESIGN, participants=0, seed=1), "participants"),
         (lambda at: exports(at, '[{"format": "other", "folder": "x"}]'), "cannot be read"),
         (lambda at: exports(at, '[{"format": "csv"}]'), "cannot be read"),

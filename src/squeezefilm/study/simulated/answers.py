@@ -192,11 +192,19 @@ def simulate_participants(
     chain = chain_tables(design, observer, progress=progress) if tables is None else tables
     if chain.design != design or chain.observer != observer:
         raise InputError("the tables are of another design or observer; leave them out")
-    if design.task == "match-to-sample":
-        matched = simulate_matches(design, observer, participants, seed, chain)
-        return SimulatedStudy(chain, matched, seed)
+    answers = simulated_answers(chain, participants, seed, progress or (lambda _: None))
+    return SimulatedStudy(chain, answers, seed)
+
+
+def simulated_answers(
+    tables: ChainTables, participants: int, seed: int, tell: Callable[[str], None]
+) -> Answers:
+    """The answers alone, of the design and the observer of tables. Raises as
+    `simulate_participants` does."""
+    require_people(tables.design, participants, seed)
+    if tables.design.task == "match-to-sample":
+        return simulate_matches(tables, participants, seed)
     # Its psychometric functions are compiled, which a match-to-sample study need not wait for.
     from squeezefilm.study.simulated.judgements import simulate_judgements
 
-    answers = simulate_judgements(design, observer, participants, seed, chain, progress)
-    return SimulatedStudy(chain, answers, seed)
+    return simulate_judgements(tables, participants, seed, tell)

@@ -21,7 +21,6 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.perception.observer import Observer
 from squeezefilm.physics.perception.percepts import Perceived, perceived
 from squeezefilm.physics.perception.senses import FINEST_PERIOD, Candidates, percept_deviation
 from squeezefilm.physics.perception.stimuli import Stimulus
@@ -48,39 +47,22 @@ class _Given:
 
 
 def simulate_judgements(
-    design: StudyDesign,
-    observer: Observer,
+    tables: ChainTables,
     participants: int,
     seed: int,
-    tables: ChainTables,
-    progress: Callable[[str], None] | None = None,
+    tell: Callable[[str], None] = lambda _: None,
 ) -> Answers:
-    """Answers of simulated participants to every trial that asks, practice and catch included.
-
-    A participant's answers depend on the seed and their number alone. See the module.
-
-    Args:
-        design: of any task but match-to-sample.
-        observer: what people are made of.
-        participants: how many, at least 1.
-        seed: the same seed gives the same answers.
-        tables: of `chain_tables` for design and observer.
-        progress: is told how many have answered.
-
-    Raises:
-        InputError: another task, or a design that judges what the observer has no sense of.
+    """Answers to every trial that asks, practice and catch included; `tell` hears how many people
+    have answered. Raises `InputError` for a design that judges what the observer has no sense of.
     """
-    si.require("participants", participants, at_least=1)
-    if design.task == "match-to-sample":
-        raise InputError("match-to-sample has real gratings; take simulate_participants")
+    design = tables.design
     if design.judged not in _JUDGED:
         raise InputError(
             f"judged = '{design.judged}': simulated participants judge {' or '.join(_JUDGED)}; "
             "their senses know nothing else",
             quantity="judged",
         )
-    tell = progress or (lambda _: None)
-    room = _Room(design, observer, tables)
+    room = _Room(tables)
     schedules = [
         [trial for trial in trials(design, person, seed) if trial.asks]
         for person in range(min(participants, CHUNK))
@@ -89,7 +71,7 @@ def simulate_judgements(
     for first in range(0, participants, CHUNK):
         count = min(CHUNK, participants - first)
         people = SimulatedPeople.drawn(
-            observer,
+            tables.observer,
             len(tables.fingers),
             len(schedules[0]),
             seed,
@@ -102,14 +84,15 @@ def simulate_judgements(
         # Twenty words are enough for however many.
         if 20 * (first + count) // participants > 20 * first // participants:
             tell(f"{first + count} of {participants} simulated participants")
-    return _together(design, participants, room, parts)
+    return _together(room, participants, parts)
 
 
 class _Room:
     """Percepts of each finger, computed when first asked for."""
 
-    def __init__(self, design: StudyDesign, observer: Observer, tables: ChainTables) -> None:
-        self.design, self.observer, self.tables = design, observer, tables
+    def __init__(self, tables: ChainTables) -> None:
+        design = tables.design
+        self.design, self.observer, self.tables = design, tables.observer, tables
         self.surfaces: list[Stimulus] = [
             *design.stimuli,
             *(trial.stimulus for trial in design.catch),
@@ -344,7 +327,8 @@ def _number(
     return _Given(none, np.round(number / digits) * digits, doubt)
 
 
-def _together(design: StudyDesign, participants: int, room: _Room, parts: list[_Part]) -> Answers:
+def _together(room: _Room, participants: int, parts: list[_Part]) -> Answers:
+    design = room.design
     names = {name: number for number, name in enumerate(design.answers)}
     series = {one.name: number for number, one in enumerate(design.adaptive)}
     rows = [trial for part in parts for row in part.schedules for trial in row]

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import SIMULATED_TRIALS, require_within
 from squeezefilm.physics.perception.observer import Observer
 from squeezefilm.physics.perception.percepts import perceived_anew
@@ -26,52 +25,26 @@ from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import trials
 from squeezefilm.study.identification.confusion import participant_counts
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables, recalled_distances
+from squeezefilm.study.simulated.chain_tables import ChainTables, recalled_distances
 
 _MOST_PEOPLE = 1_000_000
 _STREAM = 29
 
 
-def simulate_matches(
-    design: StudyDesign,
-    observer: Observer,
-    participants: int,
-    seed: int,
-    tables: ChainTables | None = None,
-) -> Answers:
-    """Answers of simulated participants to the main trials of a match-to-sample design, numbered
-    among those that ask.
+def simulate_matches(tables: ChainTables, participants: int, seed: int) -> Answers:
+    """Answers to the main trials of a match-to-sample design, numbered among those that ask.
 
-    A participant's answers depend on the seed and their number alone, not on how many there are.
     Orders are those of `trials`; from the sixty-first person on they repeat. Practice and catch
     trials count for learning only.
-
-    Args:
-        design: the study.
-        observer: what people are made of.
-        participants: how many; 1 to a million.
-        seed: the same seed gives the same answers.
-        tables: of `chain_tables` for the same design and observer, where they are known already.
-
-    Raises:
-        InputError: a number out of range, another task, or tables of another design or observer.
     """
-    require_people(design, participants, seed)
-    if design.task != "match-to-sample":
-        raise InputError(
-            f"task = '{design.task}' has no gratings to match; take simulate_participants",
-            quantity="task",
-        )
-    chain = chain_tables(design, observer) if tables is None else tables
-    if chain.design != design or chain.observer != observer:
-        raise InputError("the tables are of another design or observer; leave them out")
+    design = tables.design
     display, stimulus, number = _orders(design, min(participants, CHUNK), seed)
     rows = np.arange(participants) % CHUNK
     chunks = []
     for first in range(0, participants, CHUNK):
         count = min(CHUNK, participants - first)
         random = np.random.default_rng([seed, _STREAM, first // CHUNK])
-        chunks.append(_answers(chain, display, stimulus, number, random, count))
+        chunks.append(_answers(tables, display, stimulus, number, random, count))
     asked = display.shape[1]
     size = participants * asked
     nothing: si.FloatArray = np.full(size, np.nan)

@@ -24,11 +24,7 @@ from squeezefilm.study.identification.power import above_0
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import chain_tables
 from squeezefilm.study.simulated.planned_power import PlannedPower, PlannedStudies
-from squeezefilm.study.simulated.planned_precision import (
-    PEOPLE,
-    person_values,
-    simulated_answers,
-)
+from squeezefilm.study.simulated.planned_precision import PEOPLE, person_values
 from squeezefilm.study.tasks.findings import PARTS
 
 _DIFFERENCES: Kept[tuple[str, si.FloatArray]] = Kept(
@@ -70,7 +66,7 @@ def planned_contrast(asked: ContrastAsked) -> PlannedPower:
     tables = chain_tables(both, asked.observer, finger=asked.finger, progress=asked.tell)
 
     def simulated() -> tuple[str, si.FloatArray]:
-        answers = simulated_answers(tables, asked.people, asked.seed, asked.tell)
+        answers = asked.answers(tables, asked.people)
         asked.tell("each person's fits")
         return within_people(answers)
 

@@ -26,9 +26,9 @@ from squeezefilm.study.identification.power import (
     power_curve,
 )
 from squeezefilm.study.record.answers import Answers
+from squeezefilm.study.simulated.answers import simulated_answers
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.judgements import simulate_judgements
-from squeezefilm.study.simulated.participants import match_counts, right_answers, simulate_matches
+from squeezefilm.study.simulated.participants import match_counts, right_answers
 
 SIZES = (2, 3, 4, 5, 6, 8, 10, 12, 16, 24, 32, 48)
 POOL = 4000
@@ -68,6 +68,11 @@ class PlannedStudies:
         """Tell a step to whoever listens."""
         if self.progress is not None:
             self.progress(step)
+
+    def answers(self, tables: ChainTables, people: int) -> Answers:
+        """Answers of so many simulated people to the design of tables."""
+        self.tell(f"{people} simulated participants")
+        return simulated_answers(tables, people, self.seed, self.tell)
 
     def named(self, tables: ChainTables, display: str) -> dict[str, Any]:
         """Fields of `Planned` of the studies that were asked for, as computed with tables."""
@@ -169,11 +174,10 @@ def planned_power(asked: PairAsked) -> PlannedPower:
     tables = chain_tables(alone, asked.observer, finger=asked.finger, progress=asked.tell)
 
     def simulated() -> si.FloatArray:
-        asked.tell(f"{POOL} simulated participants")
-        people = alone, asked.observer, POOL, asked.seed, tables
+        answers = asked.answers(tables, POOL)
         if design.task == "match-to-sample":
-            return distinction_scores(match_counts(simulate_matches(*people)), a, b)
-        return pair_scores(simulate_judgements(*people, asked.tell), first, second)
+            return distinction_scores(match_counts(answers), a, b)
+        return pair_scores(answers, first, second)
 
     scores = _SCORES.found(f"{tables.asked} {first!r} {second!r} {asked.seed}", simulated)
     return PlannedPower(

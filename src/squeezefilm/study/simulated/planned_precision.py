@@ -20,9 +20,7 @@ from squeezefilm.core.kept.store import Kept
 from squeezefilm.study.identification.power import PowerCurve, curve_of, sizes_of
 from squeezefilm.study.psychometric.estimate import t_interval
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
-from squeezefilm.study.simulated.judgements import simulate_judgements
-from squeezefilm.study.simulated.participants import simulate_matches
+from squeezefilm.study.simulated.chain_tables import chain_tables
 from squeezefilm.study.simulated.planned_power import Planned, PlannedStudies, on_one_display
 from squeezefilm.study.tasks.by_condition import MEASURE, unlike_persons
 from squeezefilm.study.tasks.findings import PARTS, PersonEstimate
@@ -91,7 +89,7 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
 
     @functools.cache
     def fitted() -> tuple[str, Interval]:
-        return interval_of(simulated_answers(tables, people, asked.seed, asked.tell), asked.tell)
+        return interval_of(asked.answers(tables, people), asked.tell)
 
     def interval(who: si.IntArray) -> Ends:
         return fitted()[1](who)
@@ -129,17 +127,6 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
         curve=curve_of(sizes, counts, studies, 0.05, asked.target),
         held=np.array(held),
     )
-
-
-def simulated_answers(
-    tables: ChainTables, people: int, seed: int, tell: Callable[[str], None]
-) -> Answers:
-    """Answers of simulated people to the whole design of tables, of any task."""
-    tell(f"{people} simulated participants")
-    design, observer = tables.design, tables.observer
-    if design.task == "match-to-sample":
-        return simulate_matches(design, observer, people, seed, tables)
-    return simulate_judgements(design, observer, people, seed, tables, tell)
 
 
 def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Interval]:

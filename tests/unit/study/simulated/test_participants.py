@@ -19,7 +19,6 @@ from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables
 from squeezefilm.study.simulated.participants import (
     match_counts,
     right_answers,
-    simulate_matches,
 )
 
 PERIODS = np.array([0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3])
@@ -102,6 +101,6 @@ def test_what_cannot_be_simulated_is_refused() -> None:
     with pytest.raises(InputError, match="participants"):
         run(2.0, 0)
     with pytest.raises(InputError, match="another design"):
-        simulate_matches(DESIGN, load_observer(), 2, 0, tables(1.0))
+        simulate_participants(DESIGN, load_observer(), 2, 0, tables(1.0))
     with pytest.raises(InputError, match="1 displays"):
         chain_tables(DESIGN, EXACT, displays=())

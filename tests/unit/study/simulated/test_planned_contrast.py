@@ -14,6 +14,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.simulated import planned_contrast as module
+from squeezefilm.study.simulated import planned_power
 from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.planned_contrast import otherwise_than_0, planned_contrast
 
@@ -98,7 +99,7 @@ def test_a_plan_has_what_people_do_otherwise_and_the_power_to_show_it(
         simulated.append(people)
         return "answers"
 
-    monkeypatch.setattr(module, "simulated_answers", answers)
+    monkeypatch.setattr(planned_power, "simulated_answers", answers)
     monkeypatch.setattr(module, "within_people", lambda _: ("exponent", apart))
     monkeypatch.setattr(module, "_DIFFERENCES", Kept("differences-of-a-test", tuple[str, Any]))
     told: list[str] = []

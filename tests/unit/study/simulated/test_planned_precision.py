@@ -57,8 +57,7 @@ def test_what_was_found_before_a_stop_is_not_computed_again(
     assert len(list((tmp_path / "simulated-shares").iterdir())) == 1
     assert ask() == never_stopped
     # Now nothing is left to simulate.
-    monkeypatch.setattr(module, "simulated_answers", None)
-    monkeypatch.setattr(f"{planned_power.__module__}.simulate_judgements", None)
+    monkeypatch.setattr(f"{planned_power.__module__}.simulated_answers", None)
     assert ask() == never_stopped
 
 
@@ -128,12 +127,10 @@ def test_pairs_that_no_test_tells_apart_are_refused() -> None:
 def test_scores_are_nought_of_people_who_cannot_tell() -> None:
     from squeezefilm.study.simulated.judgements import simulate_judgements
 
-    blind = simulate_judgements(ALIKE, EXACT, 60, 2, tables(ALIKE, -np.inf))
+    blind = simulate_judgements(tables(ALIKE, -np.inf), 60, 2)
     assert pair_scores(blind, "4 mm", "6 mm").mean() == pytest.approx(0.0, abs=0.05)
     sharp = dataclasses.replace(EXACT, period_weber_fraction=0.01)
-    seen = simulate_judgements(
-        ALIKE, sharp, 20, 2, dataclasses.replace(tables(ALIKE), observer=sharp)
-    )
+    seen = simulate_judgements(dataclasses.replace(tables(ALIKE), observer=sharp), 20, 2)
     assert pair_scores(seen, "4 mm", "6 mm").mean() > 0.5
     assert above_0(np.zeros(4)) == 1.0
     assert above_0(np.full(4, 0.5)) == 0.0
