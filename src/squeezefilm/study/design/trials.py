@@ -13,13 +13,12 @@ import dataclasses
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from functools import lru_cache
-from typing import Any, Literal
+from functools import cache, lru_cache, partial
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.study.design.rules import CatchTrial
 from squeezefilm.study.design.study_design import Order, StudyDesign
 from squeezefilm.study.design.tasks.task import Condition
 
@@ -149,13 +148,51 @@ def trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Tri
     return _trials(design, participant_number, seed)
 
 
+class _Planned(NamedTuple):
+    """A trial before it is numbered; the answer of one without is what is right of its stimuli."""
+
+    block: int
+    phase: Phase
+    stimuli: Condition
+    answer: str | None = None
+    adaptive: str = ""
+    reference_first: bool = False
+    pause: si.Second = 0.0
+
+
 @lru_cache(maxsize=256)
 def _trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Trial, ...]:
     found: list[Trial] = []
+    names, right = design.answers, cache(partial(_right_answer, design))
     sequence = orders(len(design.displays), 1, participant_number, seed)[0]
     for place, index in enumerate(sequence):
-        _display_trials(design, design.displays[index], place, participant_number, seed, found)
+        matching = _random(seed, _MATCHING, participant_number, place)
+        # The box of gratings lies in another order for each participant and display.
+        offered = tuple(names[i] for i in matching.permutation(len(names)))
+        if design.task != "match-to-sample":
+            offered = names
+        for planned in _display_trials(design, place, participant_number, seed, matching):
+            number = len(found) + 1
+            found.append(
+                Trial(
+                    number=number,
+                    display=design.displays[index],
+                    block=planned.block,
+                    phase=planned.phase,
+                    stimuli=planned.stimuli,
+                    alternatives=() if planned.phase == "familiarisation" else offered,
+                    answer=right(planned.stimuli) if planned.answer is None else planned.answer,
+                    adaptive=planned.adaptive,
+                    reference_first=planned.reference_first,
+                    pause=planned.pause,
+                    seed=_trial_seed(seed, participant_number, number),
+                )
+            )
     return tuple(found)
+
+
+def _right_answer(design: StudyDesign, condition: Condition) -> str:
+    return design.answer_to(*(design.stimulus(name) for name in condition))
 
 
 def trial_count(design: StudyDesign) -> int:
@@ -174,72 +211,32 @@ def _random(seed: int, purpose: int, *more: int) -> np.random.Generator:
 
 
 def _display_trials(
-    design: StudyDesign, display: str, place: int, participant: int, seed: int, planned: list[Trial]
-) -> None:
-    matching = _random(seed, _MATCHING, participant, place)
-    names = design.answers
-    # The box of gratings lies in another order for each participant and display.
-    offered = tuple(names[i] for i in matching.permutation(len(names)))
-    if design.task != "match-to-sample":
-        offered = names
-    answers: dict[Condition, str] = {}
-
-    def add(
-        block: int, phase: Phase, condition: Condition, pause: float = 0.0, answer: str = ""
-    ) -> None:
-        if phase in ("practice", "main"):
-            if condition not in answers:
-                answers[condition] = design.answer_to(
-                    *(design.stimulus(name) for name in condition)
-                )
-            answer = answers[condition]
-        planned.append(
-            Trial(
-                number=len(planned) + 1,
-                display=display,
-                block=block,
-                phase=phase,
-                stimuli=condition,
-                alternatives=() if phase == "familiarisation" else offered,
-                answer=answer,
-                adaptive="",
-                reference_first=False,
-                pause=pause,
-                seed=_trial_seed(seed, participant, len(planned) + 1),
-            )
-        )
-
-    pause = design.break_between_blocks if place else 0.0
-    felt = (
-        names
-        if design.task == "match-to-sample"
-        else [stimulus.name for stimulus in design.stimuli]
-    )
-    for _ in range(design.familiarisation):
-        for i in matching.permutation(len(felt)):
-            add(0, "familiarisation", (felt[i],), pause)
-            pause = 0.0
+    design: StudyDesign, place: int, participant: int, seed: int, matching: np.random.Generator
+) -> list[_Planned]:
+    """The trials on a participant's display number `place`, in their order."""
+    felt = [stimulus.name for stimulus in design.stimuli]
+    if design.task == "match-to-sample":
+        felt = list(design.answers)
+    planned = [
+        _Planned(0, "familiarisation", (felt[i],), answer="")
+        for _ in range(design.familiarisation)
+        for i in matching.permutation(len(felt))
+    ]
     every = design.conditions
     practice = _random(seed, _PRACTICE, participant, place)
     rounds = -(-design.practice // len(every)) if every else 0
-    rehearsed = [i for _ in range(rounds) for i in practice.permutation(len(every))]
-    for i in rehearsed[: design.practice]:
-        add(0, "practice", every[i], pause)
-        pause = 0.0
-    if design.adaptive:
-        _adaptive_trials(design, display, place, participant, seed, planned)
-        return
-    for block, queue in enumerate(_blocks(design, place, participant, seed)):
-        for position, (phase, one_condition, answer) in enumerate(queue):
-            rest = design.break_between_blocks if position == 0 and block else 0.0
-            add(block + 1, phase, one_condition, max(rest, pause), answer)
-            pause = 0.0
+    rehearsed = [every[i] for _ in range(rounds) for i in practice.permutation(len(every))]
+    planned += [_Planned(0, "practice", pair) for pair in rehearsed[: design.practice]]
+    series = _adaptive_trials(design, place, participant, seed) if design.adaptive else []
+    if not design.adaptive:
+        planned += _block_trials(design, place, participant, seed)
+    if place and planned:
+        planned[0] = planned[0]._replace(pause=design.break_between_blocks)
+    return planned + series
 
 
-def _blocks(
-    design: StudyDesign, place: int, participant: int, seed: int
-) -> list[list[tuple[Phase, Condition, str]]]:
-    """Surfaces of each block, in its order: the repetitions, and catch trials between them."""
+def _block_trials(design: StudyDesign, place: int, participant: int, seed: int) -> list[_Planned]:
+    """The repetitions of each block in their order, and catch trials between them."""
     every = design.conditions
     rows = orders(
         len(every), design.blocks * design.repetitions, participant, seed + place, design.order
@@ -247,52 +244,47 @@ def _blocks(
     spread = _random(seed, _SPREAD, participant, place)
     catches = [trial for trial in design.catch for _ in range(trial.count)]
     where = spread.integers(0, design.blocks, len(catches))
-    blocks = []
+    planned: list[_Planned] = []
     for block in range(design.blocks):
         mine = rows[block * design.repetitions : (block + 1) * design.repetitions]
-        queue: list[tuple[Phase, Condition, str]] = [
-            ("main", every[i], "") for row in mine for i in row
-        ]
+        queue = [_Planned(block + 1, "main", every[i]) for row in mine for i in row]
         for trial in (c for c, b in zip(catches, where, strict=True) if b == block):
             # Never the first trial of a block: people are still settling.
             at = int(spread.integers(1, len(queue) + 1))
-            queue.insert(at, ("catch", design.catch_condition(trial), trial.answer))
-        blocks.append(queue)
-    return blocks
+            caught = design.catch_condition(trial)
+            queue.insert(at, _Planned(block + 1, "catch", caught, trial.answer))
+        if block:
+            queue[0] = queue[0]._replace(pause=design.break_between_blocks)
+        planned += queue
+    return planned
 
 
 def _adaptive_trials(
-    design: StudyDesign, display: str, place: int, participant: int, seed: int, planned: list[Trial]
-) -> None:
+    design: StudyDesign, place: int, participant: int, seed: int
+) -> list[_Planned]:
     """The series interleaved at random, catch trials between them, in blocks of equal size; where
     the reference comes, and how often, is the task's (`StudyTask.series`)."""
     random = _random(seed, _SPREAD, participant, place)
-    queue: list[tuple[str, bool, str, CatchTrial | None]] = []
+    queue: list[_Planned] = []
     for series in design.adaptive:
         kinds = [design.described.series(k, series.method) for k in range(series.count)]
-        order = random.permutation(series.count)
-        queue += [(series.name, *kinds[i], None) for i in order]
+        for i in random.permutation(series.count):
+            reference_first, answer = kinds[i]
+            queue.append(_Planned(0, "main", (), answer, series.name, reference_first))
     queue = [queue[i] for i in random.permutation(len(queue))]
     for catch in (trial for trial in design.catch for _ in range(trial.count)):
-        queue.insert(int(random.integers(1, len(queue) + 1)), ("", False, catch.answer, catch))
+        caught = _Planned(0, "catch", design.catch_condition(catch), catch.answer)
+        queue.insert(int(random.integers(1, len(queue) + 1)), caught)
     size = -(-len(queue) // design.blocks)
-    for position, (name, reference_first, answer, caught) in enumerate(queue):
-        rest = position % size == 0 and (place or position)
-        planned.append(
-            Trial(
-                number=len(planned) + 1,
-                display=display,
-                block=position // size + 1,
-                phase="main" if caught is None else "catch",
-                stimuli=() if caught is None else design.catch_condition(caught),
-                alternatives=design.answers,
-                answer=answer,
-                adaptive=name,
-                reference_first=reference_first,
-                pause=design.break_between_blocks if rest else 0.0,
-                seed=_trial_seed(seed, participant, len(planned) + 1),
-            )
+    return [
+        planned._replace(
+            block=position // size + 1,
+            pause=design.break_between_blocks
+            if position % size == 0 and (place or position)
+            else 0.0,
         )
+        for position, planned in enumerate(queue)
+    ]
 
 
 def _trial_seed(seed: int, participant: int, number: int) -> int:

@@ -114,29 +114,21 @@ def response_time_summary(
     Raises:
         InputError: times not above 0, arrays of unequal length, or a level not between 0 and 1.
     """
-    person, kind = (np.asarray(numbers, dtype=np.int64) for numbers in (participant, condition))
     given = np.asarray(response_time, dtype=float)
-    one_per_trial(participant=person, condition=kind, response_time=given)
-    taken = ~np.isnan(given)
-    si.require("response_time", given[taken], si.Unit("s"), above=0.0)
-    si.require("level", level, above=0.0, below=1.0)
-    summaries = []
-    for column in np.unique(kind[taken]).tolist():
-        here = taken & (kind == column)
-        who, logs = person[here], np.log(given[here])
-        (one,) = condition_means(who, np.zeros_like(who), logs, (names[column],), level)
-        summaries.append(
-            ResponseTimeSummary(
-                one.name,
-                one.trials,
-                one.participants,
-                float(np.exp(one.mean)),
-                float(np.exp(one.low)),
-                float(np.exp(one.high)),
-                level,
-            )
+    one_per_trial(participant=participant, condition=condition, response_time=given)
+    si.require("response_time", given[~np.isnan(given)], si.Unit("s"), above=0.0)
+    return tuple(
+        ResponseTimeSummary(
+            logs.name,
+            logs.trials,
+            logs.participants,
+            float(np.exp(logs.mean)),
+            float(np.exp(logs.low)),
+            float(np.exp(logs.high)),
+            level,
         )
-    return tuple(summaries)
+        for logs in condition_means(participant, condition, np.log(given), names, level)
+    )
 
 
 ATTENDS: si.Dimensionless = 0.95

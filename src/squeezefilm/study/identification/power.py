@@ -114,10 +114,16 @@ def power_curve(
     si.require("alpha", alpha, above=0.0, below=1.0)
     si.require("target", target, above=0.0, below=1.0)
     counts = []
-    for done, people in enumerate(sizes):
-        counts.append(_significant(simulate, test, people, studies, alpha, seed))
+    for done, people in enumerate(sizes, 1):
+        random = np.random.default_rng([seed, people])
+        p = np.array([test(simulate(people, random)) for _ in range(studies)])
+        if (wrong := p[~((p >= 0.0) & (p <= 1.0))]).size:
+            raise InputError(
+                f"the test returned p = {wrong[0]}; it must return a p value of 0 to 1"
+            )
+        counts.append(int(np.count_nonzero(p < alpha)))
         if progress is not None:
-            progress(done + 1, len(sizes))
+            progress(done, len(sizes))
     return curve_of(sizes, counts, studies, alpha, target)
 
 
@@ -154,25 +160,6 @@ def sizes_of(participants: tuple[int, ...], studies: int) -> tuple[int, ...]:
             "of at least 2, and at least 10 studies, are wanted"
         )
     return sizes
-
-
-def _significant(
-    simulate: ParticipantSimulator,
-    test: Callable[[NDArray[Any]], float],
-    people: int,
-    studies: int,
-    alpha: float,
-    seed: int,
-) -> int:
-    """Studies of so many people, out of `studies` simulated, with p below `alpha`."""
-    random = np.random.default_rng([seed, people])
-    number = 0
-    for _ in range(studies):
-        p = float(test(simulate(people, random)))
-        if not 0.0 <= p <= 1.0:
-            raise InputError(f"the test returned p = {p}; it must return a p value of 0 to 1")
-        number += p < alpha
-    return number
 
 
 def first_lasting(sizes: tuple[int, ...], reached: NDArray[np.bool_]) -> int | None:

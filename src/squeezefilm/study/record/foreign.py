@@ -12,6 +12,8 @@ import itertools
 import math
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -79,12 +81,12 @@ def read_answers(
         InputError: a column that is not there, or no answer at all.
     """
     limit = int(FOREIGN_TRIALS.most)
-    how = dict(columns or {}), dict(values or {}), decimal_comma
     rows: list[dict[str, Cell]] = []
     given: dict[str, int] = {}
     known: dict[Answered, str] = {}
     for file in _files(path):
-        found = _rows(file, design, *how, given=given, named=file != Path(path))
+        source = _File(file, design, columns or {}, values or {}, decimal_comma)
+        found = _rows(source, given, named=file != Path(path))
         numbered = list(itertools.islice(found, limit + 1 - len(rows)))
         if not numbered:
             raise InputError(
@@ -137,21 +139,44 @@ def columns_of(text: str, quantity: str = "columns") -> dict[str, str]:
     return columns
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class _File:
+    """A file with answers, and how it is read, see `read_answers`."""
+
+    path: Path
+    design: StudyDesign
+    columns: Mapping[str, str]
+    values: Mapping[str, str]
+    decimal_comma: bool
+
+    def refused(self, line: int, key: str, said: str) -> ConfigError:
+        """An error in a row, and in the file's column for one of ours."""
+        return ConfigError(said, file=self.path, line=line, key=self.columns.get(key, key) or None)
+
+    def number(self, line: int, key: str, text: str) -> float:
+        """A number in a cell; NaN for none."""
+        if text.lower() in ("", "n/a", "na", "nan", "none"):
+            return math.nan
+        try:
+            # Python would read 1_234 as 1234.
+            return float(text.replace("_", "no number"))
+        except ValueError as error:
+            raise self.refused(
+                line,
+                key,
+                f"'{text}' is no number; write one with a point, like 0.0125, or ask for decimal "
+                "commas (decimal_comma)",
+            ) from error
+
+
 def _rows(
-    path: str | Path,
-    design: StudyDesign,
-    columns: dict[str, str],
-    values: dict[str, str],
-    decimal_comma: bool,
-    *,
-    given: dict[str, int],
-    named: bool,
+    file: _File, given: dict[str, int], *, named: bool
 ) -> Iterator[tuple[int, dict[str, Cell]]]:
     """Rows with their line (in JSON: trial); `given` counts those of each person, whom the file's
     name says where it is `named` for one."""
-    names, lines = (_json if Path(path).suffix.lower() == ".json" else _csv)(path)
-    of_file = {"participant_id": Path(path).stem} if named else {}
-    places = _places(path, design, names, columns, of_file)
+    names, lines = (_json if file.path.suffix.lower() == ".json" else _csv)(file.path)
+    of_file = {"participant_id": file.path.stem} if named else {}
+    places = _places(file, names, of_file)
     practised = [at for at, name in enumerate(names) if _PRACTICE_LOOP.match(name)]
     for number, cells in lines:
         words = of_file | {key: unguarded(cells[at].strip()) for key, at in places.items()}
@@ -161,19 +186,19 @@ def _rows(
             words["phase"] = "practice"
         for key in ("choice", *SURFACES, "answer"):
             if key in words:
-                words[key] = values.get(words[key], words[key])
-        if words.get("choice") == "None" and "None" not in design.answers:
+                words[key] = file.values.get(words[key], words[key])
+        if words.get("choice") == "None" and "None" not in file.design.answers:
             continue  # PsychoPy's word for no key.
-        if decimal_comma:
+        if file.decimal_comma:
             words |= {key: words[key].replace(",", ".") for key in _MEASURED if key in words}
-        row = _row(path, number, design, words, columns)
-        for _ in range(_count(path, number, words)):
+        row = _row(file, number, words)
+        for _ in range(_count(file, number, words)):
             who = str(row["participant_id"])
             given[who] = given.get(who, 0) + 1
             yield number, {**row, "trial": given[who] if row["trial"] == "" else row["trial"]}
 
 
-def _csv(path: str | Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
+def _csv(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
     """The names of columns, and each row's line and cells."""
     lines = text_of_file(path).lstrip("\ufeff").splitlines()
     head = lines[0] if lines else ""
@@ -195,7 +220,7 @@ def _csv(path: str | Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
     return names, rows()
 
 
-def _json(path: str | Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
+def _json(path: Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]:
     """The same of a list of trials; what a trial does not say is empty."""
     trials = read_json(path, TABLE_BYTES, "a list of trials")
     if not isinstance(trials, list) or not all(isinstance(trial, dict) for trial in trials):
@@ -208,14 +233,9 @@ def _json(path: str | Path) -> tuple[list[str], Iterator[tuple[int, list[str]]]]
     return names, ((number, cells(trial)) for number, trial in enumerate(trials, 1))
 
 
-def _places(
-    path: str | Path,
-    design: StudyDesign,
-    names: list[str],
-    columns: dict[str, str],
-    known: Mapping[str, str],
-) -> dict[str, int]:
+def _places(file: _File, names: list[str], known: Mapping[str, str]) -> dict[str, int]:
     """Places of our columns in the file, but for what is `known` without one."""
+    path, design, columns = file.path, file.design, file.columns
     ours = (*WORDS, *NUMBERS, COUNT, MILLISECONDS)
     for key, theirs in columns.items():
         if key not in ours:
@@ -249,22 +269,15 @@ def _places(
     return places
 
 
-def _row(
-    path: str | Path,
-    line: int,
-    design: StudyDesign,
-    words: Mapping[str, str],
-    columns: Mapping[str, str],
-) -> dict[str, Cell]:
+def _row(file: _File, line: int, words: Mapping[str, str]) -> dict[str, Cell]:
     """A row as `study export` would have it."""
+    design, number = file.design, partial(file.number, line)
     found: dict[str, Cell] = {key: words.get(key, "") for key in WORDS}
     found["display"] = found["display"] or design.displays[0]
     found["phase"] = found["phase"] or "main"
-    for key in NUMBERS:
-        found[key] = _number(path, line, columns.get(key, key), words.get(key, ""))
+    found |= {key: number(key, words.get(key, "")) for key in NUMBERS}
     if MILLISECONDS in words:
-        time = _number(path, line, columns.get(MILLISECONDS, MILLISECONDS), words[MILLISECONDS])
-        found["response_time_s"] = time / 1000
+        found["response_time_s"] = number(MILLISECONDS, words[MILLISECONDS]) / 1000
     allowed = {
         "display": design.displays,
         "phase": ("practice", "main", "catch", "familiarisation"),
@@ -275,65 +288,41 @@ def _row(
             allowed["answer"] = design.answers
     for key, words_allowed in allowed.items():
         if found[key] not in words_allowed:
-            raise ConfigError(
-                f"'{found[key]}' is none of: {', '.join(words_allowed)}; values = "
-                f'"{found[key] or "WORD"}={words_allowed[0]}" says what it means',
-                file=path,
-                line=line,
-                key=columns.get(key, key),
-            )
-
-    def refused(key: str, said: str) -> ConfigError:
-        return ConfigError(said, file=path, line=line, key=columns.get(key, key) or None)
-
+            said = f"'{found[key]}' is none of: {', '.join(words_allowed)}; values = "
+            said += f'"{found[key] or "WORD"}={words_allowed[0]}" says what it means'
+            raise file.refused(line, key, said)
     if str(found["set_aside"]).lower() in _NOT_SET_ASIDE:
         found["set_aside"] = ""
     if found["trial"]:
-        trial = _number(path, line, columns.get("trial", "trial"), words["trial"])
+        trial = number("trial", words["trial"])
         if not trial.is_integer():
-            raise refused("trial", f"'{words['trial']}' is no whole number")
+            raise file.refused(line, "trial", f"'{words['trial']}' is no whole number")
         found["trial"] = int(trial)
     if not design.answers and not float(str(found["estimate"])) > 0:
-        raise refused("estimate", f"'{words['estimate']}' is not above 0, and has no logarithm")
+        said = f"'{words['estimate']}' is not above 0, and has no logarithm"
+        raise file.refused(line, "estimate", said)
     pair = [str(found[key]) for key in SURFACES if found[key]]
     if not pair:
-        raise refused(SURFACES[0], "is empty; a row with an answer says what was presented")
+        said = "is empty; a row with an answer says what was presented"
+        raise file.refused(line, SURFACES[0], said)
     try:
         surfaces = [presented(design, name, found) for name in pair]
     except InputError as error:
-        raise refused(error.quantity or "", str(error)) from error
+        raise file.refused(line, error.quantity or "", str(error)) from error
     right = design.answer_to(*surfaces)
     if words.get("answer") and right not in ("", words["answer"]) and found["phase"] != "catch":
         said = f"'{words['answer']}' is not right here, where '{right}' is; are columns exchanged?"
-        raise refused("answer", said)
+        raise file.refused(line, "answer", said)
     found["answer"] = words.get("answer", right)
     return found
 
 
-def _number(path: str | Path, line: int, column: str, text: str) -> float:
-    if text.lower() in ("", "n/a", "na", "nan", "none"):
-        return math.nan
-    try:
-        # Python would read 1_234 as 1234.
-        return float(text.replace("_", "no number"))
-    except ValueError as error:
-        raise ConfigError(
-            f"'{text}' is no number; write one with a point, like 0.0125, or ask for decimal "
-            "commas (decimal_comma)",
-            file=path,
-            line=line,
-            key=column,
-        ) from error
-
-
-def _count(path: str | Path, line: int, words: Mapping[str, str]) -> int:
+def _count(file: _File, line: int, words: Mapping[str, str]) -> int:
     if COUNT not in words:
         return 1
-    count = _number(path, line, COUNT, words[COUNT])
+    count = file.number(line, COUNT, words[COUNT])
     if not (count >= 0 and count.is_integer()):
-        raise ConfigError(
-            f"'{words[COUNT]}' is no count; write 0, 1, 2 …", file=path, line=line, key=COUNT
-        )
+        raise file.refused(line, COUNT, f"'{words[COUNT]}' is no count; write 0, 1, 2 …")
     # Here already, for no list of so many is made.
     require_within(FOREIGN_TRIALS, max(count, 1.0), enough="give a part of the file")
     return int(count)

@@ -33,6 +33,7 @@ from squeezefilm.physics.perception.percepts import (
 )
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
+from squeezefilm.study.design.matching import Exploring
 from squeezefilm.study.design.study_design import StudyDesign
 
 if TYPE_CHECKING:
@@ -45,14 +46,14 @@ _REMEMBERED: dict[str, Candidates] = {}
 
 
 def _known(
-    feel: Callable[..., Candidates],
+    how: str,
     surface: Stimulus | Grating,
     rest: tuple[Any, ...],
     make: Callable[[], Candidates],
 ) -> Candidates:
     """Percept computed before, in this process or by what is on disk, or made now. It is asked for
     by how it is felt, the surface, and the `rest` of what decides."""
-    asked = f"{feel.__name__} {' '.join(_hash(part) for part in rest)} {_name(surface)}"
+    asked = f"{how} {' '.join(_hash(part) for part in rest)} {_name(surface)}"
     if asked not in _REMEMBERED:
         while len(_REMEMBERED) >= _MOST_REMEMBERED:
             del _REMEMBERED[next(iter(_REMEMBERED))]
@@ -68,25 +69,21 @@ def _name(surface: Stimulus | Grating) -> str:
     return f"{texture!r} {config_hash(texture)} {surface.period!r}"
 
 
-def felt_by_strokes(
-    stimulus: Stimulus, display: Display, observer: Observer, finger: FingerClass, run: Apparatus
+def felt_virtually(
+    exploring: Exploring,
+    stimulus: Stimulus,
+    display: Display,
+    observer: Observer,
+    finger: FingerClass,
+    run: Apparatus,
 ) -> Candidates:
-    """A virtual surface under strokes along x, shape (1, candidates)."""
+    """A virtual surface, shape (directions, candidates): along x under strokes; along x and along
+    y under a plain hand that explores the face freely."""
 
     def make() -> Candidates:
-        found, _ = percept(display, stimulus, observer, finger, run)
-        return _by_direction(found.candidates)
-
-    return _known(felt_by_strokes, stimulus, (display, observer, finger, run), make)
-
-
-def felt_freely(
-    stimulus: Stimulus, display: Display, observer: Observer, finger: FingerClass, run: Apparatus
-) -> Candidates:
-    """A virtual surface under a plain hand that explores the face freely: along x and along y,
-    shape (2, candidates)."""
-
-    def make() -> Candidates:
+        if exploring == "strokes":
+            strokes, _ = percept(display, stimulus, observer, finger, run)
+            return Candidates(strokes.candidates.period[None], strokes.candidates.d_prime[None])
         from squeezefilm.physics.perception.path_percepts import path_percept
         from squeezefilm.physics.texture_files.texture_file import TextureFile
 
@@ -96,22 +93,18 @@ def felt_freely(
         # The hand sweeps both ways, on lines far longer than the shortest run.
         assert found.along is not None
         assert found.across is not None
-        return _by_direction(found.along.candidates, found.across.candidates)
+        ways = found.along.candidates, found.across.candidates
+        return Candidates(
+            np.stack([felt.period for felt in ways]), np.stack([felt.d_prime for felt in ways])
+        )
 
-    return _known(felt_freely, stimulus, (display, observer, finger, run), make)
-
-
-def _by_direction(*directions: Candidates) -> Candidates:
-    return Candidates(
-        np.stack([felt.period for felt in directions]),
-        np.stack([felt.d_prime for felt in directions]),
-    )
+    return _known(exploring, stimulus, (display, observer, finger, run), make)
 
 
 def felt_really(grating: Grating, observer: Observer, finger: FingerClass) -> Candidates:
     """A real grating, shape (candidates,)."""
     return _known(
-        felt_really,
+        "really",
         grating,
         (observer, finger),
         lambda: grating_percept(grating, observer, finger).candidates,
@@ -182,8 +175,8 @@ class ChainTables:
     def felt(self, display: int, finger: int, stimulus: Stimulus) -> Candidates:
         """Candidates of a surface that is not among the design's stimuli, such as a comparison
         that an adaptive method chose, shape (directions, candidates)."""
-        feel = felt_freely if self.design.exploring == "free" else felt_by_strokes
-        return feel(
+        return felt_virtually(
+            self.design.exploring,
             stimulus,
             self.plates[display],
             self.observer,
@@ -231,15 +224,15 @@ def chain_tables(
             f"{len(runs)} apparatus were given"
         )
     fingers = observer.fingers()
-    feel = felt_freely if design.exploring == "free" else felt_by_strokes
     virtual, real = [], []
     with one_blas_thread():
         for plate, run in zip(plates, runs, strict=True):
             under = []
             for number, finger_class in enumerate(fingers, 1):
                 tell(f"what fingers feel on {plate.name}: {number} of {len(fingers)}")
+                decided = plate, observer, finger_class, run
                 under.append(
-                    [feel(each, plate, observer, finger_class, run) for each in design.stimuli]
+                    [felt_virtually(design.exploring, each, *decided) for each in design.stimuli]
                 )
             virtual.append(under)
         for finger_class in fingers:

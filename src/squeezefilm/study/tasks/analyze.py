@@ -21,8 +21,6 @@ from squeezefilm.study.identification.analysis import (
     proportion_correct,
 )
 from squeezefilm.study.identification.condition_means import (
-    ConditionMean,
-    ResponseTimeSummary,
     condition_means,
     course_of,
     response_time_summary,
@@ -161,8 +159,7 @@ def _main_numbers(answers: Answers, how: _How) -> tuple[Estimate | None, Estimat
     if answers.design.task != "match-to-sample":
         found = measured(main, how.level, how.seed, how.tell)
         return found.pooled, found.robust
-    asked = _identified(main, how)
-    return proportion_correct(asked), None
+    return proportion_correct(_identified(main, how)), None
 
 
 def stimuli_and_answers(design: StudyDesign) -> tuple[list[str], list[str]]:
@@ -183,7 +180,6 @@ def _identified(main: Answers, how: _How) -> IdentificationRequest:
     design = main.design
     stimuli, right = stimuli_and_answers(design)
     order = np.array([right.index(answer) for answer in design.answers])
-    times = main.response_time
     return IdentificationRequest(
         np.array(main.people)[main.participant],
         np.array([stimuli.index(main.surfaces[k].name) for k in main.presented[0]]),
@@ -191,7 +187,7 @@ def _identified(main: Answers, how: _How) -> IdentificationRequest:
         right,
         name=how.name,
         origin=main.origin,
-        response_time=times if np.isfinite(times).any() else None,
+        response_time=main.response_time,
         exploration=main.exploration,
         level=how.level,
         resamples=how.resamples,
@@ -212,19 +208,20 @@ def _matches(answers: Answers, how: _How) -> IdentificationAnalysis:
                 "d′ along the stimuli: they have no order; read the confusions, which need none",
             ),
         )
-    course = course_of(answers, display)
-    return dataclasses.replace(found, course=course, methods=methods_text(answers, display))
+    return dataclasses.replace(
+        found, course=course_of(answers, display), methods=methods_text(answers, display)
+    )
 
 
 def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
     design, display, level, seed = answers.design, how.display, how.level, how.seed
-    main, tell = answers.main(display), how.tell
-    found = measured(main, how.level, how.seed, how.tell)
-    tell("response times and drift")
+    main = answers.main(display)
+    found = measured(main, level, seed, how.tell)
+    how.tell("response times and drift")
     condition, names = _conditions(main)
-    course = course_of(answers, display)
-    times = _times(main, condition, names, level)
-    explored = _explored(main, condition, names, level)
+    person = np.unique(main.participant, return_inverse=True)[1]
+    # A time of 0 is what a clock of milliseconds makes of a slip of the hand.
+    times = np.where(main.response_time > 0, main.response_time, np.nan)
     unbounded = [person.person for person in found.persons if person.unbounded]
     notes = [*found.notes]
     if unbounded:
@@ -244,9 +241,12 @@ def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
         trials=main.trials,
         standard=design.reference_value,
         is_adaptive=bool((main.series >= 0).any()),
-        response_times=times,
-        course=course,
-        exploration=explored,
+        response_times=response_time_summary(person, condition, times, names, level),
+        course=course_of(answers, display),
+        exploration={
+            key: condition_means(person, condition, values, names, level)
+            for key, values in main.exploration.items()
+        },
         assumed=how.assumed,
         methods=methods_text(answers, display),
         screening=None,
@@ -269,24 +269,3 @@ def _conditions(main: Answers) -> tuple[si.IntArray, tuple[str, ...]]:
         other, _ = comparisons(main)
         return np.where(other < 0, len(names), place[other]), (*names, "the same")
     return place[main.presented[0]], names
-
-
-def _times(
-    main: Answers, condition: si.IntArray, names: tuple[str, ...], level: float
-) -> tuple[ResponseTimeSummary, ...]:
-    # A time of 0 is what a clock of milliseconds makes of a slip of the hand.
-    times = np.where(main.response_time > 0, main.response_time, np.nan)
-    if not np.isfinite(times).any():
-        return ()
-    person = np.unique(main.participant, return_inverse=True)[1]
-    return response_time_summary(person, condition, times, names, level)
-
-
-def _explored(
-    main: Answers, condition: si.IntArray, names: tuple[str, ...], level: float
-) -> dict[str, tuple[ConditionMean, ...]]:
-    person = np.unique(main.participant, return_inverse=True)[1]
-    return {
-        key: condition_means(person, condition, values, names, level)
-        for key, values in main.exploration.items()
-    }

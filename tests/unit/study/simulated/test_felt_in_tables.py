@@ -17,11 +17,10 @@ def test_a_comparison_is_felt_as_the_study_explores(
 ) -> None:
     asked: list[Any] = []
 
-    def feel(name: str) -> Any:
-        return lambda *said: asked.append((name, *said)) or f"felt by {name}"
+    def feel(*said: Any) -> Any:
+        return asked.append(said) or f"felt by {said[0]}"
 
-    monkeypatch.setattr(chain_tables, "felt_by_strokes", feel("strokes"))
-    monkeypatch.setattr(chain_tables, "felt_freely", feel("free"))
+    monkeypatch.setattr(chain_tables, "felt_virtually", feel)
     tables: Any = SimpleNamespace(
         design=SimpleNamespace(exploring=exploring), plates=("p0", "p1"), observer="people",
         fingers=("f0", "f1", "f2"), apparatus=("a0", "a1"),

@@ -15,7 +15,7 @@ from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.simulated import chain_tables as module
-from squeezefilm.study.simulated.chain_tables import felt_freely, free_path
+from squeezefilm.study.simulated.chain_tables import felt_virtually, free_path
 
 PLATE, PEOPLE = load_display("biet2008-plate"), load_observer()
 FINGER = PEOPLE.median_finger()
@@ -42,19 +42,19 @@ def test_a_free_hand_feels_both_ways_once(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr(module, "_KEPT", SimpleNamespace(found=found_or_made))
     monkeypatch.setattr(module, "_REMEMBERED", {})
     fine, apparatus = Stimulus("fine", 4e-3, "period"), module.Apparatus()
-    found: Any = felt_freely(fine, PLATE, PEOPLE, FINGER, apparatus)
+    found: Any = felt_virtually("free", fine, PLATE, PEOPLE, FINGER, apparatus)
     assert found.period.tolist() == [[4e-3, 2e-3], [5e-3, 1e-3]]
     assert found.d_prime.tolist() == [[0.0, 1.0], [0.0, 1.0]]
     ((display, title, observer, whose, (path,), how),) = asked
     assert (display, title, observer, whose, how) == (PLATE, "fine", PEOPLE, FINGER, apparatus)
     # Asked again nothing is computed: not in this process, and not in one that has its disk.
-    assert felt_freely(fine, PLATE, PEOPLE, FINGER, apparatus) is found
+    assert felt_virtually("free", fine, PLATE, PEOPLE, FINGER, apparatus) is found
     module._REMEMBERED.clear()
-    assert felt_freely(fine, PLATE, PEOPLE, FINGER, apparatus) is found
+    assert felt_virtually("free", fine, PLATE, PEOPLE, FINGER, apparatus) is found
     assert len(asked) == 1
     assert list(kept.values()) == [found]
     # Another surface is another request.
-    felt_freely(Stimulus("fine", 5e-3, "period"), PLATE, PEOPLE, FINGER, apparatus)
+    felt_virtually("free", Stimulus("fine", 5e-3, "period"), PLATE, PEOPLE, FINGER, apparatus)
     assert len(asked) == 2
     plate: Any = PLATE.actuator
     assert np.ptp(path.x) <= plate.extent[0]
