@@ -51,8 +51,7 @@ from squeezefilm.study.identification.analysis import IdentificationAnalysis
 from squeezefilm.study.psychometric.fit import PsychometricFit
 from squeezefilm.study.report import figures
 from squeezefilm.study.report.page import FIGURES as FIGURES_OF_STUDY
-from squeezefilm.study.report.page import TASK_FIGURES, write_study
-from squeezefilm.study.report.simulated_page import write_simulated
+from squeezefilm.study.report.page import TASK_FIGURES, write_simulated, write_study
 from squeezefilm.study.simulated.answers import SimulatedStudy
 from squeezefilm.study.simulated.planned_power import PlannedPower
 from squeezefilm.study.simulated.planned_precision import PlannedPrecision

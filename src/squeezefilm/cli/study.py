@@ -164,7 +164,7 @@ def simulate(
         found = simulate_participants(planned, people, participants, seed, tables, step)
         written = None
         if out is not None:
-            from squeezefilm.study.report.simulated_page import write_simulated
+            from squeezefilm.study.report.page import write_simulated
 
             written = write_simulated(found, out, step)
     answer(as_json, found, show_simulated, page=written)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.study.report.answer_tables import answer_parts, confusion_rows
-from squeezefilm.study.report.simulated_page import evidence_rows, evidence_said, remarks
+from squeezefilm.study.report.page import evidence_rows, evidence_said, remarks
 from squeezefilm.study.report.words import (
     SCREENING_HEAD,
     key_rows,

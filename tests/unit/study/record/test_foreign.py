@@ -21,7 +21,7 @@ from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.foreign import PEOPLE, columns_of, read_answers
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import csv_text
-from squeezefilm.study.report.simulated_page import simulated_columns
+from squeezefilm.study.report.page import simulated_columns
 from squeezefilm.study.simulated.answers import simulate_participants
 from squeezefilm.study.tasks.analyze import analyze_study
 from squeezefilm.study.tasks.findings import TaskAnalysis

@@ -20,7 +20,7 @@ from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.report.answer_tables import confusion_rows
-from squeezefilm.study.report.simulated_page import (
+from squeezefilm.study.report.page import (
     REMARK,
     evidence_rows,
     evidence_said,

@@ -8,7 +8,7 @@ from tests.unit.printed import printed
 from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.percepts import Apparatus
 from squeezefilm.physics.perception.senses import Candidates
-from squeezefilm.study.report.simulated_page import REMARK, evidence_said
+from squeezefilm.study.report.page import REMARK, evidence_said
 from squeezefilm.study.report.terminal_analysis import show_simulated
 from squeezefilm.study.simulated.answers import SimulatedStudy
 from squeezefilm.study.simulated.chain_tables import ChainTables
