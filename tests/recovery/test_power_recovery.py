@@ -20,7 +20,7 @@ from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.identification.power import above_0, distinction_scores
-from squeezefilm.study.simulated import planned_contrast, planned_power
+from squeezefilm.study.simulated import planned_power, planned_precision
 from squeezefilm.study.simulated.chain_tables import ChainTables
 from squeezefilm.study.simulated.judgements import simulate_judgements
 from squeezefilm.study.simulated.participants import match_counts, simulate_matches
@@ -158,8 +158,8 @@ def contrasted(
     both = dataclasses.replace(SERIES, displays=("biet2008-plate", "biet2008-stator"))
     felt = tables(both, stretch=stretch)
     answers = simulate_judgements(felt, studies * size, seed)
-    scores = planned_contrast.within_people(answers)[1].reshape(studies, size)
-    share = np.mean([planned_contrast.otherwise_than_0(one) < 0.05 for one in scores])
+    scores = planned_precision.within_people(answers)[1].reshape(studies, size)
+    share = np.mean([planned_precision.otherwise_than_0(one) < 0.05 for one in scores])
     return float(share), float(scores.mean())
 
 
@@ -190,8 +190,8 @@ def plan_contrast(
     def made(one: StudyDesign, *_: Any, **__: Any) -> Tables:
         return tables(one, stretch=stretch)
 
-    patch.setattr(planned_contrast, "chain_tables", made)
-    found = planned_contrast.planned_contrast(
+    patch.setattr(planned_precision, "chain_tables", made)
+    found = planned_precision.planned_contrast(
         SERIES, PEOPLE, "biet2008-plate", "biet2008-stator", participants=(3,), studies=studies,
         people=people, seed=77,
     )  # fmt: skip

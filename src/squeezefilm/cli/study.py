@@ -217,9 +217,8 @@ def power(asked: PowerOptions) -> None:
     from squeezefilm.physics.perception.observer import load_observer
     from squeezefilm.study.design.study_design import load_design
     from squeezefilm.study.report.terminal_analysis import show_power, show_precision
-    from squeezefilm.study.simulated.planned_contrast import planned_contrast
     from squeezefilm.study.simulated.planned_power import planned_power
-    from squeezefilm.study.simulated.planned_precision import planned_precision
+    from squeezefilm.study.simulated.planned_precision import planned_contrast, planned_precision
     from squeezefilm.subjects import plot
 
     design, people = load_design(asked.design), load_observer(asked.observer)

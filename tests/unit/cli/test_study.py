@@ -82,7 +82,7 @@ def test_simulated_people_are_shown_and_written_where_asked(
     tables = stands_in("study.simulated.chain_tables:chain_tables", "the tables")
     people = stands_in("study.simulated.answers:simulate_participants", ANSWER)
     shown = stands_in("study.report.terminal_analysis:show_simulated")
-    written = stands_in("study.report.simulated_page:write_simulated", tmp_path / "index.html")
+    written = stands_in("study.report.page:write_simulated", tmp_path / "index.html")
     done = run("simulate", PRESET)
     assert done.returncode == 0, done.stderr
     design, observer = load_design(PRESET), load_observer("fingertip")
@@ -155,7 +155,7 @@ def test_power_takes_its_question_from_the_options(stands_in: StandsIn, tmp_path
 
 
 def test_power_compares_two_displays(stands_in: StandsIn) -> None:
-    asked = stands_in("study.simulated.planned_contrast:planned_contrast", ANSWER)
+    asked = stands_in("study.simulated.planned_precision:planned_contrast", ANSWER)
     stands_in("study.report.terminal_analysis:show_power")
     run("power", PRESET, "--against", "biet2008-plate", "--studies", "50")
     design = load_design(PRESET)

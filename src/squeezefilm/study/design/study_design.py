@@ -21,19 +21,17 @@ from squeezefilm.core.hard_limits import PARTICIPANT_TRIALS, require_within
 from squeezefilm.core.results import config_hash
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus, Varied
 from squeezefilm.physics.texture_files.image_file import with_images
-from squeezefilm.study.design.matching import (
-    Exploring,
-    MatchedWith,
-    require_amounts,
-    require_comparison,
-    require_matching,
-)
 from squeezefilm.study.design.rules import (
     AdaptiveCondition,
     CatchTrial,
     ExclusionRule,
+    Exploring,
+    MatchedWith,
     TrialRules,
+    require_amounts,
+    require_comparison,
     require_different,
+    require_matching,
     require_name,
 )
 from squeezefilm.study.design.tasks.every_task import TASKS

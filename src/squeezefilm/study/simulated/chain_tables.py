@@ -33,7 +33,7 @@ from squeezefilm.physics.perception.percepts import (
 )
 from squeezefilm.physics.perception.senses import Candidates
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
-from squeezefilm.study.design.matching import Exploring
+from squeezefilm.study.design.rules import Exploring
 from squeezefilm.study.design.study_design import StudyDesign
 
 if TYPE_CHECKING:

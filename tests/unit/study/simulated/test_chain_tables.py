@@ -102,11 +102,11 @@ def test_what_was_felt_before_needs_no_plate_no_loop_and_no_statistics(
 def test_the_displays_are_under_the_finger_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     fingers: list[str] = []
 
-    def asked(_stimulus: Any, display: Any, *_: Any) -> Any:
+    def asked(_how: Any, _stimulus: Any, display: Any, *_: Any) -> Any:
         fingers.append(display.whose_finger)
         raise InputError("nothing more is asked")
 
-    monkeypatch.setattr(felt, "felt_by_strokes", asked)
+    monkeypatch.setattr(felt, "felt_virtually", asked)
     with pytest.raises(InputError, match="nothing more"):
         chain_tables(load_design("biet2008-gratings"), load_observer(), finger="mean")
     assert fingers

@@ -13,10 +13,10 @@ from scipy import stats
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.physics.perception.senses import Candidates
-from squeezefilm.study.simulated import planned_contrast as module
 from squeezefilm.study.simulated import planned_power
+from squeezefilm.study.simulated import planned_precision as module
 from squeezefilm.study.simulated.chain_tables import ChainTables
-from squeezefilm.study.simulated.planned_contrast import otherwise_than_0, planned_contrast
+from squeezefilm.study.simulated.planned_precision import otherwise_than_0, planned_contrast
 
 from .test_judgements import ALIKE, EXACT, NUMBERS, tables
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE, YES_NO
-from squeezefilm.study.design.tasks.ranking import RANKING
 from squeezefilm.study.design.tasks.same_different import (
     ODD_ONE_OUT,
     ODD_ONE_OUT_OF_FIVE,
@@ -16,6 +15,7 @@ from squeezefilm.study.design.tasks.two_surfaces import (
     DETECTION,
     DIRECTION,
     PAIRED_COMPARISON,
+    RANKING,
     TWO_INTERVAL,
 )
 
