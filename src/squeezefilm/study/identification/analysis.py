@@ -208,29 +208,16 @@ def analyze_identification(asked: IdentificationRequest) -> IdentificationAnalys
     return analysis_of(asked)
 
 
-def proportion_correct(asked: IdentificationRequest) -> Estimate:
-    """The share of right answers (1) with the interval that an analysis quotes, and nothing else.
-    Raises as `analyze_identification` does."""
-    counts, matrix = _counted(asked)
-    return _intervals(counts, matrix, asked, [])[-1]
-
-
-def _counted(asked: IdentificationRequest) -> tuple[si.IntArray, ConfusionMatrix]:
-    """Every participant's counts, and their sum."""
-    names = tuple(asked.labels)
-    k = len(names)
-    if k < 2:
-        raise InputError(f"{k} labels cannot be confused; at least 2 are wanted")
-    _, counts = participant_counts(asked.participant, asked.stimulus, asked.choice, k, k)
-    return counts, ConfusionMatrix(counts.sum(axis=0), names, names)
-
-
 def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
     """The analysis of a request. Raises as `analyze_identification` does."""
     tell = asked.progress or (lambda _: None)
     tell("counting")
-    counts, matrix = _counted(asked)
-    names, level, resamples, seed = matrix.stimuli, asked.level, asked.resamples, asked.seed
+    names, level, resamples, seed = tuple(asked.labels), asked.level, asked.resamples, asked.seed
+    k = len(names)
+    if k < 2:
+        raise InputError(f"{k} labels cannot be confused; at least 2 are wanted")
+    _, counts = participant_counts(asked.participant, asked.stimulus, asked.choice, k, k)
+    matrix = ConfusionMatrix(counts.sum(axis=0), names, names)
     notes: list[str] = []
     tell("intervals and tests")
     intervals = _intervals(counts, matrix, asked, notes)

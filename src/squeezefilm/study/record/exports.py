@@ -10,7 +10,6 @@ description and every column in `variableMeasured`.
 
 from __future__ import annotations
 
-import itertools
 import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -34,6 +33,7 @@ from squeezefilm.study.record.tables import (
     csv_text,
     session_table,
     surface_cells,
+    surface_columns,
     trial_columns,
     trial_table,
 )
@@ -292,8 +292,6 @@ def write_orders(plan: StudyPlan, folder: str | Path) -> list[Path]:
 
 
 def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
-    design = plan.design
-    gratings = {alternative.name: alternative for alternative in design.alternatives}
     row: dict[str, Cell] = {
         "participant_number": number,
         "trial": trial.number,
@@ -307,9 +305,4 @@ def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
         "pause_s": trial.pause,
         "seed": trial.seed,
     }
-    for prefix, name in itertools.zip_longest(SURFACES, trial.stimuli, fillvalue=""):
-        felt = trial.phase == "familiarisation" and name in gratings
-        surface = gratings[name] if felt else (design.stimulus(name) if name else None)
-        row[prefix] = name
-        row |= {f"{prefix}_{key}": value for key, value in surface_cells(surface).items()}
-    return row
+    return row | surface_columns(plan.design, trial.stimuli, row, surface_cells)

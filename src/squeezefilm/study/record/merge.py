@@ -76,12 +76,13 @@ def merge(store: StudyStore, other: str | Path) -> Merge:
         store.require_whole()
         theirs.require_whole()
         traces = _copy_traces(store, theirs)
-        added: Counter[str] = Counter()
-        present: Counter[str] = Counter()
+        added: dict[str, int] = {}
+        present: dict[str, int] = {}
         conflicts: list[str] = []
         with store.transaction() as write:
             for table in TABLES:
-                _merge_table(write, store, theirs, table, added, present, conflicts)
+                added[table], present[table], wrong = _merge_table(write, store, theirs, table)
+                conflicts += wrong
             if conflicts:
                 more = len(conflicts) - _SHOWN
                 raise ContradictionError(
@@ -91,23 +92,14 @@ def merge(store: StudyStore, other: str | Path) -> Merge:
                 )
     numbers = Counter(row["number"] for row in store.rows("SELECT number FROM participant"))
     doubled = tuple(sorted(number for number, count in numbers.items() if count > 1))
-    return Merge(
-        {table: added[table] for table in TABLES},
-        {table: present[table] for table in TABLES},
-        traces,
-        doubled,
-    )
+    return Merge(added, present, traces, doubled)
 
 
 def _merge_table(
-    write: sqlite3.Connection,
-    store: StudyStore,
-    theirs: StudyStore,
-    table: str,
-    added: Counter[str],
-    present: Counter[str],
-    conflicts: list[str],
-) -> None:
+    write: sqlite3.Connection, store: StudyStore, theirs: StudyStore, table: str
+) -> tuple[int, int, list[str]]:
+    """Rows of a table added, rows that were there, and what contradicts."""
+    added, present, conflicts = 0, 0, []
     key = "trial" if table in ("response", "set_aside") else "uuid"
     known = {row[key]: row for row in store.rows(f"SELECT * FROM {table}")}
     for row in theirs.rows(f"SELECT * FROM {table}"):
@@ -118,12 +110,13 @@ def _merge_table(
             except sqlite3.IntegrityError as error:
                 conflicts.append(f"{table} {row[key]}: {error}")
             else:
-                added[table] += 1
+                added += 1
         elif mine != row:
             fields = ", ".join(name for name in row if row[name] != mine[name])
             conflicts.append(f"{table} {row[key]} differs in {fields}")
         else:
-            present[table] += 1
+            present += 1
+    return added, present, conflicts
 
 
 def _copy_traces(store: StudyStore, theirs: StudyStore) -> int:

@@ -8,12 +8,13 @@ A text cell that a spreadsheet would take for a formula is written with an apost
 from __future__ import annotations
 
 import csv
+import functools
 import io
 import itertools
 import json
 import math
 import unicodedata
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -131,10 +132,9 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
     Trials without an answer are not in it. Raises `RecordError` if the file cannot be read.
     """
     design = store.design
-    gratings = {alternative.name: alternative for alternative in design.alternatives}
     rows: list[dict[str, Cell]] = []
     columns = trial_columns(design)
-    surfaces = _Surfaces()
+    cells = functools.cache(surface_cells)
     for row in store.rows(_QUERY):
         names = json.loads(row.pop("stimuli"))
         row["task"] = design.task
@@ -142,15 +142,28 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
         row |= measures(store, row["display"], traces) if traces else NO_MEASURES
         row["traces"] = " ".join(traces)
         row["correct"] = None if row["correct"] is None else bool(row["correct"])
-        for prefix, name in itertools.zip_longest(SURFACES, names):
-            row[prefix] = name or ""
-            felt = row["phase"] == "familiarisation" and gratings
-            one: Stimulus | Grating | None = None
-            if name is not None:
-                one = gratings.get(name) if felt else presented(design, name, row)
-            row |= {f"{prefix}_{key}": value for key, value in surfaces.cells(one).items()}
+        row |= surface_columns(design, names, row, cells)
         rows.append({column.name: row[column.name] for column in columns})
     return rows
+
+
+def surface_columns(
+    design: StudyDesign,
+    names: Sequence[str],
+    row: Mapping[str, Any],
+    cells: Callable[[Stimulus | Grating | None], dict[str, Cell]],
+) -> dict[str, Cell]:
+    """Columns of all `SURFACES` of a trial that presented those of these names, by what `cells`
+    says of each (`surface_cells`)."""
+    gratings = {}
+    if row["phase"] == "familiarisation":
+        gratings = {alternative.name: alternative for alternative in design.alternatives}
+    found: dict[str, Cell] = {}
+    for prefix, name in itertools.zip_longest(SURFACES, names, fillvalue=""):
+        surface = gratings.get(name) or (presented(design, name, row) if name else None)
+        found[prefix] = name
+        found |= {f"{prefix}_{key}": value for key, value in cells(surface).items()}
+    return found
 
 
 def is_chosen(design: StudyDesign, name: str, row: Mapping[str, Any]) -> bool:
@@ -167,20 +180,6 @@ def presented(design: StudyDesign, name: str, row: Mapping[str, Any]) -> Stimulu
     if not math.isfinite(row["intensity"]):
         raise InputError("say how much more than the reference it had", quantity="intensity")
     return design.comparison(series, row["intensity"])
-
-
-class _Surfaces:
-    """Cells of surfaces in exports, each worked out once."""
-
-    def __init__(self) -> None:
-        # By the surface itself, which is kept: what a series chose is made anew for each row.
-        self._known: dict[int, tuple[Any, dict[str, Cell]]] = {}
-
-    def cells(self, one: Stimulus | Grating | None) -> dict[str, Cell]:
-        """Periods, change of friction, kind and hash; a real grating has no hash."""
-        if id(one) not in self._known:
-            self._known[id(one)] = one, surface_cells(one)
-        return self._known[id(one)][1]
 
 
 def surface_cells(surface: Stimulus | Grating | None) -> dict[str, Cell]:

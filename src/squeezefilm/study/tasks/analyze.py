@@ -18,7 +18,6 @@ from squeezefilm.study.identification.analysis import (
     IdentificationAnalysis,
     IdentificationRequest,
     analysis_of,
-    proportion_correct,
 )
 from squeezefilm.study.identification.condition_means import (
     condition_means,
@@ -26,7 +25,6 @@ from squeezefilm.study.identification.condition_means import (
     response_time_summary,
 )
 from squeezefilm.study.identification.screening import Screening, judged_people, rule_of
-from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.answers import Answers, recorded_answers
 from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
@@ -131,35 +129,20 @@ def _screened(answers: Answers, how: _How) -> StudyAnalysis:
     people, said = judged_people(answers, how.display)
     rule = rule_of(answers.design)
     out = [person.person for person in people if person.reasons]
-    results: dict[str, Estimate | None] = {}
-    robust: Estimate | None = None
-    if not out or len(out) == len(people):
-        chosen = analysis(answers, how)
-        results["everybody"] = chosen.main_number
-    else:
+    everybody = chosen = analysis(answers, how)
+    results = {"everybody": everybody.main_number}
+    if out and len(out) < len(people):
         numbers = [answers.people.index(name) for name in out]
-        rest = answers.take(~np.isin(answers.participant, numbers))
-        excludes = rule.action == "exclude"
-        chosen = analysis(rest if excludes else answers, how)
-        other, robust = _main_numbers(answers if excludes else rest, how)
-        pair = (other, chosen.main_number) if excludes else (chosen.main_number, other)
-        results |= dict(zip(("everybody", "without those named"), pair, strict=True))
-    if isinstance(chosen, TaskAnalysis):
-        is_everybody = len(chosen.people) == len(people)
-        results["robust, everybody"] = chosen.robust if is_everybody else robust
+        without = analysis(answers.take(~np.isin(answers.participant, numbers)), how)
+        results["without those named"] = without.main_number
+        if rule.action == "exclude":
+            chosen = without
+    if isinstance(everybody, TaskAnalysis):
+        results["robust, everybody"] = everybody.robust
     known = {name: result for name, result in results.items() if result is not None}
     screening = Screening(rule, people, known, said)
     methods = chosen.methods + screening.left_out_sentence
     return dataclasses.replace(chosen, screening=screening, methods=methods)
-
-
-def _main_numbers(answers: Answers, how: _How) -> tuple[Estimate | None, Estimate | None]:
-    """The main number that a display's analysis would have, and the robust one."""
-    main = answers.main(how.display)
-    if answers.design.task != "match-to-sample":
-        found = measured(main, how.level, how.seed, how.tell)
-        return found.pooled, found.robust
-    return proportion_correct(_identified(main, how)), None
 
 
 def stimuli_and_answers(design: StudyDesign) -> tuple[list[str], list[str]]:
