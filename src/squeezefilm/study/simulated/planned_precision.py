@@ -31,10 +31,9 @@ from squeezefilm.study.simulated.planned_power import (
     PlannedStudies,
     on_one_display,
 )
-from squeezefilm.study.tasks.by_condition import MEASURE, unlike_persons
-from squeezefilm.study.tasks.findings import PARTS, PersonEstimate
-from squeezefilm.study.tasks.scales import exponents, rank_exponents
-from squeezefilm.study.tasks.thresholds import PeopleOnGrid, on_grid, settings_of
+from squeezefilm.study.tasks.findings import PARTS
+from squeezefilm.study.tasks.measures import measured
+from squeezefilm.study.tasks.thresholds import on_grid
 
 PEOPLE = 400
 """Simulated people that studies are drawn from; each one's fit takes some 20 ms."""
@@ -142,15 +141,16 @@ def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Int
     """Name of what a study of these people measures, and its value with the 95 % interval of any
     group of them, whose people are fitted once."""
     main = answers.main(0)
+    design, in_runs = main.design, any(series.in_runs for series in main.design.adaptive)
     tell("each person's fit")
-    people = _on_grid(main)
-    if people is not None:
+    if design.described.model and design.on_a_scale and not in_runs:
+        people = on_grid(main)
 
         def fraction(who: si.IntArray) -> Ends:
             found = people.population.estimate(0.95, who)
             return math.exp(found.mean), math.exp(found.low), math.exp(found.high)
 
-        return main.design.measure, fraction
+        return design.measure, fraction
     measure, values = person_values(main)
 
     def mean(who: si.IntArray) -> Ends:
@@ -163,38 +163,19 @@ def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Int
 def person_values(main: Answers) -> tuple[str, si.FloatArray]:
     """Name of what the answers to one display measure of a person, and each one's value, as the
     analysis fits it; shape (people,)."""
-    people, task = _on_grid(main), main.design.task
-    if any(series.in_runs for series in main.design.adaptive):
-        measure, persons, *_ = settings_of(main, 0.95)
-        if len(persons) < len(main.people):
-            raise InputError(
-                f"{len(main.people) - len(persons)} of {len(main.people)} simulated people end "
-                "fewer than two runs; give the series more trials, or larger steps",
-                quantity="count",
-            )
-        return measure, _values(persons)
-    if main.design.described.ranks and people is None:
-        return "exponent", _values(rank_exponents(main, 0.95))
-    if people is not None:
-        return main.design.measure, _values(people.estimates(0.95))
-    if main.design.described.model is not None:
-        return MEASURE, _values(unlike_persons(main, 0.95, 0)[0])
-    if task == "magnitude-estimation":
-        return "exponent", _values(exponents(main, 0.95)[0])
-    size = len(main.people)
-    right = np.bincount(main.participant, main.correct, size)
-    return "proportion correct", right / np.bincount(main.participant, minlength=size)
-
-
-def _on_grid(main: Answers) -> PeopleOnGrid | None:
-    """Each person's threshold, in tasks whose surfaces differ along a scale."""
-    design = main.design
-    in_runs = any(series.in_runs for series in design.adaptive)
-    return on_grid(main) if design.described.model and design.on_a_scale and not in_runs else None
-
-
-def _values(persons: list[PersonEstimate]) -> si.FloatArray:
-    return np.array([person.estimate.value for person in persons])
+    if main.design.task == "match-to-sample":
+        right = np.bincount(main.participant, main.correct)
+        return "proportion correct", right / np.bincount(main.participant)
+    found = measured(main, 0.95, 0, lambda _: None)
+    lacking = len(main.people) - len(found.persons)
+    if lacking:
+        why = "end fewer than two runs; give the series more trials, or larger steps"
+        if not any(series.in_runs for series in main.design.adaptive):
+            why = f"have no {found.measure} of their own: {'; '.join(found.notes)}"
+        raise InputError(
+            f"{lacking} of {len(main.people)} simulated people {why}", quantity="count"
+        )
+    return found.measure, np.array([person.estimate.value for person in found.persons])
 
 
 # Two displays: the test is of the differences of values within people, so that people may differ as
