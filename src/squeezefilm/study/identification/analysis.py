@@ -205,11 +205,6 @@ def analyze_identification(asked: IdentificationRequest) -> IdentificationAnalys
         InputError: fewer than two labels, arrays that do not fit, or no trial. What the data are
             too few for is None in the result, with the reason in `notes`.
     """
-    return analysis_of(asked)
-
-
-def analysis_of(asked: IdentificationRequest) -> IdentificationAnalysis:
-    """The analysis of a request. Raises as `analyze_identification` does."""
     tell = asked.progress or (lambda _: None)
     tell("counting")
     names, level, resamples, seed = tuple(asked.labels), asked.level, asked.resamples, asked.seed

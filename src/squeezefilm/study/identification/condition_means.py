@@ -102,17 +102,10 @@ def response_time_summary(
     names: tuple[str, ...],
     level: si.Dimensionless = 0.95,
 ) -> tuple[ResponseTimeSummary, ...]:
-    """Summaries by condition; times of a participant count as log-normal.
+    """Summaries by condition of times (s), NaN for one not taken; those of a participant count as
+    log-normal. Conditions are as `condition_means` has them, and those without a time left out.
 
-    Args:
-        participant: numbers from 0 up, shape (trials,).
-        condition: number of the condition, shape (trials,), 0 to len(names) − 1.
-        response_time: in s, shape (trials,), above 0; NaN for a time not taken.
-        names: of the conditions; those without a time are left out.
-        level: of the intervals.
-
-    Raises:
-        InputError: times not above 0, arrays of unequal length, or a level not between 0 and 1.
+    Raises `InputError` for times not above 0, and as `condition_means` does.
     """
     given = np.asarray(response_time, dtype=float)
     one_per_trial(participant=participant, condition=condition, response_time=given)

@@ -16,8 +16,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.identification.analysis import (
     IdentificationAnalysis,
-    IdentificationRequest,
-    analysis_of,
+    analyze_identification,
 )
 from squeezefilm.study.identification.condition_means import (
     condition_means,
@@ -158,12 +157,11 @@ def stimuli_and_answers(design: StudyDesign) -> tuple[list[str], list[str]]:
     return stimuli, right
 
 
-def _identified(main: Answers, how: _How) -> IdentificationRequest:
-    """The trials of a display as identifications take them."""
-    design = main.design
+def _matches(answers: Answers, how: _How) -> IdentificationAnalysis:
+    design, display, main = answers.design, how.display, answers.main(how.display)
     stimuli, right = stimuli_and_answers(design)
     order = np.array([right.index(answer) for answer in design.answers])
-    return IdentificationRequest(
+    found = analyze_identification(
         np.array(main.people)[main.participant],
         np.array([stimuli.index(main.surfaces[k].name) for k in main.presented[0]]),
         order[main.choice],
@@ -177,11 +175,6 @@ def _identified(main: Answers, how: _How) -> IdentificationRequest:
         seed=how.seed,
         progress=how.tell,
     )
-
-
-def _matches(answers: Answers, how: _How) -> IdentificationAnalysis:
-    design, display = answers.design, how.display
-    found = analysis_of(_identified(answers.main(display), how))
     if not design.on_a_scale:
         found = dataclasses.replace(
             found,
