@@ -198,14 +198,14 @@ def verdict_list(findings: Iterable[tuple[str, str]]) -> str:
     return f'<ul class="verdict">\n{items}\n</ul>'
 
 
-def figure_section(item: FigureOf, heading: str, svg: str) -> str:
+def figure_section(item: FigureOf, svg: str) -> str:
     """A figure, drawn as an SVG element, in its section with how it is read."""
     body = (
         f'<figure id="figure-{item.key}">\n<div class="scroll" tabindex="0" role="region" '
         f'aria-label="{escape(item.heading)}">{svg}</div>\n'
         f"<figcaption>{escape(item.reading)}</figcaption>\n</figure>"
     )
-    return section(escape(heading), body, "figure")
+    return section(escape(item.heading), body, "figure")
 
 
 def picture_files(figures: Mapping[str, tuple[str, Figure]]) -> dict[str, str | bytes]:

@@ -302,10 +302,9 @@ FIGURES: tuple[FigureOf, ...] = (
 """Figures of what one decides from, in the order of the page."""
 
 
-def drawing(analysis: Analysis, key: str) -> str:
+def drawing(analysis: Analysis, item: FigureOf) -> str:
     """A figure as an SVG element, with its message for those who cannot see it."""
-    item = next(figure for figure in FIGURES if figure.key == key)
     with style.rc():
         figure = item.draw(analysis)
         message = " ".join(figure.get_suptitle().split())
-        return style.svg(figure, key, f"{item.heading}. {message}. {item.reading}")
+        return style.svg(figure, item.key, f"{item.heading}. {message}. {item.reading}")

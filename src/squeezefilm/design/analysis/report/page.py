@@ -63,8 +63,8 @@ def write_analysis(
 
 
 def _figures(analysis: Analysis) -> dict[str, str]:
-    """The drawings by key."""
-    return {item.key: drawing(analysis, item.key) for item in FIGURES}
+    """The figures by key, each in its section."""
+    return {item.key: figure_section(item, drawing(analysis, item)) for item in FIGURES}
 
 
 def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
@@ -88,7 +88,7 @@ def report_page(
     drawn: Mapping[str, str] | None = None,
 ) -> str:
     """The report as the text of one self-contained HTML page: the first screen, then a fold for
-    each question. `drawn` are its drawings by key, where they are there already."""
+    each question. `drawn` are its figures by key, where they are there already."""
     summary, ready = summary or analysis.summary(), drawn or _figures(analysis)
     display = analysis.display
     title, name = as_html(display.title), as_html(display.name)
@@ -113,7 +113,7 @@ def report_page(
 def in_short(analysis: Analysis, drawn: Mapping[str, str] | None = None) -> str:
     """First screen of an analysis as HTML, with its picture where that is `drawn`."""
     screen = first_screen(analysis)
-    picture = "" if drawn is None else _figure("friction", drawn)
+    picture = "" if drawn is None else drawn["friction"]
     numbers = text_table("In numbers", HEAD, screen.numbers)
     body = (
         f"<p>{as_html(screen.sentence)}</p>\n{picture}{numbers}\n"
@@ -125,16 +125,11 @@ def in_short(analysis: Analysis, drawn: Mapping[str, str] | None = None) -> str:
 
 def _fold(fold: Fold, drawn: Mapping[str, str]) -> str:
     """A question with what answers it, folded."""
-    body = [_figure(key, drawn) for key in fold.figures]
+    body = [drawn[key] for key in fold.figures]
     body += [text_table(each.caption, each.head, each.rows) for each in fold.tables if each.rows]
     if fold.said:
         body.append(bullets(fold.said))
     return folded(fold.question, "\n".join(body))
-
-
-def _figure(key: str, drawn: Mapping[str, str]) -> str:
-    item = next(figure for figure in FIGURES if figure.key == key)
-    return figure_section(item, item.heading, drawn[key])
 
 
 def show_analysis(analysis: Analysis, *, whole: bool = False, sensitivities: bool = False) -> None:

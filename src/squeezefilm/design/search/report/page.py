@@ -91,11 +91,7 @@ def design_page(search: DesignSearch, *, fabrication: str = "") -> str:
     parts = [
         section("To read first", verdict_list(first_sentences(search))),
         section("What was asked for", bullets([*asked_sentences(requirements), *notes])),
-        *(
-            figure_section(item, item.heading, _svg(search, item))
-            for item in FIGURES
-            if item.has(search)
-        ),
+        *(figure_section(item, _svg(search, item)) for item in FIGURES if item.has(search)),
         section("The plates of the front", _front_table(search)),
         *_chosen_sections(search, fabrication),
         *_reference_section(search),

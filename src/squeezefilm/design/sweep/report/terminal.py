@@ -41,20 +41,13 @@ def quantity_of(column: SweptColumn) -> str:
     return (name if mode_of(column) is None else name.rpartition(".")[2]).replace("_", " ")
 
 
-def each_name(axis: Axis) -> list[Axis]:
-    """An axis on which several values change together as one for each of them."""
-    return [
-        Axis((name,), (unit,), tuple((step[k],) for step in axis.steps))
-        for k, (name, unit) in enumerate(zip(axis.names, axis.units, strict=True))
-    ]
-
-
 def step_words(axis: Axis, number: int) -> str:
     """Words for a step of an axis: ``1.5 mm``."""
-    return ", ".join(
-        str(value) if unit is None else shown(float(value), unit)
-        for value, unit in zip(axis.steps[number], axis.units, strict=True)
-    )
+    return ", ".join(map(_value_words, axis.steps[number], axis.units))
+
+
+def _value_words(value: float | str, unit: si.Unit | None) -> str:
+    return str(value) if unit is None else shown(float(value), unit)
 
 
 def read_easily(column: SweptColumn, more: str = "") -> tuple[si.FloatArray, str]:
@@ -101,9 +94,9 @@ def sweep_columns(sweep: Sweep) -> list[tuple[str, list[str]]]:
     every = list(itertools.product(*(range(len(axis)) for axis in sweep.axes)))
     columns = []
     for number, axis in enumerate(sweep.axes):
-        for part in each_name(axis):
-            steps = [step_words(part, k) for k in range(len(part))]
-            columns.append((name_of(part), [steps[point[number]] for point in every]))
+        for k, (name, unit) in enumerate(zip(axis.names, axis.units, strict=True)):
+            steps = [_value_words(step[k], unit) for step in axis.steps]
+            columns.append((name.replace("_", " "), [steps[point[number]] for point in every]))
     return [*columns, *map(cells, sweep.columns)]
 
 
