@@ -35,7 +35,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     },
     "core/kept/store.py": {"json.loads": "what `read_regular` read; any error counts as not there"},
     "physics/contact/sharing/gas_table.py": {"np.load": PACKAGE},
-    "core/kept/computed_by.py": {"os.open": "the package's source"},
+    "core/kept/computed_by.py": {"open": "the package's source"},
     "measure/recordings/files/scipy_files.py": {"loadmat": CHILD},
     "measure/recordings/files/universal.py": {"pyuff.UFF": CHILD},
     "measure/recordings/files/instruments.py": {"read_text": PACKAGE, "tomllib.loads": TOML},

@@ -42,15 +42,10 @@ def reads_text(target: _Callable) -> _Callable:
 
 def _reading(function: Callable[..., Any], annotated: Any) -> Callable[..., Any]:
     readers: dict[str, _Reader] = {}
-    # Types of values that hold no text, as they are met: that is looked up first, and costs least.
-    plain: set[type] = set()
 
     @functools.wraps(function)
     def reading(*args: Any, **kwargs: Any) -> Any:
-        kinds = {*map(type, args), *map(type, kwargs.values())}
-        if not kinds <= plain:
-            plain.update(kind for kind in kinds if not issubclass(kind, _TEXTUAL))
-        if kinds <= plain:
+        if not any(isinstance(value, _TEXTUAL) for value in (*args, *kwargs.values())):
             return function(*args, **kwargs)
         if not readers:
             hints = typing.get_type_hints(annotated, include_extras=True)
