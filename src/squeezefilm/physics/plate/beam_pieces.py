@@ -15,6 +15,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import sparse
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import OutOfRangeError
@@ -181,8 +182,8 @@ class _Elements:
         heavy[:, 1::2, 1::2] = j * moving * h
         self.stiffness, self.mass = self._banded(stiff), self._banded(heavy)
 
-    def _banded(self, each: si.FloatArray) -> si.FloatArray:
-        """The sum of the elements' matrices, its diagonals as rows."""
+    def _banded(self, each: si.FloatArray) -> sparse.dia_array:
+        """The sum of the elements' matrices."""
         place = np.arange(each.shape[1])
         row, column = np.meshgrid(place, place, indexing="ij")
         first = 2 * _ORDER * np.arange(len(each))[:, None, None]
@@ -193,7 +194,8 @@ class _Elements:
             (np.broadcast_to(_BAND + row - column, shape), np.broadcast_to(first + column, shape)),
             each,
         )
-        return bands
+        size = bands.shape[1]
+        return sparse.dia_array((bands, np.arange(_BAND, -_BAND - 1, -1)), shape=(size, size))
 
     def candidates(self, nodal_lines: int) -> Iterator[tuple[float, si.FloatArray]]:
         """The mode whose shape is nearest to a wave, and then, in case it is another, those around
@@ -215,27 +217,21 @@ class _Elements:
         shift = guess**2
         for _ in range(_TURNS):
             try:
-                vector = solve_banded(
-                    (_BAND, _BAND), self.stiffness - shift * self.mass, _times(self.mass, vector)
-                )
+                bands = self.stiffness.data - shift * self.mass.data
+                vector = solve_banded((_BAND, _BAND), bands, self.mass @ vector)
             except LinAlgError:
                 return None  # on the mode to the last digit, of a shape that is not known yet
-            vector /= math.sqrt(vector @ _times(self.mass, vector))
-            before, shift = shift, float(vector @ _times(self.stiffness, vector))
+            vector /= math.sqrt(vector @ (self.mass @ vector))
+            before, shift = shift, float(vector @ (self.stiffness @ vector))
             if abs(shift - before) <= _SETTLED * abs(shift):
                 return math.sqrt(abs(shift)), vector
         return None
 
     def _around(self, guess: float, count: int) -> Iterator[tuple[float, si.FloatArray]]:
         """Modes around a frequency, so many and four more."""
-        from scipy.sparse import dia_array
         from scipy.sparse.linalg import eigsh
 
-        offsets, size = np.arange(_BAND, -_BAND - 1, -1), self.stiffness.shape[1]
-        stiffness, mass = (
-            dia_array((bands, offsets), shape=(size, size)).tocsc()
-            for bands in (self.stiffness, self.mass)
-        )
+        stiffness, mass = self.stiffness.tocsc(), self.mass.tocsc()
         values, vectors = eigsh(stiffness, k=count + 4, M=mass, sigma=guess**2)
         for value, vector in zip(values, vectors.T, strict=True):
             if value > _RIGID * guess**2:
@@ -275,12 +271,3 @@ def _even(pieces: Sequence[BeamPiece]) -> Laminate:
 
 def _constants(piece: BeamPiece) -> tuple[float, float, float, float]:
     return piece.bending_stiffness, piece.mass_per_area, piece.shear_stiffness, piece.rotary_inertia
-
-
-def _times(bands: si.FloatArray, vector: si.FloatArray) -> si.FloatArray:
-    product: si.FloatArray = bands[_BAND] * vector
-    for k in range(1, _BAND + 1):
-        # Both triangles of a symmetric matrix.
-        product[:-k] += bands[_BAND - k, k:] * vector[k:]
-        product[k:] += bands[_BAND + k, :-k] * vector[:-k]
-    return product
