@@ -134,7 +134,6 @@ NOT_CALLED = {
     physics.plate.solid.coarse_modes.open_values
     physics.plate.solid.coarse_modes.shunted_frequencies
     physics.plate.solid.refined_modes.extrapolated_class
-    physics.plate.elements.slab_modes.modes_below
     physics.plate.elements.slab_modes.modes_near physics.plate.elements.slab_modes.prolonged
     physics.plate.elements.slab_modes.with_open_electrodes physics.plate.elements.lobatto.LineMesh
     physics.plate.elements.lobatto.LineMesh.interpolation

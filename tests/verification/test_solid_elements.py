@@ -17,7 +17,6 @@ from squeezefilm.physics.plate.elements.box_model import (
 from squeezefilm.physics.plate.elements.lobatto import LineMesh
 from squeezefilm.physics.plate.elements.slab_modes import (
     SlabFactor,
-    modes_below,
     modes_near,
     with_open_electrodes,
 )
@@ -125,7 +124,7 @@ def test_rigid_motion_costs_nothing_and_there_are_six_of_them() -> None:
         spin = np.zeros((3, 3))
         spin[a, b], spin[b, a] = 1, -1
         assert np.max(np.abs(slabs.stiffness_times(linear_field(slabs, spin)))) < 1e-10 * scale
-    assert modes_below(slabs, (2 * np.pi * 10.0) ** 2) == 6
+    assert SlabFactor(slabs, (2 * np.pi * 10.0) ** 2).modes_below == 6
 
 
 def test_free_beam_has_euler_s_roots() -> None:

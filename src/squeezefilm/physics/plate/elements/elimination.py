@@ -34,14 +34,18 @@ _SCHUR_BLOCK = 128
 class PartialLDL:
     """A = W D Wᵀ for the first `pivots` rows of a symmetric matrix.
 
-    `W` (rows × pivots, unit block diagonal left out), `inverse` the inverted diagonal blocks,
-    `negative` the number of negative pivots if counted.
+    `W` (rows × pivots, unit block diagonal left out), `inverse` the inverted diagonal blocks.
     """
 
     pivots: int
     W: Matrix
     inverse: tuple[Matrix, ...]
-    negative: int
+
+    @property
+    def negative(self) -> int:
+        """The number of negative pivots: with what is left, A has as many negative eigenvalues
+        (Sylvester's law of inertia)."""
+        return sum(int(np.count_nonzero(np.linalg.eigvalsh(inv) < 0)) for inv in self.inverse)
 
     def forward(self, inside: Matrix) -> tuple[Matrix, Matrix]:
         """The reduced right side of the pivots, and what to subtract from that of the rest."""
@@ -82,7 +86,7 @@ class LDLSteps:
 
     @property
     def negative(self) -> int:
-        """The number of negative pivots, if counted."""
+        """The number of negative pivots."""
         return sum(ldl.negative for _, _, ldl in self.steps)
 
     def forward(self, inside: Matrix) -> tuple[Matrix, Matrix]:
@@ -104,7 +108,7 @@ class LDLSteps:
         return full[: self.pivots]
 
 
-def partial_ldl(A: Matrix, pivots: int, *, count: bool = False) -> tuple[PartialLDL, Matrix]:
+def partial_ldl(A: Matrix, pivots: int) -> tuple[PartialLDL, Matrix]:
     """Eliminate the first `pivots` rows and columns of a symmetric matrix (real or complex); the
     second result is the matrix that is left of the others, their Schur complement.
 
@@ -115,7 +119,7 @@ def partial_ldl(A: Matrix, pivots: int, *, count: bool = False) -> tuple[Partial
     n = A.shape[0]
     raw = np.empty((n, pivots), dtype=A.dtype)
     W = np.empty((n, pivots), dtype=A.dtype)
-    inverse, negative = [], 0
+    inverse = []
     for k in range(0, pivots, _BLOCK):
         e = min(k + _BLOCK, pivots)
         # Products go where they stay: fresh memory for each costs as much as the product.
@@ -133,9 +137,6 @@ def partial_ldl(A: Matrix, pivots: int, *, count: bool = False) -> tuple[Partial
                 "the shifted stiffness matrix is singular: the shift hits a mode exactly; ask for "
                 "a frequency a little beside it"
             ) from error
-        if count:
-            # Sylvester's law of inertia: pivot blocks and what is left together have as many as A.
-            negative += int(np.count_nonzero(np.linalg.eigvalsh(block) < 0))
         inverse.append(inverted)
         np.matmul(panel, inverted, out=W[k:, k:e])
     r = n - pivots
@@ -147,7 +148,7 @@ def partial_ldl(A: Matrix, pivots: int, *, count: bool = False) -> tuple[Partial
         np.matmul(left[j:], right[j:e].T, out=part)
         np.subtract(rest[j:, j:e], part, out=part)
         schur[j:e, e:] = part[e - j :].T
-    return PartialLDL(pivots, W, tuple(inverse), negative), schur
+    return PartialLDL(pivots, W, tuple(inverse)), schur
 
 
 class SliceMatrices(NamedTuple):
@@ -181,7 +182,7 @@ class MirroredElement:
 
     @property
     def negative(self) -> int:
-        """The number of negative pivots, if counted."""
+        """The number of negative pivots."""
         return sum(half.negative for half in self.halves)
 
     def forward(self, inside: Matrix) -> tuple[tuple[Matrix, Matrix], Matrix]:
@@ -223,17 +224,17 @@ class MirroredElement:
         return out.reshape((order - 1) * n, first.shape[1])
 
 
-def mirrored_element(made: SliceMatrices, *, count: bool = False) -> tuple[MirroredElement, Matrix]:
+def mirrored_element(made: SliceMatrices) -> tuple[MirroredElement, Matrix]:
     """Eliminate the inner slices of an element of uniform cross-section; the second result is the
     matrix that is left over the first and the last slice.
 
     Right for media that are their own mirror image along x: then P1 couples u with what is not u,
-    and the other slice matrices u with u. `count` counts negative pivots.
+    and the other slice matrices u with u.
     """
     n, order = made.signs.size, made.mass.shape[0] - 1
     kept = np.flatnonzero(made.signs > 0), np.flatnonzero(made.signs < 0)
-    plus, even = _half(made, 1, kept[0], count)
-    minus, odd = _half(made, -1, kept[1], count)
+    plus, even = _half(made, 1, kept[0])
+    minus, odd = _half(made, -1, kept[1])
     signs = made.signs
     schur = np.empty((2 * n, 2 * n), dtype=even.dtype)
     schur[:n, :n] = (even + odd) / 2
@@ -247,7 +248,7 @@ _Place = tuple[int, si.IntArray, si.IntArray]
 """A slice, some of its unknowns, and their rows in the matrix of a half."""
 
 
-def _half(made: SliceMatrices, sign: int, own: si.IntArray, count: bool) -> tuple[LDLSteps, Matrix]:
+def _half(made: SliceMatrices, sign: int, own: si.IntArray) -> tuple[LDLSteps, Matrix]:
     """The inner slices' sums (`sign` 1) or differences (−1) eliminated: pairs, then the unknowns
     `own` of a middle slice. With the matrix that is left of the ends."""
     n, order = made.signs.size, made.mass.shape[0] - 1
@@ -277,11 +278,11 @@ def _half(made: SliceMatrices, sign: int, own: si.IntArray, count: bool) -> tupl
         if not eliminated.size:
             continue
         A = _matrix(made, sign, [*first, *later], len(first))
-        ldl, left = partial_ldl(A, eliminated.size, count=count)
+        ldl, left = partial_ldl(A, eliminated.size)
         rest[np.ix_(position[met], position[met])] += left
         steps.append((_rows(eliminated), _rows(met), ldl))
     if rows.size > n:
-        ldl, rest = partial_ldl(rest, rows.size - n, count=count)
+        ldl, rest = partial_ldl(rest, rows.size - n)
         steps.append((_rows(rows[:-n]), _rows(rows[-n:]), ldl))
     return LDLSteps(pivots, pivots + n, tuple(steps)), rest
 

@@ -48,13 +48,10 @@ class _Alike:
 
 
 class SlabFactor:
-    """(K − σM)⁻¹ of a discretised model, real for a real shift.
+    """(K − σM)⁻¹ of a discretised model, real for a real shift."""
 
-    `count` also counts the modes below the shift, in `modes_below`.
-    """
-
-    def __init__(self, slabs: Slabs, shift: float, *, count: bool = False) -> None:
-        self._slabs, self.shift, self._count = slabs, shift, count
+    def __init__(self, slabs: Slabs, shift: float) -> None:
+        self._slabs, self.shift = slabs, shift
         x = slabs.model.x
         made: dict[tuple[int, int, int], tuple[MirroredElement, Matrix]] = {}
         alike: dict[tuple[int, int, int], list[int]] = collections.defaultdict(list)
@@ -69,14 +66,14 @@ class SlabFactor:
             left.append(made[key][1])
         self._alike = [self._places(made[key][0], elements) for key, elements in alike.items()]
         self._chain(left)
-        inner: int = sum(some.element.negative * some.inner.shape[1] for some in self._alike)
-        self._negative = inner + sum(link.negative for link in (*self._links, self._final))
 
     @property
     def modes_below(self) -> int:
-        """Count the modes that lie below the shift (Sylvester's law of inertia)."""
+        """Count the modes that lie below the shift, electrodes shorted (Sylvester's law of
+        inertia)."""
         potentials = int(np.sum((self._slabs.components == 3) & ~self._slabs.held))
-        return self._negative - potentials
+        inner: int = sum(some.element.negative * some.inner.shape[1] for some in self._alike)
+        return inner + sum(link.negative for link in (*self._links, self._final)) - potentials
 
     def _eliminated(self, e: int) -> tuple[MirroredElement, Matrix]:
         """The inner slices of an element eliminated, and what is left over its end slices."""
@@ -95,7 +92,7 @@ class SlabFactor:
                 if slabs.model.y.elements > 1
             ),
         )
-        return mirrored_element(matrices, count=self._count)
+        return mirrored_element(matrices)
 
     def _places(self, element: MirroredElement, elements: list[int]) -> _Alike:
         first, offsets = self._slabs.model.x.first_node, self._slabs.offsets
@@ -137,11 +134,11 @@ class SlabFactor:
             # A held unknown keeps its place in the slice: its row is that of the identity.
             own = held[held < n]
             S[own, own] = 1
-            link, carried = partial_ldl(S, n, count=self._count)
+            link, carried = partial_ldl(S, n)
             self._links.append(link)
         last = np.flatnonzero(slabs.held[self._joints[-1]])
         carried[last, last] = 1
-        self._final, _ = partial_ldl(carried, carried.shape[0], count=self._count)
+        self._final, _ = partial_ldl(carried, carried.shape[0])
 
     def solve(self, right: Matrix) -> Matrix:
         """The solution for each column of `right`, shape (unknowns, vectors)."""
@@ -329,8 +326,3 @@ def _transfer(source: LineMesh, target: LineMesh) -> si.FloatArray:
     """Hierarchic coefficients on one line mesh from those on another."""
     values = source.interpolation(target.nodes, hierarchic=True)
     return np.asarray(np.linalg.solve(target.interpolation(target.nodes, hierarchic=True), values))
-
-
-def modes_below(slabs: Slabs, shift: float) -> int:
-    """Count the modes that lie below a shift, electrodes shorted (Sylvester's law of inertia)."""
-    return SlabFactor(slabs, shift, count=True).modes_below

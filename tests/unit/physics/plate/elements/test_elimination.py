@@ -35,7 +35,6 @@ def test_what_is_left_is_the_schur_complement(pivots: int, size: int, dtype: typ
     np.testing.assert_array_equal(A, kept)
     assert made.pivots == pivots
     assert left.shape == (size - pivots, size - pivots)
-    assert made.negative == 0
 
 
 @pytest.mark.parametrize(("pivots", "size"), SIZES)
@@ -56,7 +55,7 @@ def test_forward_and_backward_solve(pivots: int, size: int, dtype: type) -> None
 @pytest.mark.parametrize("pivots", [30, 64, 150])
 def test_negative_pivots_are_those_of_the_eliminated_part(pivots: int) -> None:
     A = symmetric(pivots + 20)
-    made, _ = partial_ldl(A, pivots, count=True)
+    made, _ = partial_ldl(A, pivots)
     assert made.negative == np.sum(np.linalg.eigvalsh(A[:pivots, :pivots]) < 0) > 0
 
 
