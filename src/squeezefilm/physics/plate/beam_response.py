@@ -22,21 +22,6 @@ from squeezefilm.physics.plate.laminate import (
 )
 from squeezefilm.physics.plate.layout import CeramicPatch, DiscPlate, RectangularPlate, turned
 
-
-@si.closed_form(positive="modal_mass frequency quality_factor")
-def resonant_amplitude_per_volt(
-    modal_force: si.NewtonPerVolt,
-    modal_mass: si.Kilogram,
-    frequency: si.Hertz,
-    quality_factor: si.Dimensionless,
-) -> si.MetrePerVolt:
-    """The amplitude per volt of a lightly damped mode at resonance: Q F / (ω² m), in m/V.
-
-    Exact for structural (hysteretic) damping 1/Q of a single mode.
-    """
-    return quality_factor * modal_force / ((2 * np.pi * frequency) ** 2 * modal_mass)
-
-
 DRIVEN: si.Dimensionless = 1e-3
 """Share of what single ceramics do to a mode, one by one, below which a drive that has them all
 cancels and does not move the mode."""
@@ -65,15 +50,12 @@ class BeamResponse:
 
     @property
     def amplitude_per_volt(self) -> si.MetrePerVolt:
-        """Zero-to-peak amplitude at the largest interior lobe, per volt, at resonance (m/V)."""
-        return abs(
-            resonant_amplitude_per_volt(
-                self.force_per_width,
-                self.mode.modal_mass_per_width,
-                self.mode.frequency,
-                self.plate.quality_factor,
-            )
-        )
+        """Zero-to-peak amplitude at the largest interior lobe, per volt, at resonance (m/V).
+
+        Q F / (ω² m): exact for structural (hysteretic) damping 1/Q of a single mode.
+        """
+        stiffness = (2 * np.pi * self.mode.frequency) ** 2 * self.mode.modal_mass_per_width
+        return abs(self.plate.quality_factor * self.force_per_width / stiffness)
 
     def require_driven(self) -> None:
         """Raise `OutOfRangeError` where the ceramics' forces on the working mode cancel to less

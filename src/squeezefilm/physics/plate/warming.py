@@ -135,6 +135,7 @@ def warming(
     resistance = 1 / given
     time = case.capacity * resistance if resistance else 0.0
     cold, power = lost(fixed, 0.0, case.driven, case.drifts)
+    rises, drifts = warmth_ranges(source, thermal, body)
     warming = Warming(
         frequency=fixed,
         half_bandwidth=source.frequency / (2 * source.quality_factor),
@@ -151,14 +152,10 @@ def warming(
         field=source.field,
         assumed=_assumed(thermal, body),
         doubts=(),
-    )
-    rises, drifts = warmth_ranges(source, thermal, body)
-    return replace(
-        warming,
-        doubts=tuple(_doubts(warming, source, thermal)),
         rise_range=rises,
         drift_range=drifts,
     )
+    return replace(warming, doubts=tuple(_doubts(warming, source, thermal)))
 
 
 @si.checked_numbers

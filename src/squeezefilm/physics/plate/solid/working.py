@@ -222,20 +222,6 @@ def _response(
     return harmonic_response(plate, np.array(frequencies), resolution=resolution)
 
 
-def _strongest(
-    response: HarmonicResponse,
-    frequency: si.Hertz,
-    quality_factor: si.Dimensionless,
-    lobe: tuple[si.Metre, si.Metre],
-) -> tuple[int, si.MetrePerVolt]:
-    """Index at which the lobe answers most within a mode's bandwidth, and how much it does."""
-    amplitude = response.amplitude_at(*lobe)
-    # At the mode, not at the highest point of the band: a neighbour may move more.
-    near = np.abs(response.frequencies / frequency - 1) < 1 / quality_factor
-    at = int(np.argmax(np.where(near, amplitude, 0.0)))
-    return at, float(amplitude[at])
-
-
 @si.checked_numbers
 def solid_mode(
     plate: RectangularPlate,
@@ -314,7 +300,11 @@ def _solved_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: P
     at = largest_lobe(x, line)
     lobe = float(x[at]), across / 2
     lobe = lobe if lengthwise else lobe[::-1]
-    resonance, per_volt = _strongest(response, frequency, quality, lobe)
+    amplitude = response.amplitude_at(*lobe)
+    # At the mode, not at the highest point of the band: a neighbour may move more.
+    near = np.abs(response.frequencies / frequency - 1) < 1 / quality
+    resonance = int(np.argmax(np.where(near, amplitude, 0.0)))
+    per_volt = float(amplitude[resonance])
     alone = quality * float(modes.drive_forces[index]) / (2 * np.pi * frequency) ** 2
     doubt = (
         COARSE_AMPLITUDE_ERROR
