@@ -147,14 +147,9 @@ class FrictionLikelihood:
 def _likeness(a: tuple[Touching, ...], b: tuple[Touching, ...]) -> si.DimensionlessArray:
     """The correlation of the law's error between conditions, shape (a, b). A condition that is the
     display's own on one side only counts as another one."""
-
-    def logs(rows: tuple[Touching, ...]) -> si.FloatArray:
-        return np.array(
-            [[math.log(value) if value is not None else 0.0 for value in row] for row in rows]
-        ).reshape(-1, 3)
-
-    apart = np.abs(logs(a)[:, None, :] - logs(b)[None, :, :]) / _ALIKE
-    told_a = np.array([[value is None for value in row] for row in a]).reshape(-1, 3)
-    told_b = np.array([[value is None for value in row] for row in b]).reshape(-1, 3)
-    apart = np.where(told_a[:, None, :] == told_b[None, :, :], apart, 0.3)
+    # What is not told is NaN.
+    mine = np.log(np.array(a, dtype=float).reshape(-1, 1, 3))
+    other = np.log(np.array(b, dtype=float).reshape(1, -1, 3))
+    apart = np.nan_to_num(np.abs(mine - other) / _ALIKE, nan=0.3)
+    apart[np.isnan(mine) & np.isnan(other)] = 0.0
     return np.asarray(np.exp(-np.sum(apart, axis=2)))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import optimize
@@ -95,20 +95,42 @@ def fit_complex(
             f"{points} points are too few to fit {count} parameters; give at least {least}"
         )
     parameters = np.asarray(start, dtype=float)
+    prior = prior or Prior(parameters, np.full(count, np.inf))
     model = remembering(model if np.iscomplexobj(data) else _sizes_of(model))
     weight, floor = 1 / np.abs(data), 0.0
     for number in range(_PASSES):
-        scale = _prior_scale(model, parameters, data, weight) if prior is not None else 1.0
-        parameters = _minimum(model, parameters, data, weight, prior, scale)
+        parameters = _minimum(model, parameters, data, weight, prior)
         curve = model(parameters)[0]
         # Once, so that the weights settle; not at last, so that they are fitted with.
         if number == 0:
             floor = noise_floor(data - curve, np.abs(curve))
         weight = 1 / np.hypot(np.abs(curve), floor)
     curve, slopes = model(parameters)
-    fit = _fitted(parameters, (data - curve) * weight, slopes * weight, prior)
-    left = fit.spread * float(np.exp(-np.mean(np.log(weight))))
-    return replace(fit, weighted=data * weight, left=left, floor=floor)
+    residual, rows = (data - curve) * weight, _stacked(slopes * weight)
+    freedom = _numbers(data) - (count - int(np.isfinite(prior.spread).sum()))
+    spread = float(np.sqrt(np.sum(_stacked(residual) ** 2) / freedom))
+    correlation = correlation_time(residual)
+    information = rows @ rows.T / (spread**2 * correlation)
+    return ComplexFit(
+        parameters=parameters,
+        covariance=_inverse(information + np.diag(1 / prior.spread**2)),
+        information=information,
+        residual=residual,
+        weighted=data * weight,
+        spread=spread,
+        correlation=correlation,
+        left=spread * float(np.exp(-np.mean(np.log(weight)))),
+        floor=floor,
+        degrees_of_freedom=max(int(freedom / correlation), 3),
+    )
+
+
+def _inverse(information: si.FloatArray) -> si.FloatArray:
+    """The inverse, of parameters of very different sizes."""
+    size = np.sqrt(np.diag(information))
+    size[size == 0] = 1.0
+    scale = np.outer(size, size)
+    return np.asarray(np.linalg.pinv(information / scale, hermitian=True) / scale)
 
 
 def _numbers(values: si.Array) -> int:
@@ -147,22 +169,17 @@ def _minimum(
     start: si.FloatArray,
     data: si.Array,
     weight: si.FloatArray,
-    prior: Prior | None,
-    scale: float,
+    prior: Prior,
 ) -> si.FloatArray:
-    known = None if prior is None else np.isfinite(prior.spread)
+    scale, known = _prior_scale(model, start, data, weight), np.isfinite(prior.spread)
 
     def residual(p: si.FloatArray) -> si.FloatArray:
         rows = _stacked((model(p)[0] - data) * weight)
-        if prior is not None:
-            rows = np.append(rows, scale * ((p - prior.mean) / prior.spread)[known])
-        return rows
+        return np.append(rows, scale * ((p - prior.mean) / prior.spread)[known])
 
     def slopes(p: si.FloatArray) -> si.FloatArray:
         rows = _stacked(model(p)[1] * weight).T
-        if prior is not None:
-            rows = np.vstack([rows, scale * np.diag(1 / prior.spread)[known]])
-        return rows
+        return np.vstack([rows, scale * np.diag(1 / prior.spread)[known]])
 
     settled = optimize.least_squares(
         residual, start, slopes, method="lm", x_scale="jac", xtol=1e-10, ftol=1e-12, max_nfev=200
@@ -174,39 +191,6 @@ def _minimum(
             iterations=int(settled.nfev),
         )
     return np.asarray(settled.x)
-
-
-def _fitted(
-    parameters: si.FloatArray,
-    residual: si.Array,
-    slopes: si.Array,
-    prior: Prior | None,
-) -> ComplexFit:
-    rows = _stacked(slopes)
-    told = 0 if prior is None else int(np.isfinite(prior.spread).sum())
-    freedom = _numbers(residual) - (parameters.size - told)
-    spread = float(np.sqrt(np.sum(_stacked(residual) ** 2) / freedom))
-    correlation = correlation_time(residual)
-    information = rows @ rows.T / (spread**2 * correlation)
-    whole = information.copy()
-    if prior is not None:
-        whole += np.diag(1 / prior.spread**2)
-    # Parameters of very different sizes: scaled before they are inverted.
-    size = np.sqrt(np.diag(whole))
-    size[size == 0] = 1.0
-    covariance = np.linalg.pinv(whole / np.outer(size, size), hermitian=True)
-    return ComplexFit(
-        parameters=parameters,
-        covariance=covariance / np.outer(size, size),
-        information=information,
-        residual=residual,
-        weighted=np.empty(0),
-        spread=spread,
-        correlation=correlation,
-        left=spread,
-        floor=0.0,
-        degrees_of_freedom=max(int(freedom / correlation), 3),
-    )
 
 
 def noise_floor(residual: si.Array, size: si.FloatArray) -> float:

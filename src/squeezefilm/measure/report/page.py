@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, write_folder
 from squeezefilm.core.kit.numbers import printable, shown
 from squeezefilm.core.kit.page_style import (
     bullets,
     page,
+    picture_files,
     picture_sections,
     section,
     stamped,
@@ -189,9 +189,9 @@ def write_checks(checked: FolderCheck, folder: Path) -> Path:
     if checked.refused:
         body += section("Could not be read", bullets(refusal.why for refusal in checked.refused))
     for name, check in zip(_names(checked.checks), checked.checks, strict=True):
-        figure = recording_figure(check)
-        files[f"{name}.png"] = style.png(figure)
-        body += picture_sections({name: (check.recording.told.name, figure)})
+        figures = {name: (check.recording.told.name, recording_figure(check))}
+        files |= picture_files(figures)
+        body += picture_sections(figures)
         body += section("How it was read", _facts(check)) + _doubts(check)
     files["check.html"] = page(
         "Recordings checked",
@@ -218,11 +218,8 @@ def write_fit(
     if fitted is not None:
         figures["fit"] = ("Recorded, fitted and what is left", fitted)
     figures["recording"] = ("As recorded", recording_figure(check))
-    files: dict[str, str | bytes] = {
-        f"{key}.png": style.png(figure) for key, (_, figure) in figures.items()
-    }
     summary = fit_summary(check, fit, response)
-    files["fit.json"] = json_text(summary)
+    files = {**picture_files(figures), "fit.json": json_text(summary)}
     word = "adequate" if fit.adequacy.adequate else "not adequate"
     body = section(f"The fit is {word}", f"<p>{_text(fit.adequacy.sentence)}</p>")
     for title, part in (("Estimates", fit), ("Of the response that the signals give", response)):

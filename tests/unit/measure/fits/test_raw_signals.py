@@ -1,8 +1,5 @@
 """Raw signals: the response of a resonance, the scale and delay of an instrument."""
 
-from types import SimpleNamespace
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -120,10 +117,7 @@ def test_what_is_adequate_of_a_spectrum(
     coherence = np.where(np.arange(41) < 30, share, share - 0.1)
     coherence[7] = 0.3
     h = 1e-7 / (1 + 1j / quality - (f / 30e3) ** 2)
-    averaged: Any = SimpleNamespace(
-        response=SimpleNamespace(frequency=f, coherence=coherence, displacement_per_volt=h)
-    )
-    found = _coherent(averaged, 20e-3)
+    found = _coherent(FrequencyResponse(f, h, coherence=coherence), 20e-3)
     assert found.adequate is adequate
     assert found.residual == found.noise == pytest.approx(np.sqrt(1 - coherence.mean()))
     begin = f"Coherence of motion and drive is {share:.3f} in the middle, least at 29.35 kHz, where"

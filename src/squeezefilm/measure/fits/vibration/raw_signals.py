@@ -59,22 +59,21 @@ def fit_raw_signals(recording: RawSignals) -> RawSignalsFit:
     t, v, x = _recorded(recording)
     rate = (t.size - 1) / float(t[-1] - t[0])
     length = max(t.size // _SEGMENTS, _LEAST_SEGMENT)
-    averaged = _averaged(recording, (v, x, rate), length)
-    while 4 * length <= t.size and _resolution(averaged) < _WELL_RESOLVED:
+    response, error = _averaged(v, x, rate, length)
+    while 4 * length <= t.size and _resolution(response) < _WELL_RESOLVED:
         length *= 2
-        averaged = _averaged(recording, (v, x, rate), length)
-    return replace(averaged, adequacy=_coherent(averaged, length / rate))
+        response, error = _averaged(v, x, rate, length)
+    response = replace(response, told=recording.told)
+    return RawSignalsFit(recording, response, error, _coherent(response, length / rate))
 
 
 def _averaged(
-    recording: RawSignals,
-    signals: tuple[si.VoltArray, si.MetreArray, float],
-    length: int,
-) -> RawSignalsFit:
-    """H1 and coherence by segments of a length in points."""
+    v: si.VoltArray, x: si.MetreArray, rate: si.Hertz, length: int
+) -> tuple[FrequencyResponse, si.MetrePerVoltArray]:
+    """H1 with its coherence, and the standard error of its size, by segments of a length in
+    points."""
     from scipy import signal
 
-    v, x, rate = signals
     settings: dict[str, Any] = {
         "fs": rate,
         "window": "hann",
@@ -92,16 +91,14 @@ def _averaged(
     coherence = np.clip(np.abs(cross) ** 2 / (drive * motion + 1e-300), 0.0, 1.0)[driven]
     averages = (2 * v.size / length - 1) / _OVERLAP_COST
     error = np.abs(H) * np.sqrt((1 - coherence) / (2 * np.maximum(coherence, 1e-12) * averages))
-    response = FrequencyResponse(f[driven], H, coherence=coherence, told=recording.told)
-    unknown = Adequacy(False, float("nan"), float("nan"), "", "")
-    return RawSignalsFit(recording, response, error, unknown)
+    return FrequencyResponse(f[driven], H, coherence=coherence), error
 
 
-def _resolution(averaged: RawSignalsFit) -> float:
+def _resolution(response: FrequencyResponse) -> float:
     """Number of frequencies within the half-power band of the strongest resonance; infinite
     where there is none."""
-    f = averaged.response.frequency
-    circle = modal_circle(f, np.asarray(averaged.response.displacement_per_volt))
+    f = response.frequency
+    circle = modal_circle(f, np.asarray(response.displacement_per_volt))
     if circle is None or not f[0] < circle.frequency < f[-1] or circle.roundness > 0.2:
         return float("inf")
     return circle.frequency / abs(circle.quality_factor) / float(f[1] - f[0])
@@ -140,9 +137,9 @@ def _recorded(recording: RawSignals) -> tuple[si.SecondArray, si.VoltArray, si.M
     return t, v, x
 
 
-def _coherent(averaged: RawSignalsFit, segment: si.Second) -> Adequacy:
+def _coherent(response: FrequencyResponse, segment: si.Second) -> Adequacy:
     """Judge whether the motion comes from the drive, and segments are long enough."""
-    f, coherence = averaged.response.frequency, averaged.response.coherence
+    f, coherence = response.frequency, response.coherence
     assert coherence is not None
     noise = float(np.sqrt(1 - np.mean(coherence)))
     where = f"at {si.format_quantity(f[int(np.argmin(coherence))], si.Unit('Hz'))}"
@@ -156,7 +153,7 @@ def _coherent(averaged: RawSignalsFit, segment: si.Second) -> Adequacy:
             " Most of the motion does not come from the drive: average longer, drive more, or look "
             "for hum and clipping."
         )
-    resolved = _resolution(averaged)
+    resolved = _resolution(response)
     if resolved < _RESOLVED:
         shown = si.format_quantity(segment, si.Unit("s"), 3)
         sentence += (
