@@ -16,7 +16,7 @@ import numpy as np
 from squeezefilm.actuators.motor.description import Motor
 from squeezefilm.actuators.motor.force_law import ForceLaw
 from squeezefilm.core.quantities import unit_of
-from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
+from squeezefilm.measure.fits.vibration.solved_shapes import DrivenShape
 from squeezefilm.physics.contact.sharing.pad import PadPoints
 from squeezefilm.physics.film.planar.grid import PlanarGap
 from squeezefilm.physics.plate.parts import Sector
@@ -278,17 +278,17 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "response": 1 / (30e3 - np.linspace(29e3, 31e3, 41) + 200j),
         "count": 1,
     },
-    "measure.fits.vibration.driven_shape.DrivenShape": _DRIVEN,
-    "measure.fits.vibration.driven_shape.DrivenShape.along": {
+    "measure.fits.vibration.solved_shapes.DrivenShape": _DRIVEN,
+    "measure.fits.vibration.solved_shapes.DrivenShape.along": {
         "self": Later(lambda: DrivenShape(**_DRIVEN)),
         "position": WAYS,
     },
-    "measure.fits.vibration.driven_shape.DrivenShape.at": {
+    "measure.fits.vibration.solved_shapes.DrivenShape.at": {
         "self": Later(lambda: DrivenShape(**_DRIVEN)),
         "x": WAYS,
         "y": WAYS,
     },
-    "measure.fits.vibration.driven_shape.line_by_shape": {
+    "measure.fits.vibration.solved_shapes.line_by_shape": {
         "shape": Later(lambda: DrivenShape(**_DRIVEN)),
         "x": np.linspace(1e-3, 9e-3, 20),
         "w": 1e-6 * np.cos(600 * np.linspace(1e-3, 9e-3, 20)),

@@ -41,7 +41,7 @@ ROOMS = {
     "measure.fits.circuit.branches",
     "design.sweep.sweep",
     "measure.fits.ceramic.constants.compliances",
-    "measure.fits.vibration.driven_shape",
+    "measure.fits.vibration.solved_shapes",
 }
 _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 _NUMBERS = (int, float, _REAL_ARRAY)

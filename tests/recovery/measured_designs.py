@@ -16,9 +16,9 @@ from tests.made_bench.strokes import PlannedStrokes, recorded_strokes
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
-from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan
 from squeezefilm.measure.fits.vibration.line_scan import fit_line_scan
 from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
+from squeezefilm.measure.fits.vibration.solved_shapes import fit_grid_scan
 from squeezefilm.measure.fits.vibration.voltage_sweeps import fit_voltage_sweeps
 from squeezefilm.measure.recordings import kinds
 

@@ -19,10 +19,10 @@ from squeezefilm.measure.fits.circuit.branches import poles
 from squeezefilm.measure.fits.estimate import Estimate, Observation, guarded_fit
 from squeezefilm.measure.fits.friction.friction_bench import _MOST_LEVELS, _levels
 from squeezefilm.measure.fits.least_squares import _least
-from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
 from squeezefilm.measure.fits.vibration.frequency_response import _Band, fit_frequency_response
 from squeezefilm.measure.fits.vibration.line_points import LinePoints
 from squeezefilm.measure.fits.vibration.line_scan import _wave_number
+from squeezefilm.measure.fits.vibration.solved_shapes import DrivenShape, line_by_shape
 from squeezefilm.measure.recordings.kinds import FrequencyResponse
 
 X = np.linspace(0, 80e-3, 9)

@@ -10,9 +10,13 @@ import pytest
 
 from squeezefilm.core import quantities as si
 from squeezefilm.measure.fits.by_kind import fit_recording
-from squeezefilm.measure.fits.vibration.driven_shape import REST, DrivenShape, line_by_shape
-from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan
 from squeezefilm.measure.fits.vibration.line_scan import LineScanFit, fit_line_scan
+from squeezefilm.measure.fits.vibration.solved_shapes import (
+    REST,
+    DrivenShape,
+    fit_grid_scan,
+    line_by_shape,
+)
 from squeezefilm.measure.recordings.kinds import GridScan, LineScan
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.layout import RectangularPlate

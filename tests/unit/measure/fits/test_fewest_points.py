@@ -12,10 +12,10 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.complex_fit import require_passive
 from squeezefilm.measure.fits.friction.strokes import sliding_strokes
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
-from squeezefilm.measure.fits.vibration.grid_scan import fit_grid_scan
 from squeezefilm.measure.fits.vibration.line_scan import fit_line_scan
 from squeezefilm.measure.fits.vibration.raw_signals import fit_raw_signals
 from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
+from squeezefilm.measure.fits.vibration.solved_shapes import fit_grid_scan
 from squeezefilm.measure.fits.vibration.voltage_sweeps import fit_voltage_sweeps
 from squeezefilm.measure.recordings import kinds
 

@@ -7,8 +7,12 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape
-from squeezefilm.measure.fits.vibration.grid_scan import REST, fit_grid_scan, shapes_at
+from squeezefilm.measure.fits.vibration.solved_shapes import (
+    REST,
+    DrivenShape,
+    fit_grid_scan,
+    shapes_at,
+)
 from squeezefilm.measure.recordings.kinds import GridScan
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.solid.solve import solve_modes

@@ -18,8 +18,8 @@ from squeezefilm.measure.fits.estimate import (
     guarded_fit,
 )
 from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
-from squeezefilm.measure.fits.vibration.driven_shape import DrivenShape, line_by_shape
 from squeezefilm.measure.fits.vibration.line_points import LinePoints, LineWaves
+from squeezefilm.measure.fits.vibration.solved_shapes import DrivenShape, line_by_shape
 from squeezefilm.measure.recordings.kinds import LineScan
 
 _FEWEST_POINTS = 12
