@@ -232,7 +232,7 @@ def friction_posterior(
     curves = friction_of_points(mixture, points, likelihood.where, within(tell, 0.0, ends[0]))
     posterior = weighted(mixture, likelihood, points, curves)
     # Draws of every round count by the mixture of all that was drawn from.
-    proposals: list[tuple[int, si.FloatArray | None, si.FloatArray | None]] = [(draws, None, None)]
+    rounds: list[tuple[si.FloatArray, si.FloatArray]] = []
     scores = normal_scores(points)
     for number in range(ROUNDS):
         weight = posterior.weights.sum(axis=1)
@@ -244,22 +244,17 @@ def friction_posterior(
         fresh = random.multivariate_normal(middle, spread, more_draws)
         at_prior = random.random(more_draws) < _DEFENSIVE
         fresh[at_prior] = random.normal(size=(int(at_prior.sum()), len(middle)))
-        proposals.append((more_draws, middle, spread))
+        rounds.append((middle, spread))
         more = ndtr(fresh)
         points = np.vstack([points, more])
         part = within(tell, *ends[number : number + 2])
         curves = np.vstack([curves, friction_of_points(mixture, more, likelihood.where, part)])
         scores = normal_scores(points)
-        total = sum(count for count, _, _ in proposals)
-        parts = []
-        for count, centre, covariance in proposals:
-            logs = np.zeros(len(scores))
-            if centre is not None and covariance is not None:
-                logs = np.logaddexp(
-                    np.log(_DEFENSIVE),
-                    np.log(1 - _DEFENSIVE) + _log_ratio(scores, centre, covariance),
-                )
-            parts.append(np.log(count / total) + logs)
+        parts = [np.full(len(points), np.log(draws / len(points)))]
+        for gaussian in rounds:
+            own = np.log(1 - _DEFENSIVE) + _log_ratio(scores, *gaussian)
+            logs = np.logaddexp(np.log(_DEFENSIVE), own)
+            parts.append(np.log(more_draws / len(points)) + logs)
         posterior = weighted(mixture, likelihood, points, curves, logsumexp(parts, axis=0))
     return posterior
 

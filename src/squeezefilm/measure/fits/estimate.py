@@ -104,6 +104,16 @@ def observed(conditions: Mapping[str, float], **answers: Estimate) -> tuple[Obse
     )
 
 
+def amplitude_over(volts: si.Volt, amplitude: Estimate, frequency: si.Hertz) -> Observation:
+    """Observation of the amplitude per volt of an `amplitude` (m) at one frequency and voltage."""
+    return Observation(
+        "amplitude_per_volt",
+        amplitude.value / volts,
+        amplitude.standard_error / volts,
+        {"frequency": frequency, "voltage": volts},
+    )
+
+
 # Of a standard error, to either side of a fitted number.
 _STEP = 1e-5
 

@@ -60,20 +60,12 @@ class Band:
 
 @si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
-class Described:
+class Described(Told):
     """Keys that every description may have. `file` is the data's file, where it has another name;
     `decimal` and `delimiter` are how its numbers are written, `header` the line of the columns'
     names (0 for none), where that is not to be found out; `points` is how many rows there must
     be."""
 
-    file: str = ""
-    name: str = ""
-    who: str = ""
-    when: str = ""
-    instrument: str = ""
-    licence: str = ""
-    source: str = ""
-    temperature: Annotated[si.AbsoluteKelvin, si.Above(0.0)] | None = None
     decimal: Literal[".", ","] | None = None
     delimiter: Literal["tab", "comma", "semicolon", "blank"] | None = None
     header: Annotated[int, si.AtLeast(0)] | None = None

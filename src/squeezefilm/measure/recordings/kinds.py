@@ -55,7 +55,7 @@ class Told:
     instrument: str = ""
     licence: str = ""
     source: str = ""
-    temperature: si.AbsoluteKelvin | None = None
+    temperature: Annotated[si.AbsoluteKelvin, si.Above(0.0)] | None = None
 
     @property
     def facts(self) -> list[tuple[str, str]]:

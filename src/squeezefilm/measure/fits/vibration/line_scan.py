@@ -15,6 +15,7 @@ from squeezefilm.measure.fits.estimate import (
     FitResult,
     Observation,
     adequacy_of,
+    amplitude_over,
     guarded_fit,
 )
 from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
@@ -83,14 +84,7 @@ class LineScanFit(FitResult):
         ]
         volts = self.recording.voltage
         if volts:
-            observed.append(
-                Observation(
-                    "amplitude_per_volt",
-                    largest.value / volts,
-                    largest.standard_error / volts,
-                    at | {"voltage": volts},
-                )
-            )
+            observed.append(amplitude_over(volts, largest, self.recording.frequency))
         return tuple(observed)
 
 

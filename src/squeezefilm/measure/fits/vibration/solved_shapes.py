@@ -19,6 +19,7 @@ from squeezefilm.measure.fits.estimate import (
     FitResult,
     Observation,
     adequacy_of,
+    amplitude_over,
     guarded_fit,
 )
 from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable, linear_fit
@@ -204,14 +205,7 @@ class GridScanFit(FitResult):
         volts = self.recording.voltage
         if not volts or self.likeness[self.label] < SAME_SHAPE:
             return ()
-        return (
-            Observation(
-                "amplitude_per_volt",
-                self.amplitude.value / volts,
-                self.amplitude.standard_error / volts,
-                {"frequency": self.recording.frequency, "voltage": volts},
-            ),
-        )
+        return (amplitude_over(volts, self.amplitude, self.recording.frequency),)
 
 
 @guarded_fit
