@@ -38,7 +38,6 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "core/kept/computed_by.py": {"open": "the package's source"},
     "measure/recordings/files/scipy_files.py": {"loadmat": CHILD},
     "measure/recordings/files/universal.py": {"pyuff.UFF": CHILD},
-    "measure/recordings/files/instruments.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
     "measure/recordings/files/raw_table.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
     "measure/recordings/description.py": {"tomllib.loads": TOML},
     "physics/texture_files/image_file.py": {"Pillow.open": CHILD},

@@ -15,7 +15,7 @@ from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.vibration.ring_down import fit_ring_down
 from squeezefilm.measure.recordings.circuits_read import IMPEDANCES, Fixture
 from squeezefilm.measure.recordings.files.analysers import read_touchstone
-from squeezefilm.measure.recordings.files.instruments import held_by, recognised
+from squeezefilm.measure.recordings.files.raw_table import held_by, recognised
 from squeezefilm.measure.recordings.files.scipy_files import read_wav
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep, RawSignals, RingDown
 from squeezefilm.measure.recordings.read import (

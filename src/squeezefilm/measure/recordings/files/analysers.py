@@ -17,8 +17,7 @@ from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.hard_limits import RECORDING_BYTES
 from squeezefilm.core.regular_file import opened
 from squeezefilm.measure.recordings.circuits_read import IMPEDANCES
-from squeezefilm.measure.recordings.files.instruments import read_name, recognised
-from squeezefilm.measure.recordings.files.raw_table import Held, RawTable
+from squeezefilm.measure.recordings.files.raw_table import Held, RawTable, read_name, recognised
 from squeezefilm.measure.recordings.files.text_table import Notation, decoded, values_in
 
 _HEAD = re.compile(r"\s*\"?4294A\b")

@@ -21,13 +21,14 @@ from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.hard_limits import RECORDING_BYTES
 from squeezefilm.core.regular_file import read_regular
 from squeezefilm.measure.recordings.described import Described
-from squeezefilm.measure.recordings.files.instruments import (
+from squeezefilm.measure.recordings.files.raw_table import (
+    RawTable,
     recognised,
     table_lines,
     times_of,
+    unit_alone,
     with_meaning,
 )
-from squeezefilm.measure.recordings.files.raw_table import RawTable, unit_alone
 
 DELIMITERS = {"tab": "\t", "semicolon": ";", "comma": ",", "blank": None}
 _WORDS = {"\t": "tabs", ";": "semicolons", ",": "commas", None: "blanks"}
