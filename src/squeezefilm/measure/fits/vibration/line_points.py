@@ -55,6 +55,10 @@ class LineWaves:
             rows += [np.exp(-k * (x - self.first)), np.exp(-k * (self.last - x))]
         return np.stack(rows, axis=1)
 
+    def wave(self, x: si.MetreArray, shape: si.FloatArray, weights: si.Array) -> si.Array:
+        """The sum of the columns by their weights, (points,)."""
+        return np.asarray(self.waves(x, shape) @ weights)
+
     def columns(self, x: si.MetreArray, shape: si.FloatArray) -> tuple[si.Array, si.Array]:
         """The columns and their derivatives by central differences of them."""
         bent = []

@@ -119,21 +119,12 @@ def fit_line_scan(
     if grows:
         w = w.conj()
         fit = fit_separable(partial(line.columns, x), w / size, start, reach=line.reach(start[0]))
-    adequacy = adequacy_of(
-        w,
-        fit.residual * size,
-        lambda i: f"{1e3 * x[i]:.3g} mm along the line",
-        remedy="A plate with ceramics on it, or one that also bends across the line, has no one "
-        "wave: compare it with the solved plate's shape (name the display).",
-        said="The phase was recorded with the other sign (waves would grow along their way); the "
-        "fit is of the complex conjugate. "
-        if grows
-        else "",
-    )
-    read = _FittedLine(recording, line, x, w, fit, size, grows, adequacy).read()
-    if shape is None or not read.by_points:
-        return read
-    return _by_shape(read, shape, w.conj() if grows else w)
+    told = _told(recording, line, x, w, fit, grows=grows)
+    if not told.adequacy.adequate:
+        told = _by_points(told, w)
+    if shape is None or not told.by_points:
+        return told
+    return _by_shape(told, shape, w.conj() if grows else w)
 
 
 def _by_shape(fit: LineScanFit, shape: DrivenShape, w: si.Array) -> LineScanFit:
@@ -213,114 +204,108 @@ def _wave_number(line: LineWaves, x: si.MetreArray, w: si.Array) -> float:
     return float(np.pi * halves[int(np.argmin(left))] / line.length)
 
 
-@dataclass(frozen=True, eq=False)
-class _FittedLine:
-    """A fit in its own numbers, to be read off."""
+def _told(
+    recording: LineScan,
+    line: LineWaves,
+    x: si.MetreArray,
+    w: si.Array,
+    fit: SeparableFit,
+    *,
+    grows: bool,
+) -> LineScanFit:
+    """A fit of displacements `w` (m) over the largest of them, read off."""
+    size = float(np.max(np.abs(w)))
+    dense = np.linspace(x[0], x[-1], 1 + _DENSE * int(np.ceil(fit.shape[0] * line.length / np.pi)))
+    wave = np.abs(line.wave(dense, fit.shape, fit.weights))
+    nodes = _minima(dense, wave)
+    lobe = _best_antinode(dense, wave, nodes)
 
-    recording: LineScan
-    line: LineWaves
-    x: si.MetreArray
-    w: si.Array
-    fit: SeparableFit
-    size: float
-    phase_reversed: bool
-    adequacy: Adequacy
+    def there(shape: si.FloatArray, weights: si.Array) -> complex:
+        return complex(line.wave(np.array([lobe]), shape, weights)[0])
 
-    def at(self, x: si.MetreArray, shape: si.FloatArray, weights: si.Array) -> si.Array:
-        """The fitted wave at places (m)."""
-        return np.asarray(self.line.waves(x, shape) @ weights)
+    model = fit.model * size
+    return LineScanFit(
+        recording=recording,
+        position=x,
+        model=model,
+        residual=w - model,
+        half_wavelength=fit.estimate(lambda shape, _: np.pi / shape[0], "m", positive=True),
+        nodal_lines=tuple(_node(line, fit, float(node)) for node in nodes),
+        antinode=lobe,
+        antinode_amplitude=fit.estimate(
+            lambda shape, weights: size * abs(there(shape, weights)), "m", positive=True
+        ),
+        standing_wave_ratio=_ratio(fit) if line.complex else None,
+        loss_factor=fit.estimate(lambda shape, _: 4 * shape[1], "1") if line.complex else None,
+        phase=fit.angle(there) if line.complex else None,
+        phase_reversed=grows,
+        by_points=False,
+        offset=None,
+        face_over_line=1.0,
+        adequacy=adequacy_of(
+            w,
+            fit.residual * size,
+            lambda i: f"{1e3 * x[i]:.3g} mm along the line",
+            remedy="A plate with ceramics on it, or one that also bends across the line, has no "
+            "one wave: compare it with the solved plate's shape (name the display).",
+            said="The phase was recorded with the other sign (waves would grow along their way); "
+            "the fit is of the complex conjugate. "
+            if grows
+            else "",
+        ),
+    )
 
-    def read(self) -> LineScanFit:
-        fit = self.fit
-        dense = np.linspace(
-            self.x[0],
-            self.x[-1],
-            1 + _DENSE * int(np.ceil(fit.shape[0] * self.line.length / np.pi)),
-        )
-        wave = np.abs(self.at(dense, fit.shape, fit.weights))
-        nodes = _minima(dense, wave)
-        lobe = _best_antinode(dense, wave, nodes)
-        model = fit.model * self.size
-        line_fit = LineScanFit(
-            recording=self.recording,
-            position=self.x,
-            model=model,
-            residual=self.w - model,
-            half_wavelength=fit.estimate(lambda shape, _: np.pi / shape[0], "m", positive=True),
-            nodal_lines=tuple(self._node(float(node)) for node in nodes),
-            antinode=lobe,
-            antinode_amplitude=fit.estimate(
-                lambda shape, weights: (
-                    self.size * float(np.abs(self.at(np.array([lobe]), shape, weights)[0]))
-                ),
-                "m",
-                positive=True,
-            ),
-            standing_wave_ratio=self._ratio() if self.line.complex else None,
-            loss_factor=fit.estimate(lambda shape, _: 4 * shape[1], "1")
-            if self.line.complex
-            else None,
-            phase=fit.angle(
-                lambda shape, weights: complex(self.at(np.array([lobe]), shape, weights)[0])
-            )
-            if self.line.complex
-            else None,
-            phase_reversed=self.phase_reversed,
-            by_points=False,
-            offset=None,
-            face_over_line=1.0,
-            adequacy=self.adequacy,
-        )
-        return line_fit if self.adequacy.adequate else self._by_points(line_fit)
 
-    def _by_points(self, fit: LineScanFit) -> LineScanFit:
-        """Fit by the points around each node and antinode, in place of a wave that does not fit."""
-        points = LinePoints(self.x, self.w, fit.half_wavelength.value)
-        spacing, antinode = points.spacing, points.antinode
-        if spacing is None or antinode is None:
-            return fit
-        said = (
-            " Half wavelength (their mean distance), nodal lines and amplitude are therefore those "
-            "of the points around each; loss and ratio of waves are not given."
-        )
-        return replace(
-            fit,
-            half_wavelength=spacing,
-            nodal_lines=points.nodes,
-            antinode=antinode[0],
-            antinode_amplitude=antinode[1],
-            standing_wave_ratio=None,
-            loss_factor=None,
-            by_points=True,
-            adequacy=replace(self.adequacy, sentence=self.adequacy.sentence + said),
-        )
+def _by_points(fit: LineScanFit, w: si.Array) -> LineScanFit:
+    """Fit by the points around each node and antinode of displacements, in place of a wave that
+    does not fit."""
+    points = LinePoints(fit.position, w, fit.half_wavelength.value)
+    spacing, antinode = points.spacing, points.antinode
+    if spacing is None or antinode is None:
+        return fit
+    said = (
+        " Half wavelength (their mean distance), nodal lines and amplitude are therefore those "
+        "of the points around each; loss and ratio of waves are not given."
+    )
+    return replace(
+        fit,
+        half_wavelength=spacing,
+        nodal_lines=points.nodes,
+        antinode=antinode[0],
+        antinode_amplitude=antinode[1],
+        standing_wave_ratio=None,
+        loss_factor=None,
+        by_points=True,
+        adequacy=replace(fit.adequacy, sentence=fit.adequacy.sentence + said),
+    )
 
-    def _node(self, node: float) -> Estimate:
-        """Place where the fitted size is least, near a node: a step of Newton's from there on
-        |w|²."""
-        step = 1e-3 / self.fit.shape[0]
-        places = node + step * np.array([-1.0, 0.0, 1.0])
 
-        def least(shape: si.FloatArray, weights: si.Array) -> float:
-            low, middle, high = np.abs(self.at(places, shape, weights)) ** 2
-            return float(node - step * (high - low) / (2 * (high - 2 * middle + low)))
+def _node(line: LineWaves, fit: SeparableFit, node: float) -> Estimate:
+    """Place where the fitted size is least, near a node: a step of Newton's from there on |w|²."""
+    step = 1e-3 / fit.shape[0]
+    places = node + step * np.array([-1.0, 0.0, 1.0])
 
-        return self.fit.estimate(least, "m")
+    def least(shape: si.FloatArray, weights: si.Array) -> float:
+        low, middle, high = np.abs(line.wave(places, shape, weights)) ** 2
+        return float(node - step * (high - low) / (2 * (high - 2 * middle + low)))
 
-    def _ratio(self) -> Estimate:
-        """(a + b)/|a − b| by its inverse, which is finite: 0 for a pure standing wave."""
+    return fit.estimate(least, "m")
 
-        def inverse(_: si.FloatArray, weights: si.Array) -> float:
-            a, b = np.abs(weights[:2])
-            return float((a - b) / (a + b))
 
-        inverted = self.fit.estimate(inverse, "1")
-        low, high = inverted.interval
-        largest = max(abs(low), abs(high))
-        smallest = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
-        value = 1 / abs(inverted.value) if inverted.value else float("inf")
-        ends = 1 / largest, 1 / smallest if smallest else float("inf")
-        return Estimate(value, inverted.standard_error * value**2, ends, "1")
+def _ratio(fit: SeparableFit) -> Estimate:
+    """(a + b)/|a − b| by its inverse, which is finite: 0 for a pure standing wave."""
+
+    def inverse(_: si.FloatArray, weights: si.Array) -> float:
+        a, b = np.abs(weights[:2])
+        return float((a - b) / (a + b))
+
+    inverted = fit.estimate(inverse, "1")
+    low, high = inverted.interval
+    largest = max(abs(low), abs(high))
+    smallest = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
+    value = 1 / abs(inverted.value) if inverted.value else float("inf")
+    ends = 1 / largest, 1 / smallest if smallest else float("inf")
+    return Estimate(value, inverted.standard_error * value**2, ends, "1")
 
 
 def _minima(x: si.MetreArray, size: si.FloatArray) -> si.MetreArray:
