@@ -57,7 +57,8 @@ def calibrated_display(
     changed = calibration.display
     stated = dict(changed.provenance)
     # A ceramic's constants that were written out have no place in the description's sources.
-    source = f"calibrated {_day()} from the {len(calibration.observations)} observations below"
+    day = datetime.now(UTC).date().isoformat()
+    source = f"calibrated {day} from the {len(calibration.observations)} observations below"
     if not calibration.fits:
         source += "; the model does not fit them"
     moved: dict[str, float] = {}
@@ -68,9 +69,9 @@ def calibrated_display(
         if not told and not learnt.path.startswith("actuator."):
             continue
         spread = _spread(learnt)
-        value = _middle(learnt, spread)
         if not learnt.path.startswith("actuator."):
-            moved[learnt.path] = value
+            low, high = spread.support
+            moved[learnt.path] = float(min(max(learnt.median, low), high))
         origin = (
             Provenance(source, "measured", spread)
             if told
@@ -87,7 +88,7 @@ def calibrated_display(
         changed,
         joint=_joint(calibration, changed),
         calibration=CalibrationRecord(
-            _day(),
+            day,
             __version__,
             calibration.fits,
             calibration.sentences,
@@ -125,10 +126,6 @@ def calibrated_text(calibration: Calibration, recordings: Sequence[UsedRecording
     return head + text_of(display, display.provenance)
 
 
-def _day() -> str:
-    return datetime.now(UTC).date().isoformat()
-
-
 def _spread(value: CalibratedValue) -> Distribution:
     """A normal distribution where the data told the value well, else a range."""
     low, high = value.interval
@@ -139,10 +136,6 @@ def _spread(value: CalibratedValue) -> Distribution:
     # As wide as the draws, within the prior: uniform with their interval's 5 % and 95 % ends.
     wider = (high - low) / 18
     return Uniform(max(low - wider, value.prior[0]), min(high + wider, value.prior[1]))
-
-
-def _middle(value: CalibratedValue, spread: Distribution) -> float:
-    return float(min(max(value.median, spread.support[0]), spread.support[1]))
 
 
 def _written_out(display: Display, path: str) -> list[str]:

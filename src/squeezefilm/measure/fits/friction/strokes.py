@@ -62,7 +62,8 @@ def sliding_strokes(recording: FrictionBench) -> Strokes:
             f"the friction bench has {t.size} usable points; at least {_FEWEST_POINTS} are wanted, "
             "their time rising from one to the next"
         )
-    speed = _speed(t, position)
+    # Its noise averaged over some hundredths of a second.
+    speed = smoothed(t, np.gradient(position, t))
     size = np.abs(speed)
     usual, pressed = _usual(size), _usual(normal)
     sliding = (size > _MOVING * usual) & (normal > _TOUCHING * pressed)
@@ -118,11 +119,6 @@ def _usual(values: si.FloatArray) -> float:
     """The median of what is well above nothing; infinite where nothing is."""
     large = values[values > max(0.3 * float(np.percentile(values, 95)), 0.0)]
     return float(np.median(large)) if large.size else float("inf")
-
-
-def _speed(t: si.SecondArray, position: si.MetreArray) -> si.MetrePerSecondArray:
-    """The speed, its noise averaged over some hundredths of a second."""
-    return smoothed(t, np.gradient(position, t))
 
 
 def _even_part(part: si.IntArray, amplitude: si.MetreArray, tolerated: float) -> si.IntArray:
