@@ -41,7 +41,8 @@ ROOMS = {
     "measure.fits.circuit.branches",
     "design.sweep.sweep",
     "measure.fits.ceramic.constants.compliances",
-    "measure.fits.vibration.solved_shapes",
+    "measure.fits.vibration.solved_shapes.DrivenShape",
+    "measure.fits.vibration.solved_shapes.line_by_shape",
 }
 _REAL_ARRAY = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]
 _NUMBERS = (int, float, _REAL_ARRAY)
@@ -272,7 +273,8 @@ def public_calls() -> dict[str, PublicCall]:
     """Every public call with numbers among its arguments, by its dotted name below the package."""
     found = {}
     for module in pkgutil.walk_packages(squeezefilm.__path__, "squeezefilm."):
-        if not f"{module.name.removeprefix('squeezefilm.')}.".startswith(_ROOMS):
+        place = f"{module.name.removeprefix('squeezefilm.')}."
+        if not place.startswith(_ROOMS) and not any(room.startswith(place) for room in ROOMS):
             continue
         home = importlib.import_module(module.name)
         for key, item in vars(home).items():
@@ -288,5 +290,6 @@ def public_calls() -> dict[str, PublicCall]:
                 calls = [PublicCall(name, item, None, annotations_of(taking, home))]
             else:
                 calls = []
-            found.update({call.name: call for call in calls if call.numbers})
+            attacked = [call for call in calls if f"{call.name}.".startswith(_ROOMS)]
+            found.update({call.name: call for call in attacked if call.numbers})
     return found
