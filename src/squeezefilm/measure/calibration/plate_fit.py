@@ -131,11 +131,13 @@ class Solves:
     def problem(self, observations: tuple[Observation, ...]) -> PlateProblem:
         """Observations beside an emulator of all plates so far. An answer that some of them
         have not, and that was not observed, is left out."""
-        values, *of = (np.array(rows) for rows in zip(*self.solved, strict=True))
+        values, errors, readings = (np.array(rows) for rows in zip(*self.solved, strict=True))
         logs = np.log(values)
         whole = np.asarray(np.isfinite(logs).all(axis=0))
         emulator = emulator_of(self.scores.coordinates(np.array(self.points)), logs[:, whole])
-        solver_errors, readings = (np.sqrt(np.mean(part**2, axis=0))[whole] for part in of)
+        solver_errors, readings = (
+            np.sqrt(np.mean(part**2, axis=0))[whole] for part in (errors, readings)
+        )
         asked = tuple(part for part, has in zip(self.asked, whole.tolist(), strict=True) if has)
         return PlateProblem(self.scores, emulator, asked, solver_errors, readings, observations)
 
