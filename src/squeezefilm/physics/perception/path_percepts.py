@@ -25,7 +25,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.perception.observer import FingerClass, Observer
-from squeezefilm.physics.perception.percepts import CONTROL_RATE, Apparatus, Percept, with_finger
+from squeezefilm.physics.perception.percepts import Apparatus, Percept, interpolated, rendered
 from squeezefilm.physics.perception.senses import (
     SETTLING,
     SPACING,
@@ -125,7 +125,6 @@ def _straight(place: si.FloatArray, begin: int, end: int) -> list[tuple[int, int
     return pieces
 
 
-_SEED = 0
 _ROUNDING: si.Metre = 1e-9
 
 
@@ -167,27 +166,11 @@ def path_percept(
         apparatus: how the display is run.
 
     Raises:
-        InputError: no path, a path that holds no run of 4 mm, or what `render_texture` refuses.
+        InputError: no path, a path that holds no run of 4 mm, or what `rendered` refuses.
     """
-    # What was felt before is read from disk, and needs neither plates nor loop.
-    from squeezefilm.physics.chain.rendered_texture import render_texture
-
-    run = apparatus or Apparatus()
     runs = []
     for path in paths:
-        rendered = render_texture(
-            with_finger(display, finger),
-            surface,
-            path,
-            normal_force=finger.normal_force,
-            sensor=run.sensor,
-            compensation=run.compensation,
-            braking=run.braking,
-            wave=run.wave,
-            control_rate=CONTROL_RATE,
-            seed=_SEED,
-        )
-        runs += _runs_of(rendered, path)
+        runs += _runs_of(rendered(display, surface, finger, path, apparatus), path)
     if not runs:
         raise InputError(
             "the path has no straight run of 4 mm or more, along which a rhythm could be felt; "
@@ -210,27 +193,11 @@ def _runs_of(played: RenderAnalysis, path: FingerPath) -> list[_OneRun]:
         here = forth * (motion.way[rows] - start)
         if here.size < 2:
             continue
-        rising = np.concatenate([[True], np.diff(np.maximum.accumulate(here)) > 0.0])
         even = np.arange(SETTLING, abs(stop - start) - _ROUNDING, SPACING)
-
-        def along(
-            values: si.FloatArray,
-            even: si.FloatArray = even,
-            here: si.FloatArray = here[rising],
-            rows: slice = rows,
-            rising: si.Array = rising,
-        ) -> si.FloatArray:
-            return np.asarray(np.interp(even, here, values[rows][rising]))
-
-        runs.append(
-            _OneRun(
-                along_x=run.along_x,
-                # The skin trails the bone.
-                stretch=along(-forth * force.stretch),
-                speed=np.maximum(along(forth * speed), 0.0),
-                length=abs(stop - start),
-            )
-        )
+        # The skin trails the bone.
+        stretch = interpolated(even, here, -forth * force.stretch[rows])
+        pace = np.maximum(interpolated(even, here, forth * speed[rows]), 0.0)
+        runs.append(_OneRun(run.along_x, stretch, pace, abs(stop - start)))
     return runs
 
 

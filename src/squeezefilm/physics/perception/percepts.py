@@ -31,13 +31,13 @@ from squeezefilm.physics.perception.senses import (
 )
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel
-from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
+from squeezefilm.physics.render.motion.stroke import FingerPath, MinimumJerkStroke
 from squeezefilm.physics.texture_files.texture_file import TextureFile
 
 if TYPE_CHECKING:
     from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
 
-CONTROL_RATE: si.Hertz = 9.6e3
+_CONTROL_RATE: si.Hertz = 9.6e3
 _SEED = 0
 _FEWEST_STEPS = 64
 
@@ -81,25 +81,11 @@ def percept(
 ) -> tuple[Percept, RenderAnalysis]:
     """Percept of a virtual grating on a display by a finger, and how it was rendered.
 
-    The lateral stretch of the skin over the way, from 2 mm after each turn on. The sensor's noise
-    has a fixed seed. Raises as `render_texture` does.
+    The lateral stretch of the skin over the way, from 2 mm after each turn on. Raises as
+    `rendered`.
     """
-    # What was felt before is read from disk, and needs neither plates nor loop.
-    from squeezefilm.physics.chain.rendered_texture import render_texture
-
-    run = apparatus or Apparatus()
-    played = render_texture(
-        with_finger(display, finger),
-        TextureFile(stimulus.surface(), stimulus.name),
-        exploration(observer, finger),
-        normal_force=finger.normal_force,
-        sensor=run.sensor,
-        compensation=run.compensation,
-        braking=run.braking,
-        wave=run.wave,
-        control_rate=CONTROL_RATE,
-        seed=_SEED,
-    )
+    surface = TextureFile(stimulus.surface(), stimulus.name)
+    played = rendered(display, surface, finger, exploration(observer, finger), apparatus)
     force = played.force
     # The skin trails the bone: its stretch is against the motion, there and back.
     passes = along_way(force.bone_position, force.stretch, observer, (-1.0, 1.0))
@@ -150,17 +136,37 @@ def exploration(observer: Observer, finger: FingerClass) -> MinimumJerkStroke:
     )
 
 
-def with_finger(display: Display, finger: FingerClass) -> Display:
-    """The display under that finger."""
-    return dataclasses.replace(
-        display,
-        finger=dataclasses.replace(
-            display.finger,
-            contact_length=finger.contact_length,
-            ridge_angle=finger.ridge_angle,
-            moisture=finger.moisture,
-            normal_force=finger.normal_force,
-        ),
+def rendered(
+    display: Display,
+    surface: TextureFile,
+    finger: FingerClass,
+    motion: MinimumJerkStroke | FingerPath,
+    apparatus: Apparatus | None = None,
+) -> RenderAnalysis:
+    """A surface as a display renders it under a finger in motion. The sensor's noise has a fixed
+    seed. Raises as `render_texture` does."""
+    # What was felt before is read from disk, and needs neither plates nor loop.
+    from squeezefilm.physics.chain.rendered_texture import render_texture
+
+    run = apparatus or Apparatus()
+    under = dataclasses.replace(
+        display.finger,
+        contact_length=finger.contact_length,
+        ridge_angle=finger.ridge_angle,
+        moisture=finger.moisture,
+        normal_force=finger.normal_force,
+    )
+    return render_texture(
+        dataclasses.replace(display, finger=under),
+        surface,
+        motion,
+        normal_force=finger.normal_force,
+        sensor=run.sensor,
+        compensation=run.compensation,
+        braking=run.braking,
+        wave=run.wave,
+        control_rate=_CONTROL_RATE,
+        seed=_SEED,
     )
 
 
@@ -203,9 +209,15 @@ def along_way(
         rows = slice(math.ceil(number * per_pass), math.floor((number + 1) * per_pass) + 1)
         back = number % 2
         here = observer.stroke_length - way[rows] if back else way[rows]
-        rising = np.concatenate([[True], np.diff(np.maximum.accumulate(here)) > 0.0])
-        passes.append(np.interp(even, here[rising], forth[back] * values[rows][rising]))
+        passes.append(interpolated(even, here, forth[back] * values[rows]))
     return np.array(passes)
+
+
+def interpolated(even: si.MetreArray, way: si.MetreArray, values: si.FloatArray) -> si.FloatArray:
+    """Values that were met along a `way` (m), at `even` places of it (m): where the way goes on,
+    for a place that is met again says nothing new."""
+    rising = np.concatenate([[True], np.diff(np.maximum.accumulate(way)) > 0.0])
+    return np.asarray(np.interp(even, way[rising], values[rising]))
 
 
 _FAINTEST = 0.05
