@@ -12,6 +12,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import brentq
 
 from squeezefilm.actuators.motor.parts import Feet, Stator, followed
 from squeezefilm.core import quantities as si
@@ -119,42 +120,19 @@ def average_contact(
     means[4] = slipping / contact if contact > 0.0 else 0.0
 
 
-@compiled(error_model="numpy")
 def settled_height(
     stator: Stator, feet: Feet, sideways: si.Array, preload: float, swing: Swing, means: si.Array
 ) -> float:
     """The height (m) at which the feet carry the preload in the mean; `means` are those there."""
-    reach = 0.0
-    weakest = np.inf
-    for i in range(feet.mu.size):
-        weakest = min(weakest, feet.k_nn[i])
-        here = 0.0
-        for j in range(stator.mass.size):
-            here += abs(feet.across[i, j]) * stator.amplitude[j]
-        reach = max(reach, here)
-    high = reach
-    low = -reach - 4.0 * preload / weakest
-    f_high = -preload
-    f_low = preload
-    side = 0
-    z = 0.5 * (low + high)
-    for number in range(80):
-        if number % 3 == 2:
-            z = 0.5 * (low + high)
-        else:
-            z = (low * f_high - high * f_low) / (f_high - f_low)
-        average_contact(stator, feet, sideways, z, swing, means)
-        f = means[2] - preload
-        if abs(f) <= 1e-9 * preload or high - low <= 1e-14 * (reach + 1e-12):
-            break
-        if f > 0.0:
-            low, f_low = z, f
-            if side == 1:
-                f_high *= 0.5
-            side = 1
-        else:
-            high, f_high = z, f
-            if side == -1:
-                f_low *= 0.5
-            side = -1
-    return z
+
+    def excess(height: float) -> float:
+        average_contact(stator, feet, sideways, height, swing, means)
+        return float(means[2] - preload)
+
+    highest = float(np.max(np.abs(feet.across) @ np.abs(stator.amplitude)))
+    # What a leaning leg has left where friction pulls it aside.
+    weakest = float(np.min(feet.k_nn - feet.k_nt**2 / feet.k_tt))
+    lowest = -highest - 4.0 * preload / weakest
+    height = float(brentq(excess, lowest, highest, xtol=1e-14 * (highest + 1e-12)))
+    excess(height)
+    return height

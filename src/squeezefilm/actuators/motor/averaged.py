@@ -138,7 +138,7 @@ def _means(
     swing = Swing(*speeds, samples, 2, _BEATING if beats else 1)
     preload = motor.slider(working, imposed=True).preload
     height = settled_height(stator, motor.feet, motor.sideways, preload, swing, means)
-    return float(height), means
+    return height, means
 
 
 def _balanced(
