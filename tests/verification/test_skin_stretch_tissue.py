@@ -14,12 +14,14 @@ from squeezefilm.actuators.skin_stretch.cradle import (
     radii_that_touch_all,
     seat,
 )
-from squeezefilm.actuators.skin_stretch.elastic_layer import (
+from squeezefilm.actuators.skin_stretch.tissue import (
+    Tissue,
     half_space_motion,
+    influence_matrix,
     layer_compliances,
     layer_correction,
+    strain_matrices,
 )
-from squeezefilm.actuators.skin_stretch.tissue import Tissue, influence_matrix, strain_matrices
 
 SIZE = (1.0e-3, 1.6e-3)
 

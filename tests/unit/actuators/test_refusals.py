@@ -14,8 +14,7 @@ from squeezefilm.actuators.motor.description import MotorDescription, preset_mot
 from squeezefilm.actuators.skin_stretch.array import held_forces
 from squeezefilm.actuators.skin_stretch.bimorph import MOST_SLENDER, solid_bender
 from squeezefilm.actuators.skin_stretch.cradle import pattern_voltages
-from squeezefilm.actuators.skin_stretch.elastic_layer import together
-from squeezefilm.actuators.skin_stretch.tissue import _rows
+from squeezefilm.actuators.skin_stretch.tissue import _rows, together
 from squeezefilm.core.errors import ConfigError, InputError, OutOfRangeError
 from squeezefilm.physics.render.texture.shapes import SineWave
 
