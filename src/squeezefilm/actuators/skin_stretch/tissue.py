@@ -1,5 +1,4 @@
-"""The soft tissue of a fingertip under an array: a layer on rigid bone, or a half-space, and how its
-surface answers to a rectangle of even traction.
+"""A fingertip's soft tissue under an array: a layer on bone, or a half-space, and how it answers.
 
 The half-space is Cerruti's and Boussinesq's solution. A force Q along x at the origin moves the
 surface by u_x = Q/(2πG) [(1 − ν)/r + ν x²/r³] and u_y = Q/(2πG) ν xy/r³; a force across it by
