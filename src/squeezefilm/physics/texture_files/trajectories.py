@@ -22,7 +22,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.core.formats.traces import Table, table_from_csv, text_of_file
+from squeezefilm.core.formats.traces import table_from_csv, text_of_file
 from squeezefilm.core.hard_limits import FINGER_SPEED
 from squeezefilm.physics.render.motion.stroke import FingerPath, MinimumJerkStroke, Stroke
 
@@ -58,76 +58,56 @@ def read_trajectory(path: str | Path) -> FingerPath:
             finite, times that do not rise, places too far or too far apart, each with its line.
     """
     table = table_from_csv(path)
-    first = _first_line(path)
+    first = 3 if text_of_file(path).startswith("#") else 2
+
+    def wrong(message: str, row: int = -1, key: str | None = None) -> ConfigError:
+        # The names of the columns stand in the line before the first row of numbers.
+        return ConfigError(message, file=path, line=first + row, key=key)
+
     for name in table.columns:
         if name not in _COLUMNS:
-            raise ConfigError(
+            raise wrong(
                 f"the column '{name}' is not known.{si.did_you_mean(name, _COLUMNS)} Allowed: "
-                "time_s, x_m and, in the plane, y_m",
-                file=path,
-                line=first - 1,
+                "time_s, x_m and, in the plane, y_m"
             )
     for name in _COLUMNS[:2]:
         if name not in table.columns:
-            raise ConfigError(
-                f"the column '{name}' is missing; a motion has time_s and x_m, in the plane y_m",
-                file=path,
-                line=first - 1,
+            raise wrong(
+                f"the column '{name}' is missing; a motion has time_s and x_m, in the plane y_m"
             )
-    return _checked(table, path)
-
-
-def _first_line(path: str | Path) -> int:
-    """The line of the first row of numbers."""
-    return 3 if text_of_file(path).startswith("#") else 2
-
-
-def _checked(table: Table, path: str | Path) -> FingerPath:
-    first = _first_line(path)
     for name, column in table.columns.items():
-        bad = np.flatnonzero(~np.isfinite(column))
-        if bad.size:
-            raise ConfigError(
+        if np.any(bad := ~np.isfinite(column)):
+            raise wrong(
                 "is no number; a motion has one at every time: leave the whole line out if the "
                 "finger was not seen",
-                file=path,
-                line=first + int(bad[0]),
-                key=name,
+                int(np.argmax(bad)),
+                name,
             )
     time, x = table.column("time_s"), table.column("x_m")
     y = table.columns["y_m"] if "y_m" in table.columns else np.zeros(x.size)
     if time.size < 2:
         raise ConfigError("has fewer than two samples, no motion", file=path)
-    still = np.flatnonzero(np.diff(time) <= 0.0)
-    if still.size:
-        k = int(still[0]) + 1
-        raise ConfigError(
+    if np.any(still := np.diff(time) <= 0.0):
+        k = int(np.argmax(still)) + 1
+        raise wrong(
             f"{time[k]:.9g} s does not come after {time[k - 1]:.9g} s; times must rise from line "
             "to line",
-            file=path,
-            line=first + k,
-            key="time_s",
+            k,
+            "time_s",
         )
-    _require_slow(time, x, y, path, first)
+    speed = np.hypot(np.diff(x), np.diff(y)) / np.diff(time)
+    if np.any(fast := speed > FINGER_SPEED.most):
+        k = int(np.argmax(fast))
+        raise wrong(
+            f"the finger would move at {speed[k]:.4g} m/s, and at most "
+            f"{FINGER_SPEED.most:g} m/s are believed; check the units (time_s in seconds, x_m in "
+            "metres)",
+            k + 1,
+        )
     try:
         return FingerPath(time, x, y)
     except InputError as error:
         raise ConfigError(str(error), file=path) from error
-
-
-def _require_slow(
-    time: si.SecondArray, x: si.MetreArray, y: si.MetreArray, path: str | Path, first: int
-) -> None:
-    speed = np.hypot(np.diff(x), np.diff(y)) / np.diff(time)
-    fast = np.flatnonzero(speed > FINGER_SPEED.most)
-    if fast.size:
-        raise ConfigError(
-            f"the finger would move at {speed[fast[0]]:.4g} m/s, and at most "
-            f"{FINGER_SPEED.most:g} m/s are believed; check the units (time_s in seconds, x_m in "
-            "metres)",
-            file=path,
-            line=first + int(fast[0]) + 1,
-        )
 
 
 def stroke_from_text(text: str) -> Motion:
