@@ -17,39 +17,57 @@ STEPS: int = 64
 """Steps of a period of the first mode: the forces' error is then some 1e-6 of them."""
 
 
-@dataclass(frozen=True, eq=False)
-class MotorMotion:
-    """A slider over a vibrating plate in time; arrays over periods, and over the steps traced.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Motion:
+    """A slider over a vibrating plate in time; arrays over periods of the first mode.
 
     Attributes:
         working: how it was driven.
-        frequency: of the drive (Hz).
-        period_thrust, period_normal: mean forces on the slider over each period (N).
-        period_speed, period_height: the slider's at the end of each period (m/s, m).
-        period_amplitude: of the first mode over each period (m).
-        contact_share, stick_share: of the time, over the periods of the second half (1).
+        period_normal: mean force across over each period (N).
+        period_height: of the slider at the end of each (m).
+        contact_share, stick_share: of the time (1).
         works: since the start (J), by the names in `kernel`: what drive and preload put in, what
             the load got, what modes, contacts, friction and guide lost.
         stored_energy: kinetic and elastic energy at the end less that at the start (J).
         time: of the traced steps (s).
-        height, speed: of the slider there (m, m/s).
-        deflection: of the modes (m), (steps, modes).
-        stretch: of the feet along (m), (steps, feet).
-        contact: of the feet there, 0 open, 1 sticks, 2 and 3 slip forwards and back.
     """
 
     working: Working
-    frequency: si.Hertz
-    period_thrust: si.NewtonArray
     period_normal: si.NewtonArray
-    period_speed: si.MetrePerSecondArray
     period_height: si.MetreArray
-    period_amplitude: si.MetreArray
     contact_share: si.Dimensionless
     stick_share: si.Dimensionless
     works: si.FloatArray
     stored_energy: si.Joule
     time: si.SecondArray
+
+    @property
+    def energy_residual(self) -> si.Dimensionless:
+        """Energy that the balance lacks, over all that was put in and lost: of the march."""
+        w = self.works
+        gap = w[kernel.DRIVE] + w[kernel.PRELOAD] - np.sum(w[kernel.OUTPUT :]) - self.stored_energy
+        return float(abs(gap) / np.sum(np.abs(w)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class MotorMotion(Motion):
+    """Motion along one line; shares of the time are those over the periods of the second half.
+
+    Attributes beside those of `Motion`:
+        frequency: of the drive (Hz).
+        period_thrust: mean force along over each period (N).
+        period_speed: at the end of each period (m/s).
+        period_amplitude: of the first mode over each period (m).
+        height, speed: of the slider at the traced steps (m, m/s).
+        deflection: of the modes (m), (steps, modes).
+        stretch: of the feet along (m), (steps, feet).
+        contact: of the feet there, 0 open, 1 sticks, 2 and 3 slip forwards and back.
+    """
+
+    frequency: si.Hertz
+    period_thrust: si.NewtonArray
+    period_speed: si.MetrePerSecondArray
+    period_amplitude: si.MetreArray
     height: si.MetreArray
     speed: si.MetrePerSecondArray
     deflection: si.FloatArray
@@ -66,14 +84,6 @@ class MotorMotion:
     def final_speed(self) -> si.MetrePerSecond:
         """Mean over the last tenth of the periods (m/s)."""
         return float(np.mean(self.period_speed[-max(1, self.period_speed.size // 10) :]))
-
-    @property
-    def energy_residual(self) -> si.Dimensionless:
-        """Energy that the balance lacks, over all that was put in and lost: of the march."""
-        w = self.works
-        lost = w[kernel.OUTPUT] + w[kernel.MODAL_LOSS : kernel.GUIDE_LOSS + 1].sum()
-        gap = w[kernel.DRIVE] + w[kernel.PRELOAD] - lost - self.stored_energy
-        return float(abs(gap) / np.sum(np.abs(w)))
 
 
 @si.checked_numbers
@@ -111,13 +121,13 @@ def simulate(
     rows, half = _periods((stator, motor.feet, slider, march), periods, steps, track)
     counted = (march.shares - half) / ((periods - periods // 2) * period)
     return MotorMotion(
-        working,
-        float(stator.omega[0] / 2 / np.pi),
-        rows[0],
-        rows[1],
-        rows[2],
-        rows[3],
-        rows[4],
+        working=working,
+        frequency=float(stator.omega[0] / 2 / np.pi),
+        period_thrust=rows[0],
+        period_normal=rows[1],
+        period_speed=rows[2],
+        period_height=rows[3],
+        period_amplitude=rows[4],
         contact_share=float(np.mean(counted[0])),
         stick_share=float(np.mean(counted[1])),
         works=march.state[totals : totals + 7].copy(),

@@ -15,7 +15,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
-from squeezefilm.actuators.motor.in_time import require_no_pull
+from squeezefilm.actuators.motor.in_time import Motion, require_no_pull
 from squeezefilm.actuators.motor.parts import (
     Feet,
     Slider,
@@ -205,35 +205,20 @@ STEPS: int = 256
 """Steps of a period of the first mode: thrust within some 1e-3 of µ times the preload."""
 
 
-@dataclass(frozen=True, eq=False)
-class PlaneMotion:
-    """A slider in the plane of a vibrating plate in time; arrays over periods of the first mode.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class PlaneMotion(Motion):
+    """Motion in the plane; shares of the time are those over all periods.
 
-    Attributes:
-        working: how it was driven.
+    Attributes beside those of `Motion`:
         period_thrust: mean force along and sideways over each period (N), (periods, 2).
-        period_normal: mean force across (N).
         period_velocity: along and sideways at the end of each period (m/s), (periods, 2).
-        period_height: of the slider there (m).
         period_amplitude: of the modes there (m), (periods, modes).
-        contact_share, stick_share: of the time, over all periods (1).
-        works: since the start (J), as `kernel` orders them.
-        stored_energy: kinetic and elastic energy at the end less that at the start (J).
-        time: of the traced steps (s).
-        path: the slider's place there (m), (steps, 2).
+        path: the slider's place at the traced steps (m), (steps, 2).
     """
 
-    working: Working
     period_thrust: si.NewtonArray
-    period_normal: si.NewtonArray
     period_velocity: si.MetrePerSecondArray
-    period_height: si.MetreArray
     period_amplitude: si.MetreArray
-    contact_share: si.Dimensionless
-    stick_share: si.Dimensionless
-    works: si.FloatArray
-    stored_energy: si.Joule
-    time: si.SecondArray
     path: si.MetreArray
     model: str = "modes, unilateral contact with Coulomb friction in the plane, steps of one length"
 
@@ -248,13 +233,6 @@ class PlaneMotion:
         return np.asarray(
             np.mean(self.period_velocity[-max(1, len(self.period_velocity) // 10) :], 0)
         )
-
-    @property
-    def energy_residual(self) -> si.Dimensionless:
-        """Energy that the balance lacks, over all that was put in and lost: of the march."""
-        w = self.works
-        gap = w[0] + w[1] - np.sum(w[2:]) - self.stored_energy
-        return float(abs(gap) / np.sum(np.abs(w)))
 
 
 @si.checked_numbers
@@ -298,18 +276,18 @@ def simulate_plane(
         rows[n, 6:] = np.hypot(march.q, march.dq / stator.omega)
     whole = periods * period
     return PlaneMotion(
-        working,
-        rows[:, :2],
-        rows[:, 2],
-        rows[:, 3:5],
-        rows[:, 5],
-        rows[:, 6:],
-        float(march.shares[0] / whole),
-        float(march.shares[1] / whole),
-        march.totals[:7].copy(),
-        _energy(motor, stator, slider, march) - begun,
-        track[:, 0],
-        track[:, 3:5],
+        working=working,
+        period_thrust=rows[:, :2],
+        period_normal=rows[:, 2],
+        period_velocity=rows[:, 3:5],
+        period_height=rows[:, 5],
+        period_amplitude=rows[:, 6:],
+        contact_share=float(march.shares[0] / whole),
+        stick_share=float(march.shares[1] / whole),
+        works=march.totals[:7].copy(),
+        stored_energy=_energy(motor, stator, slider, march) - begun,
+        time=track[:, 0],
+        path=track[:, 3:5],
     )
 
 
