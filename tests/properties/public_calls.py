@@ -53,7 +53,7 @@ _ROOMS = tuple(f"{room}." for room in ROOMS)
 NOT_CALLED = {
     "a record of what was computed, which only the package makes": """
     actuators.motor.averaged.AveragedMotor actuators.motor.in_time.MotorMotion
-    actuators.motor.plane.PlaneMotion
+    actuators.motor.in_time.Motion actuators.motor.plane.PlaneMotion
     actuators.motor.curves.MotorMap
     actuators.motor.closed_loop.TrackedForce actuators.motor.closed_loop.TrackedForce.mean_error
     actuators.motor.assembled.FaceMode

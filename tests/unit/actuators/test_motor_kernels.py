@@ -11,8 +11,8 @@ from squeezefilm.actuators.motor.average_kernel import (
     MEANS,
     Swing,
     average_contact,
-    settled_height,
 )
+from squeezefilm.actuators.motor.averaged import _settled_height
 from squeezefilm.actuators.motor.parts import damping_at, mode_energy, spring_at
 
 from .test_plane_kernel import FEET, MODES, foot, made
@@ -171,7 +171,7 @@ def test_the_slider_settles_where_the_feet_carry_its_preload() -> None:
     stator, feet, sideways, _ = made(2, held=True, imposed=True)
     swing, found, there = Swing(0.05, -0.03, 64, 1, 2), np.zeros(MEANS), np.zeros(MEANS)
     for preload in (0.05, 2.0, 30.0):
-        height = settled_height(stator, feet, sideways, preload, swing, found)
+        height = _settled_height(stator, feet, sideways, preload, swing, found)
         average_contact(stator, feet, sideways, height, swing, there)
         assert found == pytest.approx(there)
         assert found[2] == pytest.approx(preload, rel=1e-6)

@@ -12,7 +12,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from squeezefilm.actuators.motor.parts import Feet, Stator, followed
 from squeezefilm.core import quantities as si
@@ -118,21 +117,3 @@ def average_contact(
     means[:] /= total
     means[3] = contact / (total * n_feet)
     means[4] = slipping / contact if contact > 0.0 else 0.0
-
-
-def settled_height(
-    stator: Stator, feet: Feet, sideways: si.Array, preload: float, swing: Swing, means: si.Array
-) -> float:
-    """The height (m) at which the feet carry the preload in the mean; `means` are those there."""
-
-    def excess(height: float) -> float:
-        average_contact(stator, feet, sideways, height, swing, means)
-        return float(means[2] - preload)
-
-    highest = float(np.max(np.abs(feet.across) @ np.abs(stator.amplitude)))
-    # What a leaning leg has left where friction pulls it aside.
-    weakest = float(np.min(feet.k_nn - feet.k_nt**2 / feet.k_tt))
-    lowest = -highest - 4.0 * preload / weakest
-    height = float(brentq(excess, lowest, highest, xtol=1e-14 * (highest + 1e-12)))
-    excess(height)
-    return height

@@ -17,9 +17,9 @@ import numpy as np
 from scipy.optimize import brentq
 
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
-from squeezefilm.actuators.motor.average_kernel import MEANS, Swing, settled_height
+from squeezefilm.actuators.motor.average_kernel import MEANS, Swing, average_contact
 from squeezefilm.actuators.motor.in_time import require_no_pull
-from squeezefilm.actuators.motor.parts import Stator
+from squeezefilm.actuators.motor.parts import Feet, Stator
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeError, UnreachableError
 
@@ -137,8 +137,26 @@ def _means(
     beats = stator.mass.size > 1 and stator.amplitude[1] != 0
     swing = Swing(*speeds, samples, 2, _BEATING if beats else 1)
     preload = motor.slider(working, imposed=True).preload
-    height = settled_height(stator, motor.feet, motor.sideways, preload, swing, means)
+    height = _settled_height(stator, motor.feet, motor.sideways, preload, swing, means)
     return height, means
+
+
+def _settled_height(
+    stator: Stator, feet: Feet, sideways: si.Array, preload: float, swing: Swing, means: si.Array
+) -> float:
+    """The height (m) at which the feet carry the preload in the mean; `means` are those there."""
+
+    def excess(height: float) -> float:
+        average_contact(stator, feet, sideways, height, swing, means)
+        return float(means[2] - preload)
+
+    highest = float(np.max(np.abs(feet.across) @ np.abs(stator.amplitude)))
+    # What a leaning leg has left where friction pulls it aside.
+    weakest = float(np.min(feet.k_nn - feet.k_nt**2 / feet.k_tt))
+    lowest = -highest - 4.0 * preload / weakest
+    height = float(brentq(excess, lowest, highest, xtol=1e-14 * (highest + 1e-12)))
+    excess(height)
+    return height
 
 
 def _balanced(
