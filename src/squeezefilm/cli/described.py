@@ -245,5 +245,5 @@ def analyze_actuator(asked: Any) -> None:
         written = None
         if asked.out is not None:
             step("figures")
-            written = analyzed.write(analyzed.analysis, asked.out)
-    answer(asked.as_json, analyzed.analysis, analyzed.show, report=written)
+            written = analyzed.write(asked.out)
+    answer(asked.as_json, analyzed.analysis, lambda _: analyzed.show(), report=written)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from pathlib import Path
 from types import SimpleNamespace
@@ -13,7 +14,7 @@ from tests.e2e.program import run
 from tests.shared import shared
 
 from squeezefilm.actuators.report import motor, skin_stretch
-from squeezefilm.actuators.report.dispatch import AnalyzedActuator, analyze_actuator
+from squeezefilm.actuators.report.dispatch import analyze_actuator
 
 
 def test_options_of_displays_are_refused_of_actuators() -> None:
@@ -44,19 +45,20 @@ def test_an_actuator_is_analysed_shown_and_written_where_asked(
     shown: list[object] = []
     wrote: list[object] = []
 
-    def write(of: object, folder: Path) -> Path:
-        wrote.append((of, folder))
+    def write(folder: Path) -> Path:
+        wrote.append(folder)
         return folder / "report.html"
 
     analysis = SimpleNamespace(summary=lambda: {"kind": "motor"})
-    analyzed = AnalyzedActuator(analysis, shown.append, write)  # type: ignore[arg-type]
+    show = functools.partial(shown.append, analysis)
+    analyzed = SimpleNamespace(analysis=analysis, show=show, write=write)
     asked = stands_in("actuators.report.dispatch:analyze_actuator", analyzed, tells=False)
     done = run("analyze", "biet2008-motor")
     assert asked.given[:2] == ("biet2008-motor", None)
     assert (done.stdout, shown, wrote) == ("", [analysis], [])
     done = run("analyze", "biet2008-motor", "--voltage", "30 V", "--out", str(tmp_path))
     assert asked.calls[-1][0][1] == 30.0
-    assert wrote == [(analysis, tmp_path)]
+    assert wrote == [tmp_path]
     assert done.stdout == f"report: {tmp_path / 'report.html'}\n"
     told = run("analyze", "biet2008-motor", "--json")
     assert json.loads(told.stdout) == {"kind": "motor"}
@@ -64,17 +66,21 @@ def test_an_actuator_is_analysed_shown_and_written_where_asked(
 
 
 @pytest.mark.parametrize(
-    ("name", "kind", "show"),
+    ("name", "kind", "report"),
     [
-        ("biet2008-motor", "motor", motor.show_motor),
-        ("biet2008-skin-stretch", "skin_stretch", skin_stretch.show_skin_stretch),
+        ("biet2008-motor", "motor", (motor.motor_rows, motor.motor_figures)),
+        (
+            "biet2008-skin-stretch",
+            "skin_stretch",
+            (skin_stretch.skin_stretch_rows, skin_stretch.skin_stretch_figures),
+        ),
     ],
 )
-def test_each_kind_has_its_own_analysis_and_report(name: str, kind: str, show: object) -> None:
+def test_each_kind_has_its_own_analysis_and_report(name: str, kind: str, report: object) -> None:
     place = f"squeezefilm.actuators.analysis.{kind}.analyze_{kind}"
     with mock.patch(place, return_value="analysed") as analyze:
         found = analyze_actuator(name, 12.0, print)
     assert analyze.call_args.args[0].name == name
     assert analyze.call_args.kwargs == {"voltage": 12.0, "progress": print}
     assert found.analysis == "analysed"
-    assert found.show is show
+    assert (found.rows, found.figures) == report

@@ -2,25 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any, NamedTuple
 
 from squeezefilm.actuators.analysis import motor, skin_stretch
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.motor.description import MotorDescription
-from squeezefilm.actuators.report.motor import show_motor, write_motor
-from squeezefilm.actuators.report.skin_stretch import show_skin_stretch, write_skin_stretch
+from squeezefilm.actuators.report.motor import MOTOR_ANSWERS, motor_figures, motor_rows
+from squeezefilm.actuators.report.page import AnalyzedActuator
+from squeezefilm.actuators.report.skin_stretch import (
+    SKIN_STRETCH_ANSWERS,
+    skin_stretch_figures,
+    skin_stretch_rows,
+)
 from squeezefilm.core import quantities as si
 from squeezefilm.core.progress import SayProgress
-
-
-class AnalyzedActuator(NamedTuple):
-    """An actuator's analysis, what prints it and what writes its page."""
-
-    analysis: motor.MotorAnalysis | skin_stretch.SkinStretchAnalysis
-    show: Callable[[Any], None]
-    write: Callable[[Any, Path], Path]
 
 
 def analyze_actuator(
@@ -32,6 +27,6 @@ def analyze_actuator(
     described = load_actuator(target)
     if isinstance(described, MotorDescription):
         of_motor = motor.analyze_motor(described, voltage=voltage, progress=progress)
-        return AnalyzedActuator(of_motor, show_motor, write_motor)
+        return AnalyzedActuator(of_motor, motor_rows, motor_figures, MOTOR_ANSWERS)
     of_array = skin_stretch.analyze_skin_stretch(described, voltage=voltage, progress=progress)
-    return AnalyzedActuator(of_array, show_skin_stretch, write_skin_stretch)
+    return AnalyzedActuator(of_array, skin_stretch_rows, skin_stretch_figures, SKIN_STRETCH_ANSWERS)

@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 import functools
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from squeezefilm.actuators.analysis.motor import MotorAnalysis
-from squeezefilm.actuators.report.page import (
-    how_sure,
-    show_actuator,
-    with_interval,
-    write_page,
-)
+from squeezefilm.actuators.report.page import with_interval
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, Row, V, W, shown
@@ -27,7 +21,7 @@ if TYPE_CHECKING:
     from squeezefilm.actuators.motor.curves import MotorMap
     from squeezefilm.actuators.motor.plane import PlaneMotion
 
-_ANSWERS = {"stall_force_N": "stall force", "no_load_speed_m_per_s": "speed without a load"}
+MOTOR_ANSWERS = {"stall_force_N": "stall force", "no_load_speed_m_per_s": "speed without a load"}
 
 
 def motor_rows(analysis: MotorAnalysis) -> list[Row]:
@@ -96,24 +90,8 @@ def motor_rows(analysis: MotorAnalysis) -> list[Row]:
     ]
 
 
-def show_motor(analysis: MotorAnalysis) -> None:
-    """Print a motor: key numbers, warnings, and what is assumed."""
-    show_actuator(analysis, motor_rows(analysis))
-
-
-def write_motor(analysis: MotorAnalysis, folder: Path) -> Path:
-    """Write result.json, the figures and report.html into `folder`; the path of the page. Raises
-    `InputError` where the folder cannot be written to."""
-    return write_page(
-        analysis,
-        folder,
-        key_numbers=motor_rows(analysis),
-        figures=_figures(analysis),
-        more=how_sure(analysis.drawn, _ANSWERS),
-    )
-
-
-def _figures(analysis: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
+def motor_figures(analysis: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
+    """The figures of all that was computed, by file name: heading and figure."""
     figures = {
         "speed-force": (
             "Speed against force",

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers
 from squeezefilm.core import quantities as si
@@ -42,48 +42,44 @@ def assumed_words(provenance: Mapping[str, Provenance]) -> str:
     )
 
 
-def show_actuator(
-    analysis: MotorAnalysis | SkinStretchAnalysis, key_numbers: Sequence[Row]
-) -> None:
-    """Print an actuator: key numbers, warnings, and what is assumed."""
-    described = analysis.described
-    title = f"{described.title} [{described.name}]"
-    console = show_rows(title, key_numbers, analysis.warnings, fixed=(0, 1))
-    terminal_bullets(console, [("interval", drawn_words(analysis.drawn), "")])
-    terminal_bullets(console, [("assumed", assumed_words(described.provenance), "yellow")])
+class AnalyzedActuator(NamedTuple):
+    """An actuator's `analysis` and what is shown of it: key numbers, figures (by file name: heading
+    and figure), and in words, by name, the `answers` whose certainty the page tells."""
 
+    analysis: MotorAnalysis | SkinStretchAnalysis
+    rows: Callable[[Any], list[Row]]
+    figures: Callable[[Any], dict[str, tuple[str, Figure]]]
+    answers: Mapping[str, str]
 
-def write_page(
-    analysis: MotorAnalysis | SkinStretchAnalysis,
-    folder: Path,
-    *,
-    key_numbers: Sequence[Row],
-    figures: Mapping[str, tuple[str, Figure]],
-    more: str = "",
-) -> Path:
-    """Write result.json, a PNG of each of the `figures` (by file name: heading and figure), and
-    report.html into `folder`; the path of the page.
+    def show(self) -> None:
+        """Print key numbers, warnings, and what is assumed."""
+        analysis, described = self.analysis, self.analysis.described
+        title = f"{described.title} [{described.name}]"
+        console = show_rows(title, self.rows(analysis), analysis.warnings, fixed=(0, 1))
+        terminal_bullets(console, [("interval", drawn_words(analysis.drawn), "")])
+        terminal_bullets(console, [("assumed", assumed_words(described.provenance), "yellow")])
 
-    `more` are sections of HTML after the figures. Raises `InputError` where the folder cannot be
-    written to.
-    """
-    folder, described = require_folder(folder), analysis.described
-    summary = analysis.summary()
-    stamped_with = stamp(summary)
-    files: dict[str, str | bytes] = {
-        f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
-    }
-    files["result.json"] = json_text(summary | {"stamp": stamped_with})
-    warned = [*analysis.warnings, assumed_words(described.provenance)]
-    head = ("quantity", "value", "remark")
-    body = section("Warnings", bullets(warned))
-    body += section("Key numbers", text_table("Amplitudes zero to peak", head, key_numbers))
-    body += picture_sections(figures) + more + _sources(described.provenance)
-    title = as_html(described.title)
-    foot = stamped(stamped_with, "SHA-256 of the numbers")
-    files["report.html"] = page(title, title, as_html(described.name), body, foot)
-    write_folder(folder, files)
-    return folder / "report.html"
+    def write(self, folder: Path) -> Path:
+        """Write result.json, a PNG of each figure, and report.html into `folder`; the path of the
+        page. Raises `InputError` where the folder cannot be written to."""
+        folder, described = require_folder(folder), self.analysis.described
+        summary, figures = self.analysis.summary(), self.figures(self.analysis)
+        stamped_with = stamp(summary)
+        files: dict[str, str | bytes] = {
+            f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
+        }
+        files["result.json"] = json_text(summary | {"stamp": stamped_with})
+        warned = [*self.analysis.warnings, assumed_words(described.provenance)]
+        head = ("quantity", "value", "remark")
+        numbers = text_table("Amplitudes zero to peak", head, self.rows(self.analysis))
+        body = section("Warnings", bullets(warned)) + section("Key numbers", numbers)
+        body += picture_sections(figures) + how_sure(self.analysis.drawn, self.answers)
+        body += _sources(described.provenance)
+        title = as_html(described.title)
+        foot = stamped(stamped_with, "SHA-256 of the numbers")
+        files["report.html"] = page(title, title, as_html(described.name), body, foot)
+        write_folder(folder, files)
+        return folder / "report.html"
 
 
 def _sources(provenance: Mapping[str, Provenance]) -> str:

@@ -3,18 +3,12 @@
 from __future__ import annotations
 
 import functools
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis
-from squeezefilm.actuators.report.page import (
-    how_sure,
-    show_actuator,
-    with_interval,
-    write_page,
-)
+from squeezefilm.actuators.report.page import with_interval
 from squeezefilm.actuators.skin_stretch.bimorph import (
     PUBLISHED_BLOCKED,
     PUBLISHED_FREE,
@@ -30,7 +24,7 @@ if TYPE_CHECKING:
 
     from squeezefilm.actuators.analysis.skin_stretch import ShownWave
 
-_ANSWERS = {
+SKIN_STRETCH_ANSWERS = {
     "deflection_on_skin_m": "deflection on the skin",
     "force_on_skin_N": "force on the skin",
     "crosstalk": "crosstalk",
@@ -104,25 +98,13 @@ def skin_stretch_rows(analysis: SkinStretchAnalysis) -> list[Row]:
     ]
 
 
-def show_skin_stretch(analysis: SkinStretchAnalysis) -> None:
-    """Print an array: key numbers, warnings, and what is assumed."""
-    show_actuator(analysis, skin_stretch_rows(analysis))
-
-
-def write_skin_stretch(analysis: SkinStretchAnalysis, folder: Path) -> Path:
-    """Write result.json, the figures and report.html into `folder`; the path of the page. Raises
-    `InputError` where the folder cannot be written to."""
-    return write_page(
-        analysis,
-        folder,
-        key_numbers=skin_stretch_rows(analysis),
-        figures={
-            "load-line": ("One actuator against the skin", load_line_figure(analysis)),
-            "strain": ("The skin under the array", strain_figure(analysis)),
-            "crosstalk": ("Crosstalk and seat", crosstalk_figure(analysis)),
-        },
-        more=how_sure(analysis.drawn, _ANSWERS),
-    )
+def skin_stretch_figures(analysis: SkinStretchAnalysis) -> dict[str, tuple[str, Figure]]:
+    """The figures, by file name: heading and figure."""
+    return {
+        "load-line": ("One actuator against the skin", load_line_figure(analysis)),
+        "strain": ("The skin under the array", strain_figure(analysis)),
+        "crosstalk": ("Crosstalk and seat", crosstalk_figure(analysis)),
+    }
 
 
 _DRAWN_TIMES = 10

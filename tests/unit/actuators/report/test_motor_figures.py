@@ -1,6 +1,5 @@
 """Figures of a motor: the curves have their ends, the step says where it ends."""
 
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 from unittest import mock
@@ -85,14 +84,8 @@ def test_the_page_has_a_figure_of_all_that_was_computed(
 ) -> None:
     found: Any = mock.MagicMock(**more)
     drawing = [name for name in vars(report) if name.endswith("_figure")]
-    stand_ins = {
-        name: mock.Mock(return_value=name)
-        for name in (*drawing, "write_page", "motor_rows", "how_sure")
-    }
+    stand_ins = {name: mock.Mock(return_value=name) for name in drawing}
     with mock.patch.multiple(report, **stand_ins):
-        assert report.write_motor(found, Path("out")) == "write_page"
-    (given, folder), shown = stand_ins["write_page"].call_args
-    assert (given, folder) == (found, Path("out"))
-    assert (shown["key_numbers"], shown["more"]) == ("motor_rows", "how_sure")
+        figures = report.motor_figures(found)
     always = ["speed-force", "map", "frequency-and-place"]
-    assert list(shown["figures"]) == [*always, *names]
+    assert list(figures) == [*always, *names]

@@ -10,22 +10,22 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from matplotlib.figure import Figure
 from matplotlib.text import Text
 from tests.shared import shared
 
+from squeezefilm.actuators.analysis.drawn import DrawnAnswers
 from squeezefilm.actuators.described import is_actuator
 from squeezefilm.actuators.report import motor, skin_stretch
-from squeezefilm.actuators.report.dispatch import AnalyzedActuator, analyze_actuator
-from squeezefilm.actuators.report.page import assumed_words, write_page
+from squeezefilm.actuators.report.dispatch import analyze_actuator
+from squeezefilm.actuators.report.page import AnalyzedActuator, assumed_words
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.kit import style
 
 NAMES = ("biet2008-motor", "biet2008-skin-stretch")
 KINDS = {
-    "biet2008-motor": motor.write_motor,
-    "biet2008-skin-stretch": skin_stretch.write_skin_stretch,
+    "biet2008-motor": motor.motor_figures,
+    "biet2008-skin-stretch": skin_stretch.skin_stretch_figures,
 }
 
 
@@ -36,8 +36,8 @@ def analyzed(request: pytest.FixtureRequest) -> AnalyzedActuator:
 
 @pytest.mark.slow
 def test_all_that_a_page_shows_lies_beside_it(analyzed: AnalyzedActuator, tmp_path: Path) -> None:
-    assert analyzed.write is KINDS[analyzed.analysis.described.name]
-    page = analyzed.write(analyzed.analysis, tmp_path / "out")
+    assert analyzed.figures is KINDS[analyzed.analysis.described.name]
+    page = analyzed.write(tmp_path / "out")
     said = page.read_text(encoding="utf-8")
     pictures = re.findall(r'<img src="([^"]+)" alt="([^"]+)"', said)
     assert len(pictures) >= 3
@@ -51,20 +51,10 @@ def test_all_that_a_page_shows_lies_beside_it(analyzed: AnalyzedActuator, tmp_pa
 
 
 @pytest.mark.slow
-def test_no_text_lies_on_another_or_is_cut_off(
-    analyzed: AnalyzedActuator, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    drawn: dict[str, Figure] = {}
-
-    def keep(found: object, folder: Path, *, figures: dict[str, Any], **more: object) -> Path:
-        drawn.update({name: figure for name, (_, figure) in figures.items()})
-        return folder
-
-    for room in (motor, skin_stretch):
-        monkeypatch.setattr(room, "write_page", keep)
-    analyzed.write(analyzed.analysis, tmp_path)
+def test_no_text_lies_on_another_or_is_cut_off(analyzed: AnalyzedActuator) -> None:
+    drawn = analyzed.figures(analyzed.analysis)
     assert len(drawn) >= 3
-    for name, figure in drawn.items():
+    for name, (_, figure) in drawn.items():
         boxes: dict[str, Any] = {}
         with style.rc():
             figure.draw_without_rendering()
@@ -90,7 +80,7 @@ def test_no_text_lies_on_another_or_is_cut_off(
 def test_the_terminal_says_what_is_assumed(
     analyzed: AnalyzedActuator, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    analyzed.show(analyzed.analysis)
+    analyzed.show()
     said = " ".join(capsys.readouterr().out.split())
     assert "values with a source are assumed" in said
     assert analyzed.analysis.described.name in said
@@ -124,11 +114,13 @@ def test_a_page_shows_what_it_is_given(tmp_path: Path) -> None:
         described=SimpleNamespace(title="A <motor>", name="mine", provenance={}),
         summary=lambda: {"thrust_N": 1.5},
         warnings=("it is warm",),
+        drawn=DrawnAnswers({"force": (1.0, 1.5, 2.0)}, {"force": ()}, 64, 0, "", 7, ()),
     )
     numbers = [("Thrust", "1.5 N", "at rest")]
-    path = write_page(made, tmp_path / "out", key_numbers=numbers, figures={}, more="<p>more</p>")
+    answers = {"force": "stall force"}
+    path = AnalyzedActuator(made, lambda _: numbers, lambda _: {}, answers).write(tmp_path / "out")
     said = path.read_text(encoding="utf-8")
-    for text in ("A &lt;motor&gt;", "it is warm", "Thrust", "at rest", "<p>more</p>"):
+    for text in ("A &lt;motor&gt;", "it is warm", "Thrust", "at rest", "of the stall force"):
         assert text in said
     told = json.loads((path.parent / "result.json").read_text(encoding="utf-8"))
     assert told["thrust_N"] == 1.5

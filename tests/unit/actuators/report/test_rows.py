@@ -11,8 +11,9 @@ import pytest
 from tests.unit.printed import printed
 
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers
-from squeezefilm.actuators.report.motor import motor_rows, show_motor
-from squeezefilm.actuators.report.skin_stretch import show_skin_stretch, skin_stretch_rows
+from squeezefilm.actuators.report.motor import motor_rows
+from squeezefilm.actuators.report.page import AnalyzedActuator
+from squeezefilm.actuators.report.skin_stretch import skin_stretch_rows
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.distributions import Uniform
@@ -77,7 +78,7 @@ def said(cells: Iterable[str]) -> str:
 
 def test_a_motor_says_what_it_does_and_how_sure_that_is() -> None:
     assert [said(row) for row in motor_rows(motor())] == MOTOR
-    lines = printed(lambda: show_motor(motor()))
+    lines = printed(AnalyzedActuator(motor(), motor_rows, dict, {}).show)
     assert lines[0] == "A title [mine]"
     for line in ("Feet in contact 25 %", "it stalls", *SURE):
         assert line in said(lines)
@@ -128,7 +129,7 @@ ARRAY = [
 def test_an_array_says_what_it_does_and_how_sure_that_is() -> None:
     for row, words in zip(skin_stretch_rows(array()), ARRAY, strict=True):
         assert said(row).startswith(words)
-    lines = printed(lambda: show_skin_stretch(array()))
+    lines = printed(AnalyzedActuator(array(), skin_stretch_rows, dict, {}).show)
     assert lines[0] == "A title [mine]"
     for line in ("Resonance 350 Hz free;", "it slips", *SURE):
         assert line in said(lines)
