@@ -54,15 +54,7 @@ def load_actuator(name_or_path: str | Path) -> Described:
 
 
 def actuator_class(text: str, file: str | Path | None = None) -> type[Described]:
-    """The dataclass that the TOML text of an actuator is read into.
-
-    Raises `ConfigError` as `actuator_kind` does.
-    """
-    return KINDS[actuator_kind(text, file)]
-
-
-def actuator_kind(text: str, file: str | Path | None = None) -> str:
-    """Name of the one of `KINDS` that the TOML text has a table of.
+    """The dataclass that the TOML text of an actuator is read into, by the table that it has.
 
     What is no TOML is left to the loader, which says where it is wrong: taken as the first kind.
     Raises `ConfigError` where it has none, or more than one.
@@ -71,7 +63,7 @@ def actuator_kind(text: str, file: str | Path | None = None) -> str:
     try:
         tree: dict[str, Any] = tomllib.loads(text)
     except (ValueError, RecursionError):
-        return next(iter(KINDS))
+        return next(iter(KINDS.values()))
     kinds = [kind for kind in KINDS if kind in tree]
     tables = " or ".join(f"[{kind}]" for kind in KINDS)
     if len(kinds) > 1:
@@ -87,4 +79,4 @@ def actuator_kind(text: str, file: str | Path | None = None) -> str:
             f"{', '.join(tree) or 'nothing'}",
             file=file,
         )
-    return kinds[0]
+    return KINDS[kinds[0]]

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.actuators.described import KINDS, actuator_kind, load_actuator
+from squeezefilm.actuators.described import KINDS, actuator_class, load_actuator
 from squeezefilm.actuators.motor.description import MotorDescription
 from squeezefilm.core import presets
 from squeezefilm.core.errors import ConfigError
@@ -39,7 +39,10 @@ def test_the_plate_may_name_its_materials(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", presets.names("actuator"))
 def test_every_preset_is_one_of_the_kinds(name: str) -> None:
-    assert actuator_kind(presets.resolve(name, "actuator").read_text(encoding="utf-8")) in KINDS
+    assert (
+        actuator_class(presets.resolve(name, "actuator").read_text(encoding="utf-8"))
+        in KINDS.values()
+    )
     load_actuator(name)
 
 
@@ -55,11 +58,11 @@ def test_a_slip_is_said_with_its_line(tmp_path: Path) -> None:
 
 def test_a_file_without_an_actuator_is_refused() -> None:
     with pytest.raises(ConfigError, match=r"has no table of an actuator; one needs \[motor\]"):
-        actuator_kind('name = "x"\n[moter]\n')
+        actuator_class('name = "x"\n[moter]\n')
     with pytest.raises(ConfigError, match="Did you mean 'motor'"):
-        actuator_kind("[moter]\n")
+        actuator_class("[moter]\n")
     # What is no TOML is for the loader to explain.
-    assert actuator_kind("= 3") in KINDS
+    assert actuator_class("= 3") in KINDS.values()
     with pytest.raises(ConfigError, match="is neither a file nor a"):
         load_actuator("biet2008-moter")
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.actuators.described import actuator_kind, load_actuator
+from squeezefilm.actuators.described import actuator_class, load_actuator
 from squeezefilm.actuators.motor.description import MotorDescription, preset_motor
 from squeezefilm.actuators.skin_stretch.array import held_forces
 from squeezefilm.actuators.skin_stretch.bimorph import MOST_SLENDER, solid_bender
@@ -50,8 +50,8 @@ def voltages(times: Any) -> Any:
         (lambda: _rows(np.zeros(0), np.zeros(0)), "at least one"),
         (lambda: voltages(np.zeros(0)), "times is empty"),
         (lambda: MotorDescription("a", "", "", 1.0), "no Motor"),  # type: ignore[arg-type]
-        (lambda: actuator_kind("[motor]\n[skin_stretch]\n"), "two files"),
-        (lambda: actuator_kind("[other]\n"), "motor"),
+        (lambda: actuator_class("[motor]\n[skin_stretch]\n"), "two files"),
+        (lambda: actuator_class("[other]\n"), "motor"),
     ],
 )
 def test_what_cannot_be_is_refused(build: Callable[[], object], word: str) -> None:
