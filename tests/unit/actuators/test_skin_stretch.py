@@ -220,6 +220,9 @@ def test_lines_and_power(array: SkinStretchArray) -> None:
     assert budget.charging_power(bender, 60, 100.0, 250.0) == pytest.approx(
         60 * 250 * bender.capacitance * 4e4
     )
-    small = budget.budget(array.actuator, 60, 1.3e-4, most_mass=10e-3, most_volume=1e-6)
+    actuator = array.actuator
+    volume = 60 * actuator.length * actuator.width * actuator.thickness
+    assert array.budget == budget.Budget(60 * actuator.mass, volume, array.cradle.active_area)
+    small = dataclasses.replace(array.budget, most_mass=10e-3, most_volume=1e-6)
     assert len(small.over) == 2
-    assert "10 mm" not in budget.budget(array.actuator, 60, 1e-5).over[0]
+    assert "10 mm" not in dataclasses.replace(array.budget, area=1e-5).over[0]

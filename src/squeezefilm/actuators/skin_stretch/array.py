@@ -22,7 +22,7 @@ from scipy.linalg import cho_solve, solve_triangular
 from scipy.optimize import lsq_linear
 
 from squeezefilm.actuators.skin_stretch.bimorph import Bender, Bimorph, solid_bender
-from squeezefilm.actuators.skin_stretch.budget import Budget, budget
+from squeezefilm.actuators.skin_stretch.budget import Budget
 from squeezefilm.actuators.skin_stretch.cradle import FingerCradle, Fingertip, seat
 from squeezefilm.actuators.skin_stretch.tissue import Tissue, influence_matrix, strain_matrices
 from squeezefilm.core import hard_limits as hard
@@ -206,7 +206,9 @@ class SkinStretchArray:
     @property
     def budget(self) -> Budget:
         """Mass, volume and surface against those of the published array."""
-        return budget(self.actuator, self.cradle.count, self.cradle.active_area)
+        actuator, count = self.actuator, self.cradle.count
+        volume = count * actuator.length * actuator.width * actuator.thickness
+        return Budget(count * actuator.mass, volume, self.cradle.active_area)
 
     @property
     def crosstalk_shares(self) -> si.DimensionlessArray:

@@ -67,15 +67,16 @@ def loss_power(
 @si.checked_numbers
 @dataclass(frozen=True)
 class Budget:
-    """Limits on what may be spent, and the actuators' own share; `over` names, in sentences, what
-    they exceed. What is left is for clamps, cradle, drivers and housing, which are not modelled."""
+    """The actuators' own `mass` and `volume`, the `area` that they serve, and limits on these, by
+    default those of the published array. `over` names, in sentences, what is exceeded. What is left
+    is for clamps, cradle, drivers and housing, which are not modelled."""
 
     mass: si.Kilogram
-    most_mass: Annotated[si.Kilogram, si.Above(0)]
     volume: CubicMetre
-    most_volume: Annotated[CubicMetre, si.Above(0)]
     area: si.SquareMetre
-    wanted_area: Annotated[si.SquareMetre, si.Above(0)]
+    most_mass: Annotated[si.Kilogram, si.Above(0)] = PUBLISHED_MASS
+    most_volume: Annotated[CubicMetre, si.Above(0)] = PUBLISHED_VOLUME
+    wanted_area: Annotated[si.SquareMetre, si.Above(0)] = PUBLISHED_AREA
 
     @property
     def over(self) -> tuple[str, ...]:
@@ -97,17 +98,3 @@ class Budget:
                 f"{1e4 * self.wanted_area:.3g} cm² are wanted."
             )
         return tuple(sentences)
-
-
-@si.checked_numbers
-def budget(
-    actuator: Bimorph,
-    count: Annotated[int, si.AtLeast(1)],
-    area: Annotated[si.SquareMetre, si.Above(0)],
-    most_mass: Annotated[si.Kilogram, si.Above(0)] = PUBLISHED_MASS,
-    most_volume: Annotated[CubicMetre, si.Above(0)] = PUBLISHED_VOLUME,
-) -> Budget:
-    """The mass and volume of `count` actuators and the `area` (m²) that they serve, against limits
-    (kg, m³; those of the published array) and about 1 cm²."""
-    volume = count * actuator.length * actuator.width * actuator.thickness
-    return Budget(count * actuator.mass, most_mass, volume, most_volume, area, PUBLISHED_AREA)

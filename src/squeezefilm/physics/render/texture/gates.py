@@ -1,7 +1,8 @@
 """Masks of speed and time: gates, attacks, decays, and what comes and goes.
 
 `speed` reads like a sentence: ``texture.when(speed > 0.02)``, ``texture.when(speed < 0.1)``.
-Time is that of the stroke or the contact, whatever the caller passes as `t`.
+Time is that of the stroke or the contact, whatever the caller passes as `t`. Each raises
+`InputError` for a value outside its range.
 """
 
 from __future__ import annotations
@@ -30,9 +31,6 @@ class SpeedGate(Pattern):
         above, below: speeds (m/s), `above` the lesser; at least 0, at most 1000 m/s (which no
             finger reaches: leave it for no upper end). A finger at rest is above no speed: with
             `above` left out, the gate is open at rest too.
-
-    Raises:
-        InputError: a speed outside its range.
     """
 
     above: Annotated[si.MetrePerSecond, si.AtLeast(0.0), si.Below(_FASTEST)] | None = None
@@ -76,9 +74,6 @@ class Attack(Pattern):
     Args:
         duration: of the rise (s); above 0, at most a day.
         start: when it begins (s); at least 0, at most a day.
-
-    Raises:
-        InputError: a time outside its range.
     """
 
     duration: Annotated[si.Second, si.AtLeast(1e-06), si.AtMost(_LONGEST)]
@@ -97,9 +92,6 @@ class Decay(Pattern):
     Args:
         time_constant: of the fall (s); above 0, at most a day.
         start: when it begins (s); at least 0, at most a day.
-
-    Raises:
-        InputError: a time outside its range.
     """
 
     time_constant: Annotated[si.Second, si.AtLeast(1e-06), si.AtMost(_LONGEST)]
@@ -120,9 +112,6 @@ class Periodic(Pattern):
         shape: "square", 1 over the first `duty` of every period, or "sine", ½ + ½ sin.
         duty: share of the period at 1, square only; above 0, below 1.
         phase: shifts it earlier by phase/2π of a period (rad).
-
-    Raises:
-        InputError: a value outside its range.
     """
 
     frequency: Annotated[si.Hertz, si.AtLeast(1e-06), si.AtMost(2000.0)]

@@ -1,4 +1,7 @@
-"""Shapes in space: constant, gratings, pulse, ramp, band, and the slope of a bump or a hole."""
+"""Shapes in space: constant, gratings, pulse, ramp, band, and the slope of a bump or a hole.
+
+Each raises `InputError` for a value outside its range.
+"""
 
 from __future__ import annotations
 
@@ -75,9 +78,6 @@ class SquareWave(_Along):
         duty: share of the period at 1; above 0, below 1.
         phase: shifts the pattern back by phase/2π of a period (rad).
         along: the coordinate it runs along.
-
-    Raises:
-        InputError: a value outside its range.
     """
 
     spatial_period: Length
@@ -117,9 +117,6 @@ class Pulse(_Along):
         width: full width at half height (m); from 1 nm to 0.5 m.
         shape: "gaussian", or "raised_cosine", which is 0 from `width` on.
         along: the coordinate it lies on; from a point it is a ring.
-
-    Raises:
-        InputError: a value outside its range.
     """
 
     centre: Place
@@ -144,9 +141,6 @@ class Ramp(_Along):
         start, end: its ends (m), within ±10 m and not the same.
         profile: "linear", or "smooth" (the cubic 3u² − 2u³, level at both ends).
         along: the coordinate it runs along.
-
-    Raises:
-        InputError: a value outside its range.
     """
 
     start: Place
@@ -182,9 +176,6 @@ class Band(_Along):
         start, end: its ends (m), within ±10 m, `start` below `end`.
         fade: width of each edge (m), centred on it; 0, or from 1 nm to the band's width.
         along: the coordinate it lies on; from a point it is a ring.
-
-    Raises:
-        InputError: a value outside its range.
     """
 
     start: Place
@@ -237,9 +228,6 @@ class Bump(_Along):
         width: its standard deviation (m), at which the slope is steepest; from 1 nm to 0.5 m.
         kind: "bump" or "hole".
         along: the coordinate it lies on.
-
-    Raises:
-        InputError: a value outside its range.
     """
 
     centre: Place
