@@ -18,6 +18,7 @@ import time
 from collections.abc import Callable
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from scipy.optimize import lsq_linear
 
 from squeezefilm.physics.render.motion import kernel as motion_kernel
@@ -125,10 +126,11 @@ def predicted(estimator: MotionEstimator, times: np.ndarray) -> None:
 def preview_seconds(envelope: DrivenEnvelope, wanted: np.ndarray, ahead: int) -> float:
     """Time of a block by the compiled preview (s)."""
     command, code = np.empty(wanted.size), np.empty(wanted.size, dtype=np.int64)
+    windows = sliding_window_view(np.append(wanted[1:], np.full(ahead, wanted[-1])), ahead)
 
     def run() -> None:
-        compensation_kernel.previewed_march(
-            envelope.new_state(float(wanted[0])), envelope.parameters(1 / RATE), wanted, ahead,
+        compensation_kernel.previewed_windows(
+            envelope.new_state(float(wanted[0])), envelope.parameters(1 / RATE), windows,
             preview_work(ahead), command, code,
         )  # fmt: skip
 

@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import OutOfRangeError
@@ -167,7 +168,9 @@ def compensated_drive(
         kernel.compensated_march(state, parameters, goal, command, code)
     else:
         ahead = preview_samples(envelope, time_step)
-        kernel.previewed_march(state, parameters, goal, ahead, preview_work(ahead), command, code)
+        # The last sample holds.
+        windows = sliding_window_view(np.append(goal[1:], np.full(ahead, goal[-1])), ahead)
+        kernel.previewed_windows(state, parameters, windows, preview_work(ahead), command, code)
     names = {"none": "no compensation", "inverse": "inverse filter", "preview": "preview"}
     return CompensatedDrive(
         envelope=envelope,

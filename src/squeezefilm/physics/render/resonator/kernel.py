@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 
@@ -153,24 +151,6 @@ def previewed_step(
     for j in range(wanted.size - 2, -1, -1):
         goal = min(max(best[j], (goal - up) / rise), (goal - down) / fall)
     return compensated_step(state, parameters, goal)
-
-
-@compiled()
-def previewed_march(
-    state: si.Array,
-    parameters: si.Array,
-    wanted: si.Array,
-    ahead: int,
-    work: si.Array,
-    command: si.Array,
-    code: si.Array,
-) -> None:
-    """`previewed_step` over a block, each with the next `ahead` samples; the last sample holds."""
-    window = np.empty(ahead)
-    for k in range(wanted.size):
-        for j in range(ahead):
-            window[j] = wanted[min(k + 1 + j, wanted.size - 1)]
-        command[k], code[k] = previewed_step(state, parameters, window, work)
 
 
 @compiled()

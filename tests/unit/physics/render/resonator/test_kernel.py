@@ -9,6 +9,11 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
+from squeezefilm.physics.render.resonator.compensation import (
+    DrivenEnvelope,
+    compensated_drive,
+    preview_samples,
+)
 from squeezefilm.physics.render.resonator.kernel import (
     AMPLITUDE,
     AT_BOTTOM,
@@ -25,7 +30,6 @@ from squeezefilm.physics.render.resonator.kernel import (
     compensated_step,
     envelope_march,
     envelope_step,
-    previewed_march,
     previewed_step,
     previewed_windows,
 )
@@ -162,18 +166,34 @@ def test_only_what_rises_ahead_makes_it_rise_early() -> None:
     )
 
 
-def test_blocks_and_windows_see_the_same_samples_ahead() -> None:
+def test_each_window_is_seen_by_its_own_step() -> None:
     wanted = np.array([0.0, 0.2, 1.5, 1.5, 0.1, 0.9])
     work, ahead = np.empty((5, 8)), 3
     parameters = limits(-0.5, 2.0)
-    command, code, state = np.empty(6), np.empty(6, dtype=np.int64), start(0.4)
-    previewed_march(state, parameters, wanted, ahead, work, command, code)
     windows = np.array([[wanted[min(k + 1 + j, 5)] for j in range(ahead)] for k in range(6)])
-    again, codes, other = np.empty(6), np.empty(6, dtype=np.int64), start(0.4)
-    previewed_windows(other, parameters, windows, work, again, codes)
-    one = start(0.4)
-    each = [previewed_step(one, parameters, row, work) for row in windows]
-    assert again == pytest.approx(command, abs=0)
-    assert list(codes) == list(code) == [c for _, c in each]
+    command, code, state = np.empty(6), np.empty(6, dtype=np.int64), start(0.4)
+    previewed_windows(state, parameters, windows, work, command, code)
+    other = start(0.4)
+    each = [previewed_step(other, parameters, row, work) for row in windows]
+    assert list(code) == [c for _, c in each]
     assert [c for c, _ in each] == pytest.approx(list(command), abs=0)
     assert other == pytest.approx(state, abs=0)
+
+
+@pytest.mark.parametrize("wanted", [[0.3], [0.0, 0.2, 1.5, 1.5, 0.1, 0.9]])
+def test_a_preview_sees_the_last_sample_hold(wanted: list[float]) -> None:
+    envelope, step = DrivenEnvelope(2e-3, 3e-3, 1.2, braking=True), 1e-3
+    ahead, last = preview_samples(envelope, step), len(wanted) - 1
+    state, parameters = envelope.new_state(wanted[0]), envelope.parameters(step)
+    work = np.empty((5, 2 * ahead + 2))
+    each = [
+        previewed_step(
+            state,
+            parameters,
+            np.array([wanted[min(k + 1 + j, last)] for j in range(ahead)]),
+            work,
+        )[0]
+        for k in range(len(wanted))
+    ]
+    found = compensated_drive(np.array(wanted), step, envelope, "preview").command
+    assert found == pytest.approx(each, abs=0)
