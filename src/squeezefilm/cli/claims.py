@@ -51,9 +51,7 @@ def reproduce(
         checkout()
     with working(as_json) as step:
         result = run(prototype=out is not None or write_docs, progress=step)
-        written = None
-        if out is not None:
-            written = write_reproduction(result, out, progress=step)
+        written = None if out is None else write_reproduction(result, out, progress=step)
     if write_docs:
         typer.echo(f"wrote {write_validation_docs(result)}", err=True)
     answer(as_json, result, show_claims, report=written)

@@ -178,14 +178,13 @@ def analyze(asked: AnalyzeOptions) -> None:
         options = given(asked, leave="target finger out as_json")
         with_shifts = asked.sensitivities is not None
         result = run(display, **options, progress=step)
-        written = None
         if asked.out is None and not asked.as_json:
             shown = page.SHOWN_WITH_ALL if asked.whole else page.SHOWN
             if with_shifts and "sensitivities" not in shown:
                 shown = (*shown, "sensitivities")
             result.compute(shown, step)
-        if asked.out is not None:
-            written = page.write_analysis(result, asked.out, progress=step)
+        out = asked.out
+        written = None if out is None else page.write_analysis(result, out, progress=step)
     show = partial(page.show_analysis, whole=asked.whole, sensitivities=with_shifts)
     answer(asked.as_json, result, show, report=written)
     if written is None and not asked.as_json:
@@ -226,9 +225,7 @@ def friction(asked: FrictionOptions) -> None:
         result = analyze_friction(
             display, **given(asked, leave="target finger out as_json"), progress=step
         )
-        written = None
-        if asked.out is not None:
-            written = write_friction(result, asked.out)
+        written = None if asked.out is None else write_friction(result, asked.out)
     answer(asked.as_json, result, show_friction, figures=written)
 
 
