@@ -64,14 +64,9 @@ class ModelSeries:
         # As intensities have them, in parts of the reference or amounts.
         differences = self._model.differences
         self._choices = differences if in_amounts else np.expm1(differences)
-        self._hears_choice, self._count = hears_choice(series, described), series.count
+        self._hears_choice = hears_choice(series, described)
         self._weights = self._model.prior
-        self._trials = self._asked = 0
-
-    @property
-    def finished(self) -> bool:
-        """True where it has its trials."""
-        return self._trials >= self._count
+        self._asked = 0
 
     def estimate(self) -> tuple[si.Dimensionless, si.Dimensionless]:
         """Posterior mean and standard deviation of the threshold, in parts of the reference or as
@@ -104,7 +99,6 @@ class ModelSeries:
         chance = model.chances[:, number]
         weights = self._weights * (chance if is_first else 1.0 - chance)
         self._weights = weights / float(weights.sum())
-        self._trials += 1
         self._asked += bool(model.differences[number])
 
 

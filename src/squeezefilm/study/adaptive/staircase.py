@@ -159,7 +159,7 @@ class Ending:
 
 
 class Runs:
-    """A series of runs as it goes: `next_stimulus`, then `update`, until `finished`.
+    """A series of runs as it goes: `next_stimulus`, then `update`, for as many trials as planned.
 
     Nothing in it is random: the answers are all its state. Levels are amounts from the series'
     lowest to its highest against a flat surface, else differences from the reference in its parts,
@@ -170,14 +170,9 @@ class Runs:
         self._series, self._in_amounts = series, in_amounts
         below = -series.highest if in_amounts else 1.0 / (1.0 + series.highest) - 1.0
         self._least = series.lowest if is_flat else below
-        self._trials = self._begun = 0
+        self._begun = 0
         self.endings: list[Ending] = []
         self._begin()
-
-    @property
-    def finished(self) -> bool:
-        """True where it has its trials."""
-        return self._trials >= self._series.count
 
     def next_stimulus(self) -> si.Dimensionless:
         """The level to present next."""
@@ -186,7 +181,6 @@ class Runs:
     def update(self, intensity: si.Dimensionless, answer: str) -> None:
         """Take in an answer: "more", "less" or "equal" of an adjustment, else one of two, of which
         "yes" and "more" are for a level above."""
-        self._trials += 1
         if self._series.method == "adjustment":
             if answer == "equal":
                 self._end(intensity)
