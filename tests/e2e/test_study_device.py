@@ -22,6 +22,7 @@ from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.study.conduct.played_device import SessionDevice
+from squeezefilm.study.conduct.playing_process import WorkerOrders
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun
 from squeezefilm.study.conduct.sessions import (
     Exposure,
@@ -125,7 +126,7 @@ def counted(store: StudyStore) -> list[Row]:
 
 @pytest.mark.slow
 def test_a_session_on_a_twin_behind_a_port(store: StudyStore) -> None:
-    with SessionDevice(DISPLAY, "twin", store.traces) as device:
+    with SessionDevice(WorkerOrders(DISPLAY, "twin", store.traces)) as device:
         run = begun(store, device)
         conducted(run, device)
         assert run.state == "finished"
@@ -166,7 +167,7 @@ def test_a_device_that_dies_in_a_trial_leaves_no_answer_and_the_trial_comes_agai
         link = tmp_path / "port"
         link.symlink_to(port)
         # Not verified here, since its finger never lifts.
-        with SessionDevice(DISPLAY, f"serial:{link}", store.traces) as device:
+        with SessionDevice(WorkerOrders(DISPLAY, f"serial:{link}", store.traces)) as device:
             who = store.enrol()
             session = begin_session(
                 store, who, NoDevice(), SessionConditions(consent=True), None, acknowledged=False
@@ -206,9 +207,10 @@ KILLED = """
 import os, signal, sys, time
 from pathlib import Path
 from squeezefilm.study.conduct.played_device import SessionDevice
+from squeezefilm.study.conduct.playing_process import WorkerOrders
 from squeezefilm.physics.perception.stimuli import Stimulus
 if __name__ == "__main__":
-    device = SessionDevice("biet2008-plate", "twin", Path(sys.argv[1]))
+    device = SessionDevice(WorkerOrders("biet2008-plate", "twin", Path(sys.argv[1])))
     device.present(Stimulus("8 mm", 8e-3, "period", low=0.8), 1)
     time.sleep(1)
     os.kill(os.getpid(), signal.SIGKILL)

@@ -17,6 +17,7 @@ from squeezefilm.instruments.session.play import real_time as playing
 from squeezefilm.instruments.session.play.plan import PlayPlan
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.played_device import SessionDevice
+from squeezefilm.study.conduct.playing_process import WorkerOrders
 from squeezefilm.study.conduct.run import StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
 from squeezefilm.study.conduct.study_device import NoDevice, TrialMotion
@@ -33,7 +34,7 @@ def scripted_device(
     folder: Path, monkeypatch: pytest.MonkeyPatch, *servings: Serving
 ) -> SessionDevice:
     """A device whose process is a thread that does what a serving says; one after the other."""
-    device, left = SessionDevice("biet2008-plate", "serial:X", folder), list(servings)
+    device, left = SessionDevice(WorkerOrders("biet2008-plate", "serial:X", folder)), list(servings)
 
     def running() -> Connection:
         if device._connection is None:

@@ -281,5 +281,6 @@ def require_device(kind: str, display: str) -> None:
 
 def _session_device(display: str, kind: str, traces: Path) -> LabDevice:
     from squeezefilm.study.conduct.played_device import SessionDevice
+    from squeezefilm.study.conduct.playing_process import WorkerOrders
 
-    return SessionDevice(display, kind, traces)
+    return SessionDevice(WorkerOrders(display, kind, traces))

@@ -25,7 +25,7 @@ from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.texture_files.texture_file import TextureFile, load_texture
 from squeezefilm.study.conduct.played_device import SessionDevice
-from squeezefilm.study.conduct.playing_process import Surface, surface_of
+from squeezefilm.study.conduct.playing_process import Surface, WorkerOrders, surface_of
 from squeezefilm.study.conduct.study_device import TrialMotion
 
 PlaybackState = Literal["ready", "playing", "failed", "closed"]
@@ -237,7 +237,7 @@ def play(asked: PlayingOptions) -> Playback:
                 f"cannot make the folder {records}: {error.strerror}; give another"
             ) from error
     try:
-        device = SessionDevice(
+        orders = WorkerOrders(
             asked.display,
             asked.drive,
             records,
@@ -245,6 +245,7 @@ def play(asked: PlayingOptions) -> Playback:
             stroke=asked.stroke,
             rate=asked.rate,
         )
+        device = SessionDevice(orders)
         device.prepare(surface)
     except BaseException:
         if folder is not None:

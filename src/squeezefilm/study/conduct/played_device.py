@@ -16,24 +16,19 @@ import threading
 import types
 from collections.abc import Iterator
 from multiprocessing.connection import Connection
-from pathlib import Path
 from typing import Any, Self
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.core.interrupts import interrupts_held
 from squeezefilm.core.results import config_hash
-from squeezefilm.instruments.twin.hand import EXPLORING
-from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.study.conduct.playing_process import Surface, WorkerOrders, serve
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
 
 START_LIMIT: si.Second = 300.0
 """A first start solves the plate and compiles, which may take a minute on a busy computer."""
 STOP_LIMIT: si.Second = 20.0
-_RATE: si.Hertz = 5e3
 
 
 def require_study_drive(drive: str) -> None:
@@ -52,40 +47,17 @@ class SessionDevice:
 
     One thread at a time, except `halt`, which any thread may call at any moment.
 
-    Args:
-        target: the display, a preset's name or a file.
-        drive: "twin", or "serial:PORT".
-        traces: folder for the raw records, the study's own folder of traces.
-        amplitude_per_pickup: vibration amplitude per signal of the device's pickup (m/V); None if
-            it was never calibrated. A twin's is known.
-        settings: of a twin; all are assumed.
-        stroke: of a twin's finger, as `motion_from` reads it, to and fro for ever.
-        rate: of the loop (Hz).
-
     Raises:
         InputError: a drive that may not be used in a study, or a display that this drive may not
             play, `Display.require_insulation`.
     """
 
-    def __init__(
-        self,
-        target: str | Path,
-        drive: str,
-        traces: Path,
-        *,
-        amplitude_per_pickup: si.MetrePerVolt | None = None,
-        settings: TwinSettings | None = None,
-        stroke: str = EXPLORING,
-        rate: si.Hertz = _RATE,
-    ) -> None:
-        require_study_drive(drive)
-        self._display = load_display(target)
+    def __init__(self, orders: WorkerOrders) -> None:
+        require_study_drive(orders.drive)
+        self._display = load_display(orders.target)
         # Now, and not when the first surface is to be felt.
-        self._display.require_insulation(twin=drive == "twin")
-        own = TwinSettings(sensor=LVDT_10_KHZ, pickup=PickupModel(kind="sensing_patch"))
-        self._orders = WorkerOrders(
-            str(target), drive, str(traces), settings or own, stroke, rate, amplitude_per_pickup
-        )
+        self._display.require_insulation(twin=orders.drive == "twin")
+        self._orders = orders
         self._process: Any = None
         self._connection: Connection | None = None
         self._speaking = threading.Lock()

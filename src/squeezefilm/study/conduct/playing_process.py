@@ -17,7 +17,7 @@ import dataclasses
 import math
 import signal
 import time
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -41,7 +41,8 @@ from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.play.plan import Ending, KnownDevice, PlayView
 from squeezefilm.instruments.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.instruments.session.record.trace import Trace, read_trace
-from squeezefilm.instruments.twin.settings import TwinSettings
+from squeezefilm.instruments.twin.hand import EXPLORING
+from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.instruments.twin.working_point import working_point
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
@@ -67,19 +68,32 @@ Surface = Stimulus | TextureFile
 """Something to play: a study's stimulus, or any texture with what it is called."""
 
 
+_TWIN = TwinSettings(sensor=LVDT_10_KHZ, pickup=PickupModel(kind="sensing_patch"))
+
+
 @dataclass(frozen=True)
 class WorkerOrders:
-    """Orders to the process: the display's name or file, the drive, the folder of traces, the
-    twin's settings and finger, the loop's rate, and the device's pickup (m/V; None: unknown).
+    """Orders to the process: what plays, and on what.
+
+    Args:
+        target: the display, a preset's name or a file.
+        drive: "twin", or "serial:PORT".
+        traces: folder for the raw records, the study's own folder of traces.
+        amplitude_per_pickup: vibration amplitude per signal of the device's pickup (m/V); None if
+            it was never calibrated. A twin's is known.
+        settings: of a twin; all are assumed.
+        stroke: of a twin's finger, as `motion_from` reads it, to and fro for ever.
+        rate: of the loop (Hz).
     """
 
-    target: str
+    target: str | Path
     drive: str
-    traces: str
-    settings: TwinSettings
-    stroke: str
-    rate: si.Hertz
-    amplitude_per_pickup: si.MetrePerVolt | None
+    traces: Path
+    _: KW_ONLY
+    amplitude_per_pickup: si.MetrePerVolt | None = None
+    settings: TwinSettings = _TWIN
+    stroke: str = EXPLORING
+    rate: si.Hertz = 5e3
 
 
 def serve(connection: Connection, orders: WorkerOrders) -> None:
@@ -187,7 +201,7 @@ class Bench:
         outcome = run_play(
             setup.plan,
             self._streaming(orders.stroke),
-            Path(orders.traces) / name,
+            orders.traces / name,
             metadata,
             duration=LONGEST_PRESENTATION,
             show=show,

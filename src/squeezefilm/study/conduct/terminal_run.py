@@ -223,6 +223,7 @@ def _device(
     from squeezefilm.instruments.twin.hand import EXPLORING
     from squeezefilm.physics.display import load_display
     from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive
+    from squeezefilm.study.conduct.playing_process import WorkerOrders
 
     require_study_drive(drive)
     loaded = load_display(display)
@@ -232,10 +233,10 @@ def _device(
     if drive == "twin" and store.design.exploring == "free":
         folder = closing.enter_context(tempfile.TemporaryDirectory())
         stroke = str(_written(_free_path(loaded), Path(folder) / "hand.csv"))
-    device = SessionDevice(
+    orders = WorkerOrders(
         display, drive, store.traces, amplitude_per_pickup=amplitude_per_pickup, stroke=stroke
     )
-    return closing.enter_context(device), exposed
+    return closing.enter_context(SessionDevice(orders)), exposed
 
 
 Mark = Callable[[str, si.Second | None], None]

@@ -19,6 +19,7 @@ from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.physics.texture_files.texture_file import TextureFile, load_texture
 from squeezefilm.study.conduct import playback
 from squeezefilm.study.conduct.playback import Playback, named, play, utc_of
+from squeezefilm.study.conduct.playing_process import WorkerOrders
 from squeezefilm.study.conduct.study_device import TrialMotion
 
 GRATING = Stimulus("4 mm", 4e-3, "period")
@@ -27,8 +28,8 @@ GRATING = Stimulus("4 mm", 4e-3, "period")
 class Device:
     """A device that plays nothing: what it is asked for is kept, what it does is set."""
 
-    def __init__(self, *how: Any, **more: Any) -> None:
-        self.how, self.more = how, more
+    def __init__(self, orders: WorkerOrders) -> None:
+        self.orders = orders
         self.did: list[Any] = []
         self.over, self.failure, self.began = False, "", float("nan")
         self.refusal: Exception | None = None
@@ -80,8 +81,8 @@ def handle(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Handle:
     def made(surface: Any = GRATING, **more: Any) -> tuple[Playback, Device]:
         devices: list[Device] = []
 
-        def device(*how: Any, **options: Any) -> Device:
-            devices.append(Device(*how, **options))
+        def device(orders: WorkerOrders) -> Device:
+            devices.append(Device(orders))
             return devices[-1]
 
         monkeypatch.setattr(playback, "SessionDevice", device)
@@ -95,8 +96,9 @@ def test_a_surface_is_started_stopped_and_started_with_another(
     handle: Handle, tmp_path: Path
 ) -> None:
     surface, device = handle(drive="serial:X", rate="4 kHz", amplitude_per_pickup=2e-6)
-    assert device.how == ("biet2008-plate", "serial:X", tmp_path / "kept")
-    assert (device.more["rate"], device.more["amplitude_per_pickup"]) == (4e3, 2e-6)
+    assert device.orders == WorkerOrders(
+        "biet2008-plate", "serial:X", tmp_path / "kept", rate=4e3, amplitude_per_pickup=2e-6
+    )
     # Solved and compiled before it is handed out.
     assert device.did == [("prepare", GRATING)]
     assert surface.state == "ready"
@@ -188,7 +190,7 @@ def test_markers_have_the_moments_that_are_returned(
 
 def test_without_a_folder_records_are_thrown_away(handle: Handle, tmp_path: Path) -> None:
     surface, device = handle(out=None)
-    folder = device.how[2]
+    folder = device.orders.traces
     assert folder.is_dir()
     surface.start()
     assert surface.stop().record is None

@@ -13,7 +13,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.record.trace import Damage, Trace
 from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive
-from squeezefilm.study.conduct.playing_process import explored
+from squeezefilm.study.conduct.playing_process import WorkerOrders, explored
 from squeezefilm.study.conduct.run import Response, StudyRun
 from squeezefilm.study.conduct.sessions import begin_session
 from squeezefilm.study.conduct.study_device import DeviceVerification, NoDevice, TrialMotion
@@ -70,13 +70,13 @@ def test_a_pickup_that_was_never_calibrated_is_judged_by_its_resonance_alone() -
 @pytest.mark.parametrize("drive", ["sound", "sound:0", "serial:", "serial: ", "twin2", ""])
 def test_a_drive_that_no_study_may_use_is_refused(drive: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="does not stop by itself"):
-        SessionDevice("biet2008-plate", drive, tmp_path)
+        SessionDevice(WorkerOrders("biet2008-plate", drive, tmp_path))
 
 
 def test_a_display_that_a_device_may_not_play_is_refused_before_a_session(tmp_path: Path) -> None:
-    SessionDevice("biet2008-stator", "twin", tmp_path).close()
+    SessionDevice(WorkerOrders("biet2008-stator", "twin", tmp_path)).close()
     with pytest.raises(InputError, match="touch-side insulation"):
-        SessionDevice("biet2008-stator", "serial:/dev/ttyACM0", tmp_path)
+        SessionDevice(WorkerOrders("biet2008-stator", "serial:/dev/ttyACM0", tmp_path))
 
 
 def test_a_device_is_told_apart_by_display_and_calibration_and_not_by_its_port(
@@ -84,7 +84,7 @@ def test_a_device_is_told_apart_by_display_and_calibration_and_not_by_its_port(
 ) -> None:
     require_study_drive("twin")
     made = {
-        name: SessionDevice("biet2008-plate", drive, tmp_path, **how).identity()
+        name: SessionDevice(WorkerOrders("biet2008-plate", drive, tmp_path, **how)).identity()
         for name, drive, how in (
             ("twin", "twin", {}),
             ("bare", "serial:/dev/ttyACM0", {}),
@@ -100,7 +100,7 @@ def test_a_device_is_told_apart_by_display_and_calibration_and_not_by_its_port(
 def test_a_device_that_does_nothing_yet_is_stopped_halted_and_closed_at_no_cost(
     tmp_path: Path,
 ) -> None:
-    with SessionDevice("biet2008-plate", "twin", tmp_path) as device:
+    with SessionDevice(WorkerOrders("biet2008-plate", "twin", tmp_path)) as device:
         device.halt()
         assert device.stop().trace == ""
         device.close()

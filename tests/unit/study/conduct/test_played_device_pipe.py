@@ -120,7 +120,8 @@ def playing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Playing:
             "get_context",
             lambda way: (ways.append(way), context)[1] if way == "spawn" else None,
         )
-        return SessionDevice("biet2008-plate", "serial:/dev/ttyACM0", tmp_path, **how), context
+        orders = WorkerOrders("biet2008-plate", "serial:/dev/ttyACM0", tmp_path, **how)
+        return SessionDevice(orders), context
 
     return made
 

@@ -133,7 +133,10 @@ class Around:
     ) -> WorkerOrders:
         """Of a display by name, to a folder."""
         own = TwinSettings(pickup=PickupModel(kind="sensing_patch"))
-        return WorkerOrders("biet2008-plate", drive, str(self.folder), own, "a stroke", 4e3, pickup)
+        how: dict[str, Any] = {"settings": own, "stroke": "a stroke", "rate": 4e3}
+        return WorkerOrders(
+            "biet2008-plate", drive, self.folder, amplitude_per_pickup=pickup, **how
+        )
 
 
 @pytest.fixture

@@ -15,6 +15,7 @@ from squeezefilm.core.progress import SayProgress
 from squeezefilm.instruments.twin.hand import EXPLORING
 from squeezefilm.physics import display as display_module
 from squeezefilm.study.conduct import played_device, terminal_run
+from squeezefilm.study.conduct.playing_process import WorkerOrders
 from squeezefilm.study.conduct.terminal_run import Desk, open_study, run_session
 from squeezefilm.study.design.trials import expected_duration
 from squeezefilm.study.record.store import StudyStore
@@ -25,9 +26,9 @@ from ..scripted import LOUD, Bench, Script, gratings
 class Port(Bench):
     """A device behind a port, which must be closed."""
 
-    def __init__(self, *how: Any, **more: Any) -> None:
+    def __init__(self, orders: WorkerOrders) -> None:
         super().__init__()
-        self.made_of = (how, more)
+        self.orders = orders
         self.closed = 0
 
     def __enter__(self) -> Self:
@@ -60,8 +61,8 @@ class Room:
         self.exposed.append((found, duration))
         return LOUD
 
-    def _port(self, *how: Any, **more: Any) -> Port:
-        self.ports.append(Port(*how, **more))
+    def _port(self, orders: WorkerOrders) -> Port:
+        self.ports.append(Port(orders))
         return self.ports[-1]
 
     def acknowledge(self, statement: str) -> bool:
@@ -97,7 +98,7 @@ def test_a_session_is_on_the_twin_of_the_display_that_comes_next(
         second = next(one for one in design.displays if one != first)
         said = room.held(store, who, Script(), drive="twin")
         assert said == f"6 trials on {first} recorded; next display: {second}"
-        assert [one.made_of[0][0] for one in room.ports] == [first]
+        assert [one.orders.target for one in room.ports] == [first]
         # Of the study's whole time, what falls to one of its two displays.
         assert room.exposed == [(f"the {first}", pytest.approx(expected_duration(design) / 2))]
         assert room.asked == [LOUD.statement]
@@ -122,9 +123,8 @@ def test_a_port_is_given_the_studys_traces_and_closed_in_the_end(
     with StudyStore.create(tmp_path / "a.sqlite", gratings(1), 7) as store:
         room.held(store, None, Script(), drive=drive, amplitude_per_pickup=2e-6)
         (port,) = room.ports
-        assert port.made_of == (
-            ("biet2008-plate", drive, store.traces),
-            {"amplitude_per_pickup": 2e-6, "stroke": EXPLORING},
+        assert port.orders == WorkerOrders(
+            "biet2008-plate", drive, store.traces, amplitude_per_pickup=2e-6, stroke=EXPLORING
         )
         assert port.closed == 1
         moments = [one["moment"] for one in store.rows("SELECT moment FROM verification")]
