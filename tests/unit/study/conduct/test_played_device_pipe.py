@@ -152,7 +152,7 @@ def test_a_surface_is_presented_felt_and_stopped(playing: Playing, tmp_path: Pat
     assert theirs.closed
     assert isinstance(orders, WorkerOrders)
     assert (orders.target, orders.drive) == ("biet2008-plate", "serial:/dev/ttyACM0")
-    assert orders.traces == str(tmp_path)
+    assert orders.traces == tmp_path
     assert (orders.stroke, orders.rate, orders.amplitude_per_pickup) == ("0.08 m", 4e3, 2e-6)
     with pytest.raises(InputError, match="is being presented; stop it first"):
         device.present(GRATING, 12)
