@@ -21,7 +21,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import DeviceError
 from squeezefilm.instruments.bench.conversation import Conversation
-from squeezefilm.instruments.bench.loop_check import CheckResult, DeviceCheck, in_ms, judged
+from squeezefilm.instruments.bench.loop_check import CheckResult, DeviceCheck, in_ms
 from squeezefilm.instruments.bench.reading_check import reading_checks, sensor_checks
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m
@@ -133,14 +133,14 @@ def link_checks(talk: Conversation, echoes: int = _ECHOES) -> list[CheckResult]:
         (float(q) for q in np.quantile(trips, [0.5, 0.99])) if trips else (math.inf, math.inf)
     )
     return [
-        judged(
+        CheckResult(
             "link",
             lost == 0 and hurt == 0,
             f"{lost} of {sent} frames unanswered, {hurt} answers damaged",
             "0 and 0",
             "shorten the cable, lower the baud rate, or use another USB port",
         ),
-        judged(
+        CheckResult(
             "round trip",
             worst <= SLOWEST_ROUND_TRIP,
             f"{in_ms(middle)} median, {in_ms(worst)} at 99 %",
@@ -206,7 +206,7 @@ def stop_check(talk: Conversation, frequency: si.Hertz) -> CheckResult:
     stops(State.FAULT)
     talk.clear()
     talk.ask(m.Report(0))
-    return judged(
+    return CheckResult(
         "stop in every state",
         not refused,
         "refused in " + ", ".join(refused) if refused else "accepted in all four",
@@ -244,7 +244,7 @@ def watchdog_checks(talk: Conversation, frequency: si.Hertz) -> list[CheckResult
         explained = talk.excuse(accepted)
     else:
         explained = zero - allowed if talk.waited and math.isfinite(zero) else 0.0
-    silent = judged(
+    silent = CheckResult(
         "watchdog",
         played and zero <= allowed,
         (f"zero {in_ms(zero)} after the last frame" if math.isfinite(zero) else "not at zero")
@@ -268,7 +268,7 @@ def watchdog_checks(talk: Conversation, frequency: si.Hertz) -> list[CheckResult
     explained = talk.excuse(named) if fault is Fault.LATE_TICK else 0.0
     cleared = talk.clear()
     talk.ask(m.Report(0))
-    latched = judged(
+    latched = CheckResult(
         "watchdog latches",
         not wrong and fault is Fault.WATCHDOG and cleared,
         f"fault {fault.name.lower()}"
@@ -328,7 +328,7 @@ def _refusal(
     after = talk.ask_until(lambda later: (later.time - said_at) & CLOCK >= 3_000)
     level = 0 if after is None else after.level
     said = "no answer" if status is None else Reason(status.reason).name.lower()
-    return judged(
+    return CheckResult(
         f"refused: {name}",
         status is not None and status.reason == reason and after is not None and level == 0,
         f"{said}; output {level * 1e-6:g} V",

@@ -26,7 +26,7 @@ from squeezefilm.physics.render.texture.shapes import SquareWave
 class CheckResult:
     """A check: its name, whether it passed, what was measured, what is allowed, what to do.
 
-    `advice` is empty where the check passed. `doubt` says why one that did not may be the fault of
+    What passed keeps no advice and no excuse. `doubt` says why one that did not may be the fault of
     nobody; `explained_by` is for how long this computer must have been held up to be the reason
     (s), 0 where nothing excuses it.
     """
@@ -38,6 +38,12 @@ class CheckResult:
     advice: str = ""
     explained_by: si.Second = 0.0
     doubt: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "passed", bool(self.passed))
+        if self.passed:
+            object.__setattr__(self, "advice", "")
+            object.__setattr__(self, "explained_by", 0.0)
 
     @property
     def verdict(self) -> str:
@@ -56,20 +62,6 @@ class DeviceCheck:
     def passed(self) -> bool:
         """True where no check failed; some may be in doubt."""
         return all(result.passed or result.doubt for result in self.results)
-
-
-def judged(
-    name: str,
-    passed: bool,
-    measured: str,
-    allowed: str,
-    advice: str,
-    explained_by: si.Second = 0.0,
-) -> CheckResult:
-    """The result of a check; advice and excuse only where it did not pass."""
-    if passed:
-        return CheckResult(name, True, measured, allowed)
-    return CheckResult(name, False, measured, allowed, advice, explained_by)
 
 
 def in_ms(value: si.Second) -> str:
@@ -153,4 +145,4 @@ def loop_result(lateness: Lateness, stolen: si.Second) -> CheckResult:
         else "allow real-time priority (rtprio), close other programs, or play at a lower rate"
     )
     allowed = f"at least {100 * LEAST_MADE:g} % made"
-    return CheckResult("loop", passed, measured, allowed, "" if passed else advice)
+    return CheckResult("loop", passed, measured, allowed, advice)

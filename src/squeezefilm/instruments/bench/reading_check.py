@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import STOP_RAMP
 from squeezefilm.instruments.bench.conversation import KEEP_ALIVE, Conversation
-from squeezefilm.instruments.bench.loop_check import CheckResult, in_ms, judged
+from squeezefilm.instruments.bench.loop_check import CheckResult, in_ms
 from squeezefilm.instruments.bench.resonance_sweep import peak
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m
@@ -58,7 +58,7 @@ def reading_checks(talk: Conversation, duration: si.Second = 0.5) -> list[CheckR
         drift = float((since[last] - since[first]) / (heard[last] - heard[first])) - 1
     seen = bool(came) and bool(came[-1][1].flags & m.SENSOR_PRESENT)
     return [
-        judged(
+        CheckResult(
             "readings",
             abs(len(came) - wanted) <= 0.05 * wanted + 3,
             f"{len(came)} in {elapsed:.3g} s of its clock",
@@ -66,7 +66,7 @@ def reading_checks(talk: Conversation, duration: si.Second = 0.5) -> list[CheckR
             "the link is too slow for so many: raise the baud rate; or the firmware's tick is late",
             missing if talk.waited else 0.0,
         ),
-        judged(
+        CheckResult(
             "device clock",
             not backwards and abs(drift) <= 0.02,
             f"{backwards} steps that do not rise, {100 * drift:+.2f} % against this clock",
@@ -74,7 +74,7 @@ def reading_checks(talk: Conversation, duration: si.Second = 0.5) -> list[CheckR
             "the firmware's microsecond clock is not one; see docs/reference/device.md",
             max(-drift, 0.0) * duration if talk.waited and not backwards else 0.0,
         ),
-        judged(
+        CheckResult(
             "finger sensor",
             seen,
             "present" if seen else "none",
@@ -179,7 +179,7 @@ def _rate(seen: _Watched, sensor: SensorModel, *, here: bool) -> CheckResult:
     rate = 1 / float(steps.mean()) if steps.size else math.nan
     wanted = min(sensor.rate * (1 - sensor.loss), 1 / REPORT_PERIOD)
     scatter, longest = (float(steps.std()), float(steps.max())) if steps.size else (math.nan,) * 2
-    return judged(
+    return CheckResult(
         "sensor rate",
         abs(rate - wanted) <= _RATE_WITHIN * wanted,
         f"{rate:.4g} Hz; {in_ms(scatter)} of scatter, {in_ms(longest)} at most between two places",
@@ -205,7 +205,7 @@ def _silence(seen: _Watched, sensor: SensorModel, *, here: bool) -> CheckResult:
     loudest = float(seen.level[seen.touched].max(initial=0.0))
     allowed = STOP_RAMP + REPORT_PERIOD
     good = loudest > 0 and last <= allowed and rests <= stall
-    result = judged(
+    result = CheckResult(
         "sensor silence",
         good and lifts.size > 0,
         f"{loudest:g} V while it is touched; zero {in_ms(last)} after it was not, seen "
@@ -217,7 +217,7 @@ def _silence(seen: _Watched, sensor: SensorModel, *, here: bool) -> CheckResult:
     )
     if good and not lifts.size:
         why = "the finger was not lifted meanwhile, so that silence was not seen; lift it"
-        return CheckResult(result.name, False, result.measured, result.allowed, why, doubt=why)
+        return replace(result, advice=why, explained_by=0.0, doubt=why)
     return result
 
 
@@ -234,7 +234,7 @@ def _delay(
     delay, _ = peak(_DELAYS, -np.array(apart))
     # What is shown is on average half a sample older than when it came.
     wanted = sensor.latency + 0.5 / sensor.rate
-    return judged(
+    return CheckResult(
         "sensor delay",
         abs(delay - wanted) <= DELAY_WITHIN,
         f"{in_ms(delay)} behind the finger",

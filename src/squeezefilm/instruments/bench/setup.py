@@ -37,16 +37,10 @@ _TILE_WAY: tuple[si.Metre, si.Metre] = (0.0, 0.1)
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class HowToPlay:
-    """What may be chosen of how a texture is played.
+    """What may be chosen of how a texture is played, see `play.play_texture`.
 
-    Attributes:
-        mode: "stream": the host's loop renders; "tile": the device does, by itself.
-        rate: of the loop (Hz).
-        voltage: the most to use (V), less than the drive's own.
-        surface: of the display.
-        compensation: of the resonator's slowness, "none" or "inverse".
-        hold: whether the device's loops shall hold resonance and amplitude. Levels are then those
-            of the free plate, and what the plate's slowness is compensated for is the loops'.
+    Where the device's loops `hold`, levels are those of the free plate, and what the plate's
+    slowness is compensated for is the loops'.
     """
 
     mode: str = "stream"
