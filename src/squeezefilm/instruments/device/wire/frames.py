@@ -10,7 +10,7 @@ from __future__ import annotations
 import struct
 import zlib
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import IntEnum
 
 from squeezefilm.core.errors import InputError
@@ -22,6 +22,7 @@ _HEADER = struct.Struct("<BBH")
 _CRC = struct.Struct("<I")
 OVERHEAD = _HEADER.size + _CRC.size
 LONGEST_PAYLOAD = LONGEST_FRAME - OVERHEAD
+_FULL_RUN = 254
 
 
 def cobs_encode(data: bytes) -> bytes:
@@ -30,18 +31,14 @@ def cobs_encode(data: bytes) -> bytes:
     Consistent overhead byte stuffing, so that a zero can end a frame (Cheshire & Baker 1999,
     IEEE/ACM Trans. Networking 7, 159, 10.1109/90.769765).
     """
-    out = bytearray([0])
-    code_at = 0
-    for position, byte in enumerate(data):
-        if byte:
-            out.append(byte)
-        run = len(out) - code_at
-        full = run == 255
-        if not byte or (full and position + 1 < len(data)):
-            out[code_at] = run
-            code_at = len(out)
-            out.append(0)
-    out[code_at] = len(out) - code_at
+    out = bytearray()
+    runs = data.split(b"\0")
+    for number, run in enumerate(runs, start=1):
+        rest = run
+        while len(rest) > _FULL_RUN or (len(rest) == _FULL_RUN and number < len(runs)):
+            out += b"\xff" + rest[:_FULL_RUN]
+            rest = rest[_FULL_RUN:]
+        out += bytes([len(rest) + 1]) + rest
     return bytes(out)
 
 
@@ -119,21 +116,15 @@ class Deframer:
     """
 
     damaged: int = 0
-    _bytes: bytearray = field(default_factory=bytearray)
+    _bytes: bytes = b""
 
     def take(self, data: bytes) -> Iterator[Frame | None]:
         """Every frame that `data` completes; None for one that was damaged."""
-        for byte in data:
-            if byte:
-                if len(self._bytes) <= LONGEST_FRAME + 1:
-                    self._bytes.append(byte)
-                continue
-            if not self._bytes:
-                continue
-            stuffed = bytes(self._bytes)
-            self._bytes.clear()
+        *whole, rest = (self._bytes + data).split(b"\0")
+        self._bytes = rest[: LONGEST_FRAME + 2]
+        for stuffed in filter(None, whole):
             try:
-                yield frame_from_bytes(stuffed)
+                yield frame_from_bytes(stuffed[: LONGEST_FRAME + 2])
             except InputError:
                 self.damaged += 1
                 yield None
