@@ -170,7 +170,7 @@ def _refined_profile(
 ) -> tuple[Nested, Found]:
     """A profile's film: on half of it where it is symmetric, otherwise from edge to edge."""
     from squeezefilm.physics.film.periodic import uniform as u
-    from squeezefilm.physics.film.periodic.varying import Profile, solve_varying
+    from squeezefilm.physics.film.periodic.varying import Profile, gap_rows, solve_varying
 
     announce(solve_varying, "solver of film profiles", 20)
     closed, depth = profile.symmetric, profile.depth
@@ -181,12 +181,14 @@ def _refined_profile(
     def solve(resolution: FilmResolution) -> Nested:
         cells, times, check = resolution
         x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
-        even, odd = np.ascontiguousarray(harmonics.real), np.ascontiguousarray(-harmonics.imag)
         row = np.full(u.COLUMNS, np.nan)
         keep = np.empty(cells // 4 * (7 * times.row + check.row) if field else 0)
-        loads = (load_times(times.number, depth), load_times(check.number, depth))
-        gap = Profile(slope, even, odd, depth, closed)
-        solve_varying(sigma, gas, gap, resolution, loads, aim, row, keep)
+        gaps = (
+            gap_rows(harmonics, gas.polytropic_exponent, now, load_times(now.number, depth))
+            for now in (times, check)
+        )
+        gap = Profile(slope, *gaps, depth, closed)
+        solve_varying(sigma, gas, gap, resolution, aim, row, keep)
 
         def share(m: int) -> si.FloatArray:
             part = slope[:: 2 * cells // m] * (2.0 / m)

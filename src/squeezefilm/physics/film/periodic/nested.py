@@ -8,14 +8,13 @@ what more times change on the coarsest grid.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.film.periodic.batch import ROUNDS
-from squeezefilm.physics.film.periodic.profile import evaluate
+from squeezefilm.physics.film.periodic.profile import evaluate, interpolant
 from squeezefilm.physics.film.periodic.resolution import FilmResolution, refined, resolution_of
 from squeezefilm.physics.film.periodic.solution import HARMONICS, Found
 
@@ -110,17 +109,8 @@ def force_harmonics(
         stored = level.pressure * evaluate(gap_harmonics[:, ::every], nodes) ** n
         # The force at a fine time is Σ_j (share · stored_j / Hⁿ) × the interpolant's weight.
         held = (stored * level.share[:, None]).T @ inverse[::every]
-        fields.append(np.asarray((held * _interpolant(times, count)).sum(axis=0) @ wave))
+        fields.append(np.asarray((held * interpolant(times, count)).sum(axis=0) @ wave))
     return fields
-
-
-@lru_cache(maxsize=64)
-def _interpolant(times: int, count: int) -> si.FloatArray:
-    """The weight of each of the times, an odd number, at each of `count` times of a period."""
-    unit = np.fft.rfft(np.eye(times), axis=1) * (count / times)
-    spectrum = np.zeros((times, count // 2 + 1), dtype=complex)
-    spectrum[:, : times // 2 + 1] = unit
-    return np.asarray(np.fft.irfft(spectrum, count, axis=1))
 
 
 def load_times(times: int, depth: float) -> int:

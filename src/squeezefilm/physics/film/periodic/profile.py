@@ -133,6 +133,15 @@ def evaluate(harmonics: si.ComplexArray, times: ArrayLike) -> si.FloatArray:
     return np.asarray((harmonics.T @ wave).real)
 
 
+@lru_cache(maxsize=64)
+def interpolant(times: int, count: int) -> si.FloatArray:
+    """The weight of each of the times, an odd number, at each of `count` times of a period."""
+    from scipy.special import diric
+
+    apart = np.arange(count) / count - np.arange(times)[:, None] / times
+    return np.asarray(diric(2.0 * np.pi * apart, times))
+
+
 def _extrema(values: si.FloatArray) -> int:
     rise = np.diff(values)
     rise = rise[np.abs(rise) > 1e-9 * (np.abs(values).max() + 1e-300)]

@@ -10,7 +10,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError
-from squeezefilm.physics.film.periodic.profile import GapProfile, evaluate
+from squeezefilm.physics.film.periodic.profile import GapProfile, evaluate, interpolant
 
 _FIELD_TIMES = 64
 HARMONICS = 8
@@ -207,9 +207,7 @@ def extrapolated_field(
 
     def resampled(values: si.FloatArray, every: int) -> si.FloatArray:
         psi = values * gap_nodes[::every] ** n
-        spectrum = np.zeros((len(psi), count // 2 + 1), dtype=complex)
-        spectrum[:, : times // 2 + 1] = np.fft.rfft(psi, axis=1) * (count / times)
-        return np.asarray(np.fft.irfft(spectrum, count, axis=1)) / powered[::every]
+        return np.asarray(psi @ interpolant(times, count)) / powered[::every]
 
     fine, rough = resampled(p, 1), resampled(coarse, 2)
     correction = (fine[::2] - rough) / 3.0

@@ -1,8 +1,8 @@
 """The compiled solve of one film whose gap varies along it: waves, ridges, tilt, measurements.
 
-The same three nested grids and time check as `uniform`, with the gap as Fourier series in time
-at every node and face. The gap is sampled once, at the nodes and faces of the finest grid; those
-of the coarser grids are among them.
+The same three nested grids and time check as `uniform`, with the gap at every node and face.
+It is sampled once, at the nodes and faces of the finest grid; those of the coarser grids are among
+them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,14 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.film.gas import Aim, CompiledGas
 from squeezefilm.physics.film.periodic.kernel import newton, prolong
-from squeezefilm.physics.film.periodic.resolution import Cells, FilmResolution, GridGap, SolveRoom
+from squeezefilm.physics.film.periodic.profile import evaluate, interpolant
+from squeezefilm.physics.film.periodic.resolution import (
+    Cells,
+    FilmResolution,
+    GridGap,
+    PeriodTimes,
+    SolveRoom,
+)
 from squeezefilm.physics.film.periodic.uniform import (
     CHECK,
     COARSE,
@@ -34,85 +41,38 @@ from squeezefilm.physics.film.periodic.uniform import (
 )
 
 
-@compiled(error_model="numpy")
-def _gaps(even: si.FloatArray, odd: si.FloatArray, nt: int, ntp: int, out: si.FloatArray) -> None:
-    """H at all points (rows) and nt times from cosine and sine coefficients; padding 1."""
-    orders, points = even.shape
-    for t in range(ntp):
-        if t >= nt:
-            for j in range(points):
-                out[j * ntp + t] = 1.0
-            continue
-        for j in range(points):
-            out[j * ntp + t] = even[0, j]
-        for k in range(1, orders):
-            angle = 2.0 * math.pi * ((k * t) % nt) / nt
-            c, s = math.cos(angle), math.sin(angle)
-            for j in range(points):
-                out[j * ntp + t] += even[k, j] * c + odd[k, j] * s
+class GapRows(NamedTuple):
+    """A gap at the nodes and faces of the finest grid, and the weights of p in the mean force at
+    its nodes, one after the other: rows of the times of a period, 1 and 0 in the padding."""
+
+    gap: si.FloatArray
+    weight: si.FloatArray
 
 
-@compiled(error_model="numpy")
-def _weights(
-    even: si.FloatArray,
-    odd: si.FloatArray,
-    n: float,
-    nt: int,
-    ntp: int,
-    fine: int,
-    H: si.FloatArray,
-    out: si.FloatArray,
-) -> None:
-    """Weights of p at the nt times in the mean force over `fine` times, for every other point.
+def gap_rows(harmonics: si.ComplexArray, n: float, times: PeriodTimes, fine: int) -> GapRows:
+    """The rows of a gap with `harmonics`, shape (orders, 2·cells + 1), under a gas of exponent n.
 
-    Ψ = P Hⁿ is interpolated to the fine times and divided by Hⁿ there.
+    For the mean over `fine` times Ψ = P Hⁿ is interpolated to them and divided by Hⁿ there.
     """
-    orders, points = even.shape
-    kernel = np.empty((fine, nt))
-    for f in range(fine):
-        for t in range(nt):
-            x = math.pi * (f / fine - t / nt)
-            bottom = nt * math.sin(x)
-            kernel[f, t] = math.sin(nt * x) / bottom if abs(bottom) > 1e-9 else 1.0
-    c, s = np.empty((orders, fine)), np.empty((orders, fine))
-    for k in range(orders):
-        for f in range(fine):
-            angle = 2.0 * math.pi * ((k * f) % fine) / fine
-            c[k, f], s[k, f] = math.cos(angle), math.sin(angle)
-    inverse = np.empty(fine)
-    row = np.empty(nt)
-    for i in range((points + 1) // 2):
-        j = 2 * i
-        for f in range(fine):
-            inverse[f] = even[0, j]
-        for k in range(1, orders):
-            for f in range(fine):
-                inverse[f] += even[k, j] * c[k, f] + odd[k, j] * s[k, f]
-        for f in range(fine):
-            inverse[f] = (1.0 / inverse[f] if n == 1.0 else inverse[f] ** (-n)) / fine
-        row[:] = 0.0
-        for f in range(fine):
-            value = inverse[f]
-            for t in range(nt):
-                row[t] += value * kernel[f, t]
-        for t in range(ntp):
-            if t < nt:
-                h = H[j * ntp + t]
-                out[i * ntp + t] = row[t] * (h if n == 1.0 else h**n)
-            else:
-                out[i * ntp + t] = 0.0
+    nt = times.number
+    H = np.ones((harmonics.shape[1], times.row))
+    H[:, :nt] = evaluate(harmonics, 2.0 * np.pi * np.arange(nt) / nt)
+    weight = np.zeros((len(H[::2]), times.row))
+    inverse = evaluate(harmonics[:, ::2], 2.0 * np.pi * np.arange(fine) / fine) ** -n
+    weight[:, :nt] = inverse @ interpolant(nt, fine).T / fine * H[::2, :nt] ** n
+    return GapRows(H.ravel(), weight.ravel())
 
 
 class Profile(NamedTuple):
     """A gap that varies, at the nodes and faces of the finest grid, ξ from 0 (closed) or −1 to 1.
 
-    dX/dξ and the Fourier coefficients in time of cosines and sines there; the deepest relative
+    dX/dξ; its rows at the times and at those that check them; the deepest relative
     excursion; and whether it is half the domain, from a plane of symmetry at X = 0 to the edge.
     """
 
     slope: si.FloatArray
-    even: si.FloatArray
-    odd: si.FloatArray
+    rows: GapRows
+    check: GapRows
     depth: float
     closed: bool
 
@@ -123,25 +83,18 @@ def solve_varying(
     gas: CompiledGas,
     profile: Profile,
     resolution: FilmResolution,
-    fine: tuple[int, int],
     aim: Aim,
     out: si.FloatArray,
     keep: si.FloatArray,
 ) -> None:
     """Fill one result row and, if not empty, `keep`: p on the coarsest grid with the times that
-    check, then on the three grids, one after the other.
-
-    The profile has 2·cells + 1 points; `fine` are the numbers of times of the load integral for
-    the times of the resolution and for those that check them.
-    """
-    slope, even, odd, depth, closed = profile
+    check, then on the three grids, one after the other. The profile has 2·cells + 1 points."""
+    slope, at_times, at_checks, depth, closed = profile
     cells, times, fuller = resolution
     n, kn = gas.polytropic_exponent, gas.knudsen_number
     wide = max(times.row, fuller.row)
     rows = cells + 1
-    points = 2 * cells + 1
     width = 1.0 if closed else 2.0
-    HJ, WJ = np.empty(points * wide), np.empty(rows * wide)
     H, Hf, Hf3 = np.empty(rows * wide), np.empty(rows * wide), np.empty(rows * wide)
     weight = np.empty(rows * wide)
     g, vol, share = np.zeros(rows), np.zeros(rows), np.zeros(rows)
@@ -154,8 +107,7 @@ def solve_varying(
     for run in range(2):
         now = times if run == 1 else fuller
         row = now.row
-        _gaps(even, odd, now.number, row, HJ)
-        _weights(even, odd, n, now.number, row, fine[1 - run], HJ, WJ)
+        HJ, WJ = at_times if run == 1 else at_checks
         m = cells // 4
         for stage in range(3 if run == 1 else 1):
             stride = cells // m

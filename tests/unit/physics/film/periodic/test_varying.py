@@ -28,11 +28,12 @@ from squeezefilm.physics.film.periodic.uniform import (
     rounding,
     space_error,
 )
-from squeezefilm.physics.film.periodic.varying import Profile, _gaps, _weights, solve_varying
+from squeezefilm.physics.film.periodic.varying import Profile, gap_rows, solve_varying
 
 # Two harmonics in time at five points.
 EVEN = np.array([[1.0, 1.1, 1.2, 1.3, 1.4], [0.3, 0.2, 0.1, 0.0, -0.2], [0.05] * 5])
 ODD = np.array([[0.0] * 5, [0.1, 0.1, 0.2, 0.3, 0.1], [-0.1, 0.0, 0.1, 0.02, 0.03]])
+SERIES = EVEN - 1j * ODD
 
 
 def gap_at(point: int, T: np.ndarray) -> np.ndarray:
@@ -40,14 +41,8 @@ def gap_at(point: int, T: np.ndarray) -> np.ndarray:
     return np.asarray(EVEN[:, point] @ np.cos(k * T) + ODD[:, point] @ np.sin(k * T))
 
 
-def sampled(nt: int, ntp: int) -> np.ndarray:
-    out = np.full(5 * ntp, np.nan)
-    _gaps(EVEN, ODD, nt, ntp, out)
-    return out
-
-
 def test_gaps_are_their_series_at_the_times_and_one_in_the_padding() -> None:
-    found = sampled(7, 8).reshape(5, 8)
+    found = gap_rows(SERIES, 1.0, collocation_times(7), 20).gap.reshape(5, 8)
     T = 2 * np.pi * np.arange(7) / 7
     for point in range(5):
         assert found[point, :7] == pytest.approx(gap_at(point, T), rel=1e-14)
@@ -57,8 +52,7 @@ def test_gaps_are_their_series_at_the_times_and_one_in_the_padding() -> None:
 @pytest.mark.parametrize("n", [1.0, 1.4])
 def test_weights_integrate_gas_that_is_a_series_over_the_gap(n: float) -> None:
     nt, ntp, fine = 7, 8, 120
-    H, out = sampled(nt, ntp), np.full(3 * ntp, np.nan)
-    _weights(EVEN, ODD, n, nt, ntp, fine, H, out)
+    out = gap_rows(SERIES, n, collocation_times(nt), fine).weight
     assert np.all(out.reshape(3, ntp)[:, nt:] == 0.0)
 
     def gas(T: np.ndarray) -> np.ndarray:
@@ -84,7 +78,7 @@ def solved(
     xi = np.linspace(0.0 if closed else -1.0, 1.0, 2 * cells + 1)
     x = 0.5 * xi * (1 + stretch * (1 - xi**2))
     slope = 0.5 * (1 + stretch - 3 * stretch * xi**2)
-    even, odd = (np.ascontiguousarray(np.array(part) + 0.0 * x) for part in gap(x))
+    even, odd = (np.array(part) + 0.0 * x for part in gap(x))
     out = np.full(COLUMNS, np.nan)
     resolution = FilmResolution(cells, *(collocation_times(one) for one in times))
     ntp = resolution.times.row
@@ -92,9 +86,11 @@ def solved(
     check = first * resolution.check.row
     others = sum(cells // part if closed else cells // part - 1 for part in (4, 2, 1))
     keep = np.full(check + others * ntp, np.nan)
+    rows = gap_rows(even - 1j * odd, n, resolution.times, 60)
+    check_rows = gap_rows(even - 1j * odd, n, resolution.check, 70)
     solve_varying.py_func(
-        sigma, CompiledGas(n, kn, law), Profile(slope, even, odd, 0.5, closed), resolution,
-        (60, 70), Aim(tolerance, most), out, keep,
+        sigma, CompiledGas(n, kn, law), Profile(slope, rows, check_rows, 0.5, closed), resolution,
+        Aim(tolerance, most), out, keep,
     )  # fmt: skip
     if most > 1 and np.isfinite(out[OVER]):
         assert np.all(np.isfinite(keep))
