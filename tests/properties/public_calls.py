@@ -105,7 +105,7 @@ NOT_CALLED = {
     physics.film.periodic.small.flow_factor physics.film.periodic.small.SmallVibration
     physics.film.planar.balance.Balance physics.film.planar.balance.Balancer
     physics.film.planar.balance.Balancer.solve physics.film.planar.balance.Film
-    physics.film.planar.balance.derivative physics.film.planar.balance.resampled
+    physics.film.periodic.resolution.derivative physics.film.planar.balance.resampled
     physics.film.planar.balance.times
     physics.film.planar.grid.gap_values
     physics.film.planar.grid.PlanarGrid physics.film.planar.grid.disc_grid

@@ -11,7 +11,8 @@ from tests.film_march import settle_to_periodic, uniform_gap
 from squeezefilm.core.errors import ConvergenceError, GeometryError, InputError
 from squeezefilm.core.hard_limits import PLANAR_MEMORY
 from squeezefilm.physics.film.gas import CompiledGas, FilmGas
-from squeezefilm.physics.film.planar.balance import Balancer, Film, derivative, resampled
+from squeezefilm.physics.film.periodic.resolution import derivative
+from squeezefilm.physics.film.planar.balance import Balancer, Film, resampled
 from squeezefilm.physics.film.planar.film import solve_planar
 from squeezefilm.physics.film.planar.grid import (
     PlanarGap,

@@ -6,7 +6,6 @@ the error estimate of the solve itself, and refined until that meets the toleran
 
 from __future__ import annotations
 
-import math
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -65,6 +64,15 @@ CHECKS = np.array([7, 9, 13, 15, 19, 19, 23, 31, 31, 39, 47, 63, 79, 95, 127, 15
 """Numbers of times, and the larger ones that check each of them on the coarsest grid."""
 
 
+def derivative(count: int) -> si.FloatArray:
+    """The spectral derivative on an odd number of points over a period."""
+    k = np.arange(count)
+    d = k[:, None] - k[None, :]
+    angle = np.pi * d / count
+    sine = np.where(d == 0, 1.0, np.sin(angle))
+    return np.where(d == 0, 0.0, 0.5 * (-1.0) ** d / sine)
+
+
 @lru_cache(maxsize=64)
 def collocation_times(nt: int) -> PeriodTimes:
     """Times of a period, so many, with what is computed with them.
@@ -72,16 +80,9 @@ def collocation_times(nt: int) -> PeriodTimes:
     `nt` is odd: an even number leaves the highest harmonic without a derivative.
     """
     ntp = 8 * ((nt + 7) // 8)
-    D = np.zeros((nt, ntp))
-    for i in range(nt):
-        for j in range(nt):
-            if i != j:
-                D[i, j] = 0.5 * (-1.0) ** (i - j) / math.sin(math.pi * (i - j) / nt)
     DT = np.zeros((nt, ntp))
-    DT[:, :nt] = D[:, :nt].T
-    mask = np.ones((nt, ntp))
-    mask[:, :nt] -= np.eye(nt)
-    return PeriodTimes(nt, ntp, DT.ravel(), mask.ravel())
+    DT[:, :nt] = derivative(nt).T
+    return PeriodTimes(nt, ntp, DT.ravel(), 1.0 - np.eye(nt, ntp).ravel())
 
 
 def resolution_of(cells: int, times: int) -> FilmResolution:

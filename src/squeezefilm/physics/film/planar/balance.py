@@ -22,6 +22,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.mobility import mobility
+from squeezefilm.physics.film.periodic.resolution import derivative
 from squeezefilm.physics.film.planar.grid import PlanarGap, PlanarGrid, gap_values
 
 
@@ -198,15 +199,6 @@ class Balance:
 def times(count: int) -> si.FloatArray:
     """The collocation times of `count` points over a period."""
     return 2 * np.pi * np.arange(count) / count
-
-
-def derivative(count: int) -> si.FloatArray:
-    """The spectral derivative on an odd number of points over a period."""
-    k = np.arange(count)
-    d = k[:, None] - k[None, :]
-    angle = np.pi * d / count
-    sine = np.where(d == 0, 1.0, np.sin(angle))
-    return np.where(d == 0, 0.0, 0.5 * (-1.0) ** d / sine)
 
 
 def resampled(values: si.FloatArray, count: int) -> si.FloatArray:

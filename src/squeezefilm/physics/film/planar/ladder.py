@@ -248,24 +248,16 @@ def _richardson(rungs: list[si.ComplexArray]) -> tuple[si.ComplexArray, si.Float
 
 def _moved(film: Film, state: Balance, grid: PlanarGrid) -> si.FloatArray:
     """The gas of `state` on another grid of the same map: P^{1/n} = m/H is smooth in space."""
+    from scipy.ndimage import zoom
+
     count = state.gas.shape[1]
     T = 2 * np.pi * np.arange(count) / count
     old = state.grid
     ratio = state.gas / gap_values(film.gap, old.X, T)
     field = ratio.reshape(old.rows, old.columns, count)
-    field = _stretched(_stretched(field, 0, grid.rows), 1, grid.columns)
+    finer = (grid.rows / old.rows, grid.columns / old.columns, 1)
+    field = zoom(field, finer, order=1, mode="nearest", grid_mode=True)
     return field.reshape(-1, count) * gap_values(film.gap, grid.X, T)
-
-
-def _stretched(field: si.FloatArray, axis: int, size: int) -> si.FloatArray:
-    have = field.shape[axis]
-    at = np.clip((np.arange(size) + 0.5) * have / size - 0.5, 0.0, have - 1.0)
-    left = np.minimum(at.astype(np.int64), max(have - 2, 0))
-    part = (at - left).reshape([-1 if a == axis else 1 for a in range(field.ndim)])
-    right = np.minimum(left + 1, have - 1)
-    return np.asarray(
-        (1.0 - part) * np.take(field, left, axis) + part * np.take(field, right, axis)
-    )
 
 
 def _solve_or_continue(
