@@ -165,8 +165,8 @@ def test_no_gas_is_lost_over_a_period():
     T = 2 * np.pi * np.arange(15) / 15
     P = state.gas / (1.0 + 0.7 * np.cos(T))
     H = 1.0 + 0.7 * np.cos(T)
-    inside = P[grid.edge_node]
-    flow = grid.edge_conductance[:, None] * H**3 * 0.5 * (inside + 1.0) * (inside - 1.0)
+    inside = P[grid.faces.edge_node]
+    flow = grid.faces.edge_conductance[:, None] * H**3 * 0.5 * (inside + 1.0) * (inside - 1.0)
     assert abs(flow.sum(axis=0).mean()) < 1e-9 * np.abs(flow).sum(axis=0).mean()
 
 
@@ -211,9 +211,13 @@ def test_open_grooves_of_the_paper_s_finger_leave_hardly_any_over_pressure():
 def test_grooves_sealed_at_their_ends_are_the_line_s():
     x = np.linspace(0, 0.5, 1441)
     grid = rectangle_grid(x, np.linspace(0, 0.5, 3))
-    sealed = np.where(grid.edge_X < 0.5, 0.0, grid.edge_conductance)
+    faces = grid.faces
+    edge_X = grid.faces_X[-faces.edge_node.size :]
+    sealed = np.where(edge_X < 0.5, 0.0, faces.edge_conductance)
     film = Film(RIDGED, 20.418, CompiledGas(1.0, 0.0, 0))
-    state = Balancer(film, replace(grid, edge_conductance=sealed), 13).solve(None, 1e-9)
+    state = Balancer(film, replace(grid, faces=faces._replace(edge_conductance=sealed)), 13).solve(
+        None, 1e-9
+    )
     assert state.over_pressure == pytest.approx(7.246e-3, rel=5e-3)
 
 

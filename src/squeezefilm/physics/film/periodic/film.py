@@ -173,7 +173,7 @@ def _refined_profile(
     from squeezefilm.physics.film.periodic.varying import Profile, gap_rows, solve_varying
 
     announce(solve_varying, "solver of film profiles", 20)
-    closed, depth = profile.symmetric, profile.depth
+    (n, kn, _), closed, depth = gas, profile.symmetric, profile.depth
     # Rounded, so that a sweep over σ finds its grids again.
     grading = round(float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, depth)), 2)
     aim = Aim(tolerance * (NEWTON_SHARE if field else 1.0), MOST_NEWTON)
@@ -183,11 +183,9 @@ def _refined_profile(
         x, slope, harmonics = sampled_grid(profile, cells, closed, grading)
         row = np.full(u.COLUMNS, np.nan)
         keep = np.empty(cells // 4 * (7 * times.row + check.row) if field else 0)
-        gaps = (
-            gap_rows(harmonics, gas.polytropic_exponent, now, load_times(now.number, depth))
-            for now in (times, check)
-        )
-        gap = Profile(slope, *gaps, depth, closed)
+        rows = gap_rows(harmonics, n, times, load_times(times.number, depth))
+        checks = gap_rows(harmonics, n, check, load_times(check.number, depth))
+        gap = Profile(slope, rows, checks, depth, closed)
         solve_varying(sigma, gas, gap, resolution, aim, row, keep)
 
         def share(m: int) -> si.FloatArray:
@@ -198,18 +196,16 @@ def _refined_profile(
         levels = levels_of(keep, resolution, closed, share) if field else []
         return Nested(resolution, x[::2], harmonics[:, ::2], row, levels)
 
-    one = (
-        np.array([sigma]),
-        np.array([max(profile.mean_depth, 1e-3)]),
-        np.array([gas.knudsen_number]),
-    )
+    case = (np.array([value]) for value in (sigma, max(profile.mean_depth, 1e-3), kn))
     c, t = first_guess(
-        *one, tolerance, least_cells=16 if field else 8, least_times=2 * profile.orders + 1
+        *case,
+        tolerance,
+        least_cells=16 if field else 8,
+        least_times=2 * profile.orders + 1,
     )
     waves = profile.features / (2.0 if closed else 1.0)
     cells = max(int(CELLS[c[0]]), 4 * round(4.0 * waves * (0.01 / tolerance) ** 0.25))
     cells *= 1 if closed else 2
-    n, kn = gas.polytropic_exponent, gas.knudsen_number
     local = sigma / (n * (1.0 + 6.0 * kn))
     kind = Kind(local, depth, 1 if closed else 2, u.STRIP, PROFILE_MARGINS, n, sigma)
     return refine(solve, kind, (cells, int(t[0])), tolerance, 6000)

@@ -23,20 +23,7 @@ from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.mobility import mobility
 from squeezefilm.physics.film.periodic.resolution import derivative
-from squeezefilm.physics.film.planar.grid import PlanarGap, PlanarGrid, gap_values
-
-
-class Faces(NamedTuple):
-    """Nodes in a row; the faces between rows, within a row and on the edge, with the nodes they
-    join and their conductances, as `PlanarGrid` has them."""
-
-    columns: int
-    row_conductance: si.Array
-    column_from: si.Array
-    column_to: si.Array
-    column_conductance: si.Array
-    edge_node: si.Array
-    edge_conductance: si.Array
+from squeezefilm.physics.film.planar.grid import Faces, PlanarGap, PlanarGrid, gap_values
 
 
 class Storage(NamedTuple):
@@ -70,7 +57,7 @@ def assemble(
     `gaps` (…, times) is that at the nodes, at the faces between rows, at those within a row and at
     those on the edge, one after the other.
     """
-    columns, row_G, column_from, column_to, column_G, edge_node, edge_G = faces
+    columns, row_G, column_G, edge_node, edge_G = faces
     weight, D = storage
     n, knudsen, model = gas
     residual, diagonal, row_up, row_down, column_up, column_down = balance
@@ -91,11 +78,11 @@ def assemble(
                 s += D[k, q] * m[i, q]
             residual[i, k] = -weight[i] * s
             diagonal[i, k] = 0.0
-    for f in range(row_G.size + column_from.size):
+    for f in range(row_G.size + column_G.size):
         in_row = f >= row_G.size
         g = f - row_G.size if in_row else f
-        a = column_from[g] if in_row else g
-        b = column_to[g] if in_row else g + columns
+        a = g + g // (columns - 1) if in_row else g
+        b = a + 1 if in_row else a + columns
         G = column_G[g] if in_row else row_G[g]
         for k in range(M):
             h = H_column[g, k] if in_row else H_row[g, k]
@@ -128,16 +115,14 @@ def row_block(
     weight: si.Array,
     D: si.Array,
     diagonal: si.Array,
-    within: si.Array,
     up: si.Array,
     down: si.Array,
     block: si.Array,
 ) -> None:
     """The dense Jacobian block of one row: its nodes, all their times.
 
-    `weight` (columns,) and `diagonal` (columns, times) are those of its nodes. `within` (…, 3) are
-    the faces within it, each with the nodes that it joins, counted in the row; `up` and `down`
-    (faces, times) those of the faces of all rows.
+    `weight` (columns,) and `diagonal` (columns, times) are those of its nodes, `up` and `down`
+    (columns − 1, times) those of the faces between them.
     `block` (columns·times)² is overwritten. Arrays and no records: it is called for every row, and
     a record of arrays takes longer to hand over than a small block to fill.
     """
@@ -148,11 +133,11 @@ def row_block(
             for q in range(M):
                 block[i * M + k, i * M + q] = -weight[i] * D[k, q]
             block[i * M + k, i * M + k] += diagonal[i, k]
-    for f in range(within.shape[0]):
-        g, a, b = within[f]
+    for f in range(up.shape[0]):
+        here, there = f * M, (f + 1) * M
         for k in range(M):
-            block[a * M + k, b * M + k] += up[g, k]
-            block[b * M + k, a * M + k] += down[g, k]
+            block[here + k, there + k] += up[f, k]
+            block[there + k, here + k] += down[f, k]
 
 
 @compiled()
@@ -214,13 +199,8 @@ class _Factors:
     """The Jacobian eliminated row by row; keeps the inverse of every pivot block."""
 
     def __init__(self, grid: PlanarGrid, count: int) -> None:
-        rows, columns = grid.rows, grid.columns
-        self.inverse = np.empty((rows, columns * count, columns * count))
-        row_of = grid.column_from // columns
-        first = row_of * columns
-        faces = np.arange(row_of.size)
-        within = np.stack([faces, grid.column_from - first, grid.column_to - first], axis=1)
-        self.within = [within[row_of == i] for i in range(rows)]
+        size = grid.columns * count
+        self.inverse = np.empty((grid.rows, size, size))
 
     def factor(self, storage: Storage, parts: Balances) -> None:
         rows, size = self.inverse.shape[:2]
@@ -228,10 +208,11 @@ class _Factors:
         diagonal = parts.diagonal.reshape(rows, weight.shape[1], -1)
         self.up = parts.row_up.reshape(rows - 1, size)
         self.down = parts.row_down.reshape(rows - 1, size)
-        D, up, down = storage.derivative, parts.column_up, parts.column_down
+        D, within = storage.derivative, (rows, weight.shape[1] - 1, diagonal.shape[2])
+        up, down = parts.column_up.reshape(within), parts.column_down.reshape(within)
         block = np.empty((size, size), order="F")
         for i in range(rows):
-            row_block(weight[i], D, diagonal[i], self.within[i], up, down, block)
+            row_block(weight[i], D, diagonal[i], up[i], down[i], block)
             if i:
                 take_off(block, self.down[i - 1], self.inverse[i - 1], self.up[i - 1])
             lu, pivots, bad = lapack.dgetrf(block, overwrite_a=1)
@@ -258,29 +239,20 @@ class Balancer:
     def __init__(self, film: Film, grid: PlanarGrid, count: int) -> None:
         self.film, self.grid, self.count = film, grid, count
         T = times(count)
-        X = np.concatenate([grid.X, grid.row_X, grid.column_X, grid.edge_X])
-        self.gaps = gap_values(film.gap, X, T)
+        self.gaps = gap_values(film.gap, np.concatenate([grid.X, grid.faces_X]), T)
         self.storage = Storage(film.squeeze_number * grid.area, derivative(count))
-        self.faces = Faces(
-            grid.columns,
-            grid.row_conductance,
-            grid.column_from,
-            grid.column_to,
-            grid.column_conductance,
-            grid.edge_node,
-            grid.edge_conductance,
-        )
         self._factors = _Factors(grid, count)
         self._fresh = False
 
     def _assemble(self, m: si.FloatArray) -> Balances:
+        faces = self.grid.faces
         rows, columns = (
             (size, self.count)
-            for size in (self.grid.row_conductance.size, self.grid.column_from.size)
+            for size in (faces.row_conductance.size, faces.column_conductance.size)
         )
         shapes = (m.shape, m.shape, rows, rows, columns, columns)
         out = Balances(*(np.empty(shape) for shape in shapes))
-        assemble(m, self.gaps, self.faces, self.storage, self.film.gas, out)
+        assemble(m, self.gaps, faces, self.storage, self.film.gas, out)
         return out
 
     def starts(self) -> list[si.FloatArray]:

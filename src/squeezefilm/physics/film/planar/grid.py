@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
@@ -20,30 +20,37 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import GeometryError
 
 
+class Faces(NamedTuple):
+    """Faces of a grid with `columns` nodes in a row, and their conductances, face length over
+    distance between nodes: between two rows, of the same column, ((rows−1)·columns,); within a row,
+    row by row, (rows·(columns−1),); and on the edge, where P = 1, with the nodes there."""
+
+    columns: int
+    row_conductance: si.Array
+    column_conductance: si.Array
+    edge_node: si.Array
+    edge_conductance: si.Array
+
+
 @dataclass(frozen=True)
 class PlanarGrid:
     """Nodes, the faces between them, and the faces on the open edge.
 
-    Per node (rows·columns,): `X`, `Y`, `area`. Per face between two rows, of the same column,
-    ((rows−1)·columns,): `row_*`, the first belonging to the lower row. Per face within a row (k,):
-    `column_*` and the nodes `column_from`, `column_to`. Per face on the edge, where P = 1:
-    `edge_*` and the node `edge_node`. A conductance is face length over distance between nodes.
+    Per node (rows·columns,): `X`, `Y`, `area`. `faces_X` is X at the faces between rows, within
+    rows and on the edge, one after the other.
     """
 
     rows: int
-    columns: int
     X: si.FloatArray
     Y: si.FloatArray
     area: si.FloatArray
-    row_X: si.FloatArray
-    row_conductance: si.FloatArray
-    column_from: si.IntArray
-    column_to: si.IntArray
-    column_X: si.FloatArray
-    column_conductance: si.FloatArray
-    edge_node: si.IntArray
-    edge_X: si.FloatArray
-    edge_conductance: si.FloatArray
+    faces: Faces
+    faces_X: si.FloatArray
+
+    @property
+    def columns(self) -> int:
+        """Number of nodes in a row."""
+        return self.faces.columns
 
 
 @dataclass(frozen=True)
@@ -82,6 +89,7 @@ def _build(lines: _Lines, area: si.FloatArray, *, open_sides: bool = False) -> P
     row_G = (lines.across_rows(u_face[1:-1]) / np.diff(u_node))[:, None] * dv
     # Of 1/Δv in the conductance of a face, for each row.
     weight = lines.across_columns(u_node) * np.diff(u_face)
+    column_G = weight[:, None] / np.diff(v_node)
     last = lines.across_rows(u_face[-1:]) / (u_face[-1] - u_node[-1]) * dv
     edges = [(index[-1], lines.at(u_face[-1:], v_node)[0], last)]
     if open_sides:
@@ -89,20 +97,14 @@ def _build(lines: _Lines, area: si.FloatArray, *, open_sides: bool = False) -> P
         edges.append((index[:, -1], lines.at(u_node, v_face[-1:])[0], last))
     edge_node, edge_X, edge_G = (np.concatenate(part) for part in zip(*edges, strict=True))
     return PlanarGrid(
-        rows=rows,
-        columns=columns,
-        X=X,
-        Y=Y,
-        area=area.ravel(),
-        row_X=lines.at(u_face[1:-1], v_node)[0],
-        row_conductance=row_G.ravel(),
-        column_from=index[:, :-1].ravel(),
-        column_to=index[:, 1:].ravel(),
-        column_X=lines.at(u_node, v_face[1:-1])[0],
-        column_conductance=(weight[:, None] / np.diff(v_node)).ravel(),
-        edge_node=edge_node,
-        edge_X=edge_X,
-        edge_conductance=edge_G,
+        rows,
+        X,
+        Y,
+        area.ravel(),
+        Faces(columns, row_G.ravel(), column_G.ravel(), edge_node, edge_G),
+        np.concatenate(
+            [lines.at(u_face[1:-1], v_node)[0], lines.at(u_node, v_face[1:-1])[0], edge_X]
+        ),
     )
 
 

@@ -22,7 +22,6 @@ from squeezefilm.physics.film.planar.ladder import (
     _moved,
     _richardson,
     _solve_or_continue,
-    _stretched,
     climb_to,
 )
 
@@ -271,29 +270,21 @@ def test_extrapolants_that_agree_by_chance_are_not_believed() -> None:
     assert error[0] == pytest.approx(0.8 * 1.0 + 0.06 * (2.0 - fourth))
 
 
-@pytest.mark.parametrize("axis", [0, 1])
-@pytest.mark.parametrize("size", [4, 6, 9])
-def test_a_line_of_cells_stretched_stays_a_line_between_its_nodes(axis: int, size: int) -> None:
-    line = (np.arange(6) + 0.5) / 6
-    field = np.ones((2, 2, 3)).repeat(3, axis) * line.reshape(
-        [-1 if a == axis else 1 for a in range(3)]
-    )
-    wanted = np.clip((np.arange(size) + 0.5) / size, 0.5 / 6, 5.5 / 6)
-    for found in np.moveaxis(_stretched(field, axis, size), axis, -1).reshape(-1, size):
-        assert found == pytest.approx(wanted)
-    single = np.full((1, 1, 1), 7.0)
-    assert _stretched(single, axis, 3).ravel() == pytest.approx([7.0] * 3)
-
-
 def test_gas_moves_to_another_grid_with_its_pressure(state: Balance) -> None:
+    """A line over the cells stays one between the old nodes, and is held beyond them."""
     gap = PlanarGap(0.4, 2.0)
     film = Film(gap, 10.0, CompiledGas(1.0, 0.0, 0))
     T = 2 * np.pi * np.arange(5) / 5
+    old, new = ladder(gap, cells=(4, 6)).grid(2), ladder(gap, cells=(4, 6)).grid(3)
 
     def gas(grid: Any) -> np.ndarray:
-        return 1.5 * gap(grid.X[:, None], T[None, :]) * (1 + 0.1 * np.cos(T))
+        i, j = (
+            np.clip((np.arange(now) + 0.5) / now, 0.5 / before, 1 - 0.5 / before)
+            for now, before in ((grid.rows, old.rows), (grid.columns, old.columns))
+        )
+        place = (1.5 + 0.3 * i[:, None] - 0.2 * j).reshape(-1, 1)
+        return place * gap(grid.X[:, None], T[None, :]) * (1 + 0.1 * np.cos(T))
 
-    old, new = ladder(gap, cells=(4, 6)).grid(2), ladder(gap, cells=(4, 6)).grid(3)
     moved = _moved(film, dataclasses.replace(state, grid=old, gas=gas(old)), new)
     assert moved == pytest.approx(gas(new))
 
