@@ -14,6 +14,7 @@ from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeErro
 from squeezefilm.physics.film import closed
 from squeezefilm.physics.film.gap import PaperGap
 from squeezefilm.physics.film.gas import slip_law
+from squeezefilm.physics.film.periodic.resolution import STRIP, Films
 from squeezefilm.physics.film.periodic.small import small_vibration
 
 EVERY_SIGMA = np.geomspace(1e-12, 1e12, 200)
@@ -187,7 +188,7 @@ def second_order_load(epsilon: float, sigma: float, n: float, knudsen: float = 0
     """W of a strip by the closed form that the solver of small vibrations has."""
     one = (np.array([value]) for value in (sigma, epsilon))
     gas = np.array([n]), np.array([knudsen]), slip_law("first", knudsen)
-    return 1 + float(small_vibration(*one, "strip", *gas).over_pressure[0])
+    return 1 + float(small_vibration(Films(*one, *gas, STRIP)).over_pressure[0])
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,16 +25,16 @@ from squeezefilm.core.progress import CountProgress
 from squeezefilm.physics.film.gas import Aim, require_film, slip_law
 from squeezefilm.physics.film.periodic.resolution import (
     CELLS,
+    DISC,
+    STRIP,
     TIMES,
     FilmResolution,
+    Films,
     first_guess,
     refined,
     resolution_of,
 )
 from squeezefilm.physics.film.periodic.small import fill_small
-
-if TYPE_CHECKING:
-    from squeezefilm.physics.film.periodic.uniform import Films
 
 MAX_EXCURSION = 0.99
 """Largest excursion: above, the gap all but closes, and the error is no longer measured."""
@@ -128,7 +128,7 @@ def solve_films(
     # ε and −ε are the same film half a period apart.
     eps = np.abs(signed)
     u = compiled()
-    films = u.Films(sigma, eps, n, kn, law, u.STRIP if shape == "strip" else u.DISC)
+    films = Films(sigma, eps, n, kn, law, STRIP if shape == "strip" else DISC)
     solved = solve_all(films, tolerance, workers or os.cpu_count() or 1, progress, force=force)
     films = films._replace(excursion_ratio=signed)
     batch = _as_batch(films, solved, inputs[0].shape, slip, tolerance)
@@ -167,7 +167,6 @@ def _as_batch(
 ) -> FilmBatch:
     """Batch that is given back, in the shape of the inputs."""
     u, out, total = compiled(), solved.rows, len(films.squeeze_number)
-    shape = "strip" if films.shape == u.STRIP else "disc"
     law = f"slip {slip} at local Kn" if films.law else "no slip"
     missed = int(np.count_nonzero(~solved.met))
     columns = {
@@ -189,9 +188,9 @@ def _as_batch(
     return FilmBatch(
         **{name: np.array(column.reshape(form)) for name, column in columns.items()},
         slip=slip,
-        shape=shape,
+        shape=films.planform,
         tolerance=tolerance,
-        model=f"periodic compressible Reynolds film, {shape}, {law}",
+        model=f"periodic compressible Reynolds film, {films.planform}, {law}",
         status=(
             f"all {total} films within {tolerance:g} of their over-pressure"
             if missed == 0
@@ -215,7 +214,7 @@ def solve_all(
     u, sigma = compiled(), films.squeeze_number
     total = len(sigma)
     cells, times = first_guess(
-        sigma if films.shape == u.STRIP else 2.25 * sigma,
+        sigma if films.shape == STRIP else 2.25 * sigma,
         films.excursion_ratio,
         films.knudsen_number,
         tolerance,
@@ -277,8 +276,7 @@ class _Work:
         self, group: si.IntArray, resolution: FilmResolution, pool: ThreadPoolExecutor | None
     ) -> None:
         """Solve the films of the indices `group` on one resolution, in portions."""
-        u, whole = compiled(), self.films
-        films = u.Films(*(column[group] for column in whole[:4]), whole.law, whole.shape)
+        u, films = compiled(), self.films.at(group)
         rows = np.full((len(group), u.COLUMNS), np.nan)
         portion = min(_CHUNK, -(-len(group) // self.workers))
         spans = [(a, min(a + portion, len(group))) for a in range(0, len(group), portion)]

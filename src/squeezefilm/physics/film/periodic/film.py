@@ -34,7 +34,14 @@ from squeezefilm.physics.film.periodic.profile import (
     profile_from_function,
     sampled_grid,
 )
-from squeezefilm.physics.film.periodic.resolution import CELLS, FilmResolution, first_guess
+from squeezefilm.physics.film.periodic.resolution import (
+    CELLS,
+    DISC,
+    STRIP,
+    FilmResolution,
+    Films,
+    first_guess,
+)
 from squeezefilm.physics.film.periodic.small import LARGEST, enlarged, reduced, small_film
 from squeezefilm.physics.film.periodic.solution import (
     NO_FIELD,
@@ -73,12 +80,13 @@ def solve_uniform(
     sigma, n, kn = squeeze_number, polytropic_exponent, knudsen_number
     asked = FilmQuestion(shape, sigma, excursion_ratio, n, kn, slip, tolerance, None)
     check_film(sigma, excursion_ratio, n, kn, tolerance)
-    gas = CompiledGas(n, kn, slip_law(slip, kn))
-    small = small_film(asked, gas) if abs(excursion_ratio) < LARGEST else None
+    one = np.array([sigma]), np.array([excursion_ratio]), np.array([n]), np.array([kn])
+    film = Films(*one, slip_law(slip, kn), STRIP if shape == "strip" else DISC)
+    small = small_film(film, tolerance) if abs(excursion_ratio) < LARGEST else None
     # The closed form where it is nearer than rounding lets a solve come, or where that fails.
     if small and small[0].met and small[0].error <= compiled().rounding(sigma, n, small[0].over):
         return assembled(asked, *small, excursion_ratio)
-    grid, found = _refined_uniform(shape, sigma, abs(excursion_ratio), gas, tolerance)
+    grid, found = _refined_uniform(film, tolerance)
     if small and small[0].met and not found.met:
         return assembled(asked, *small, excursion_ratio)
     mirrored = shape == "strip"
@@ -88,15 +96,13 @@ def solve_uniform(
     return assembled(asked, found, field, excursion_ratio)
 
 
-def _refined_uniform(
-    shape: str, sigma: float, eps: float, gas: CompiledGas, tolerance: float
-) -> tuple[Nested, Found]:
-    """A uniform gap's film: on half a strip, or on a disc's radius."""
-    u, strip = compiled(), shape == "strip"
+def _refined_uniform(film: Films, tolerance: float) -> tuple[Nested, Found]:
+    """One film under a uniform gap of |ε|: on half a strip, or on a disc's radius."""
+    u, strip = compiled(), film.shape == STRIP
+    film = film._replace(excursion_ratio=np.abs(film.excursion_ratio))
+    sigma, eps, n, kn = (float(column[0]) for column in film[:4])
     # A disc of radius R films like a strip about 1.5 R wide.
     wide = sigma * (1.0 if strip else 2.25)
-    n, kn, law = gas
-    films = u.Films(*np.array([[sigma], [eps], [n], [kn]]), law, u.STRIP if strip else u.DISC)
     a = u.edge_grading(wide, eps)
 
     def solve(resolution: FilmResolution) -> Nested:
@@ -104,11 +110,11 @@ def _refined_uniform(
         out = np.full((1, u.COLUMNS), np.nan)
         rows = 7 * resolution.times.row + resolution.check.row
         keep = np.empty(cells // 4 * rows)
-        u.solve_rows(0, 1, films, resolution, Aim(NEWTON_SHARE * tolerance, MOST_NEWTON), out, keep)
+        u.solve_rows(0, 1, film, resolution, Aim(NEWTON_SHARE * tolerance, MOST_NEWTON), out, keep)
 
         def share(m: int) -> si.FloatArray:
             g, vol, part = np.zeros(m + 1), np.zeros(m + 1), np.zeros(m + 1)
-            u.grid(m, films.shape, 1.0, a, g, vol, part)
+            u.grid(m, film.shape, 1.0, a, g, vol, part)
             return part
 
         xi = np.linspace(0.0, 1.0, cells + 1)
@@ -116,9 +122,9 @@ def _refined_uniform(
         gap = np.repeat(np.array([[1.0], [eps]], dtype=complex), cells + 1, axis=1)
         return Nested(resolution, x, gap, out[0], levels_of(keep, resolution, True, share))
 
-    row = (np.array([wide]), np.array([eps]), np.array([kn]))
+    row = (np.array([wide]), film.excursion_ratio, film.knudsen_number)
     c, t = first_guess(*row, tolerance, least_cells=16, least_times=11)
-    kind = Kind(wide / (n * (1.0 + 6.0 * kn)), eps, 1, films.shape, UNIFORM_MARGINS, n, sigma)
+    kind = Kind(wide / (n * (1.0 + 6.0 * kn)), eps, 1, film.shape, UNIFORM_MARGINS, n, sigma)
     return refine(solve, kind, (int(CELLS[c[0]]), int(t[0])), tolerance, int(CELLS[-1]))
 
 
@@ -196,7 +202,7 @@ def _refined_profile(
         levels = levels_of(keep, resolution, closed, share) if field else []
         return Nested(resolution, x[::2], harmonics[:, ::2], row, levels)
 
-    case = (np.array([value]) for value in (sigma, max(profile.mean_depth, 1e-3), kn))
+    case = np.array([sigma]), np.array([max(profile.mean_depth, 1e-3)]), np.array([kn])
     c, t = first_guess(
         *case,
         tolerance,
@@ -207,5 +213,5 @@ def _refined_profile(
     cells = max(int(CELLS[c[0]]), 4 * round(4.0 * waves * (0.01 / tolerance) ** 0.25))
     cells *= 1 if closed else 2
     local = sigma / (n * (1.0 + 6.0 * kn))
-    kind = Kind(local, depth, 1 if closed else 2, u.STRIP, PROFILE_MARGINS, n, sigma)
+    kind = Kind(local, depth, 1 if closed else 2, STRIP, PROFILE_MARGINS, n, sigma)
     return refine(solve, kind, (cells, int(t[0])), tolerance, 6000)

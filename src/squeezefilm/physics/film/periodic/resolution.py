@@ -1,4 +1,5 @@
-"""Numbers of cells and times for a tolerance: first guess, and what to do when it was not enough.
+"""Films for compiled code, and numbers of cells and times for a tolerance: first guess, and what to
+do when it was not enough.
 
 The guesses were fitted to measured errors. They only save time: what is returned is judged by
 the error estimate of the solve itself, and refined until that meets the tolerance.
@@ -7,11 +8,35 @@ the error estimate of the solve itself, and refined until that meets the toleran
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
+
+STRIP, DISC = 0, 1
+
+
+class Films(NamedTuple):
+    """Many films of one shape and law of slip, both by their numbers: squeeze number, excursion
+    ratio, polytropic exponent and Knudsen number of each."""
+
+    squeeze_number: si.FloatArray
+    excursion_ratio: si.FloatArray
+    polytropic_exponent: si.FloatArray
+    knudsen_number: si.FloatArray
+    law: int
+    shape: int
+
+    @property
+    def planform(self) -> Literal["strip", "disc"]:
+        """Name of the shape."""
+        return "strip" if self.shape == STRIP else "disc"
+
+    def at(self, which: si.IntArray) -> Films:
+        """Those of some indices."""
+        sigma, eps, n, kn = (column[which] for column in self[:4])
+        return Films(sigma, eps, n, kn, self.law, self.shape)
 
 
 class PeriodTimes(NamedTuple):

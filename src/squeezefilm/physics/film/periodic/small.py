@@ -12,18 +12,15 @@ answer: exact but for the next order in ε, which is stated.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.film.closed import relative_damping, relative_stiffness
-from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.periodic.profile import GapProfile, Harmonics
-from squeezefilm.physics.film.periodic.solution import HARMONICS, Field, FilmQuestion, Found
-
-if TYPE_CHECKING:
-    from squeezefilm.physics.film.periodic.uniform import Films
+from squeezefilm.physics.film.periodic.resolution import STRIP, Films
+from squeezefilm.physics.film.periodic.solution import HARMONICS, Field, Found
 
 NEXT_IN_LOAD, NEXT_IN_FORCE, NEXT_HARMONIC = 8.0, 3.0, 2.0
 """Bounds of the next order in parts of ε²: of the over-pressure and of the first harmonic; and in
@@ -42,15 +39,8 @@ class SmallVibration:
     force_error: si.FloatArray
 
 
-def small_vibration(
-    squeeze_number: si.FloatArray,
-    excursion_ratio: si.FloatArray,
-    shape: Literal["strip", "disc"],
-    polytropic_exponent: si.FloatArray,
-    knudsen_number: si.FloatArray,
-    law: int,
-) -> SmallVibration:
-    """The film of a strip or disc to second order in ε, for any law of slip (its number).
+def small_vibration(films: Films) -> SmallVibration:
+    """The films of strips or discs to second order in ε, for any law of slip.
 
     With φ the flow factor at Kn and ψ = Kn dφ/dKn: F = n f(σ/(nφ)), W − 1 = ε² F [5/4 −
     (ψ/φ)(1/2 − n/4)]; without slip (5/4) ε² n fk(σ/n). Derivation, here
@@ -58,11 +48,11 @@ def small_vibration(
     p1 and H1 the first-order pressure and gap, g⟨p2⟩ = −(3 + 12 Kn)⟨H1 p1⟩ − ½ (1/n + 6 Kn (1/n −
     1))⟨p1²⟩; the linear equation gives the area means ⟨H1 p1⟩ = −F/2 and ⟨p1²⟩ = n F/2.
     """
-    n = polytropic_exponent
-    phi, psi = flow_factor(knudsen_number, law)
-    local = squeeze_number / (n * phi)
+    n, shape = films.polytropic_exponent, films.planform
+    phi, psi = flow_factor(films.knudsen_number, films.law)
+    local = films.squeeze_number / (n * phi)
     force = np.asarray(n * (relative_stiffness(local, shape) + 1j * relative_damping(local, shape)))
-    square = np.asarray(excursion_ratio, dtype=float) ** 2
+    square = films.excursion_ratio**2
     over = square * force.real * (1.25 - psi / phi * (0.5 - 0.25 * n))
     return SmallVibration(
         over,
@@ -81,26 +71,19 @@ def flow_factor(knudsen_number: si.FloatArray, law: int) -> tuple[si.FloatArray,
     return pairs[..., 0], kn * pairs[..., 1]
 
 
-def small_pressure(
-    x: si.FloatArray,
-    squeeze_number: float,
-    excursion_ratio: float,
-    shape: Literal["strip", "disc"],
-    polytropic_exponent: float,
-    knudsen_number: float,
-    law: int,
-) -> tuple[si.ComplexArray, si.FloatArray]:
-    """The complex amplitude of P − 1 ∝ e^{iT}, and its mean over a period to second order.
+def small_pressure(x: si.FloatArray, film: Films) -> tuple[si.ComplexArray, si.FloatArray]:
+    """The complex amplitude of P − 1 ∝ e^{iT} of one film, and its mean over a period to second
+    order.
 
     `x` from −1/2 to 1/2 for a strip, r/R for a disc. Linear: p = −n ε (1 − cosh qx/cosh(q/2)) with
     q² = iσ/(nφ), Bessel's I0 in place of cosh for a disc. No gas flows in the mean, so that
     φ⟨p2⟩ = −(3φ − ψ)⟨h p⟩ − ½ (φ/n − ψ)⟨p²⟩ at every place.
     """
-    n, eps = polytropic_exponent, excursion_ratio
-    phi, psi = (float(value) for value in flow_factor(np.array(knudsen_number), law))
-    q = np.sqrt(1j * squeeze_number / (n * phi))
+    sigma, eps, n, kn = (float(column[0]) for column in film[:4])
+    phi, psi = (float(value) for value in flow_factor(np.array(kn), film.law))
+    q = np.sqrt(1j * sigma / (n * phi))
     ratio: Any
-    if shape == "strip":
+    if film.shape == STRIP:
         far = np.abs(x)
         ratio = (np.exp(q * (far - 0.5)) + np.exp(-q * (far + 0.5))) / (1.0 + np.exp(-q))
     else:
@@ -122,27 +105,24 @@ _POINTS = 65
 _ORDERS = np.arange(HARMONICS + 1)
 
 
-def small_film(asked: FilmQuestion, gas: CompiledGas) -> tuple[Found, Field]:
-    """A uniform gap's film in closed form, and its field; `met` says whether that meets the
+def small_film(film: Films, tolerance: float) -> tuple[Found, Field]:
+    """One film under a uniform gap in closed form, and its field; `met` says whether that meets the
     tolerance. Its second and higher harmonics are left out, and are their errors."""
 
-    eps = asked.excursion_ratio
-    shape: Literal["strip", "disc"] = "strip" if asked.shape == "strip" else "disc"
-    n, kn, law = gas
-    sigma, excursion, ns, kns = (np.array([v]) for v in (asked.squeeze_number, eps, n, kn))
-    known = small_vibration(sigma, excursion, shape, ns, kns, law)
+    eps, is_strip = float(film.excursion_ratio[0]), film.shape == STRIP
+    known = small_vibration(film)
     force, force_error = complex(known.force[0]), float(known.force_error[0])
     over, error = float(known.over_pressure[0]), float(known.over_pressure_error[0])
     harmonics = np.zeros(HARMONICS + 1, dtype=complex)
     harmonics[:2] = over, -force * eps
     errors = abs(harmonics[1]) * (NEXT_HARMONIC * abs(eps)) ** np.maximum(_ORDERS - 1, 0)
     errors[:2] = error, force_error * abs(eps)
-    norm = asked.tolerance * abs(harmonics[1])
-    met = bool(error <= asked.tolerance * over and errors[1:].max() <= norm)
-    xi = np.sin(np.linspace(-0.5 if shape == "strip" else 0.0, 0.5, _POINTS) * np.pi)
-    x = 0.5 * xi if shape == "strip" else xi
+    norm = tolerance * abs(harmonics[1])
+    met = bool(error <= tolerance * over and errors[1:].max() <= norm)
+    xi = np.sin(np.linspace(-0.5 if is_strip else 0.0, 0.5, _POINTS) * np.pi)
+    x = 0.5 * xi if is_strip else xi
     T = 2.0 * np.pi * np.arange(64) / 64
-    swing, mean = small_pressure(x, asked.squeeze_number, eps, shape, n, kn, law)
+    swing, mean = small_pressure(x, film)
     gap = np.broadcast_to(1.0 + eps * np.cos(T), (len(x), len(T))).copy()
     pressure = (swing[:, None] * np.exp(1j * T)).real + mean[:, None]
     force_over = Found(over, error, met, 0, 0.0, 0, 0, harmonics, errors, (force, force_error))
@@ -159,9 +139,8 @@ def fill_small(
     which = which[films.excursion_ratio[which] < LARGEST]
     if len(which) == 0:
         return which
-    sigma, eps, n, kn = (column[which] for column in films[:4])
-    shape: Literal["strip", "disc"] = "strip" if films.shape == u.STRIP else "disc"
-    known = small_vibration(sigma, eps, shape, n, kn, films.law)
+    sigma, n = films.squeeze_number[which], films.polytropic_exponent[which]
+    known = small_vibration(films.at(which))
     over, error = known.over_pressure, known.over_pressure_error
     allowed = tolerance * over
     if better:

@@ -8,7 +8,6 @@ times gives the error of the time discretisation.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -17,14 +16,14 @@ from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.film.gas import Aim, CompiledGas
 from squeezefilm.physics.film.periodic.kernel import newton, prolong
 from squeezefilm.physics.film.periodic.resolution import (
+    STRIP,
     Cells,
     FilmResolution,
+    Films,
     GridGap,
     PeriodTimes,
     SolveRoom,
 )
-
-STRIP, DISC = 0, 1
 
 # Columns of a result row.
 OVER, ERROR, STIFFNESS, DAMPING, ITERATIONS, RESIDUAL, SPACE, TIME, COARSE, MIDDLE, FINE, CHECK = (
@@ -190,18 +189,6 @@ def rounding(sigma: float, n: float, over: float) -> float:
     For n = 1 all is computed from P − 1; otherwise P itself is rounded.
     """
     return 4e-18 * sigma + 1e-13 * abs(over) + (0.0 if n == 1.0 else 4e-17)
-
-
-class Films(NamedTuple):
-    """Many films of one shape and law of slip: squeeze number, excursion ratio, polytropic exponent
-    and Knudsen number of each."""
-
-    squeeze_number: si.FloatArray
-    excursion_ratio: si.FloatArray
-    polytropic_exponent: si.FloatArray
-    knudsen_number: si.FloatArray
-    law: int
-    shape: int
 
 
 @compiled(error_model="numpy")

@@ -18,6 +18,7 @@ from squeezefilm.physics.film.gas import Aim, CompiledGas
 from squeezefilm.physics.film.periodic.kernel import newton, prolong
 from squeezefilm.physics.film.periodic.profile import evaluate, interpolant
 from squeezefilm.physics.film.periodic.resolution import (
+    STRIP,
     Cells,
     FilmResolution,
     GridGap,
@@ -34,7 +35,6 @@ from squeezefilm.physics.film.periodic.uniform import (
     OVER,
     RESIDUAL,
     SPACE,
-    STRIP,
     TIME,
     rounding,
     space_error,

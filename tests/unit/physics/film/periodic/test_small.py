@@ -10,10 +10,11 @@ import pytest
 
 from squeezefilm.core.errors import ConvergenceError
 from squeezefilm.physics.film.closed import relative_damping, relative_stiffness
-from squeezefilm.physics.film.gas import CompiledGas, slip_law
+from squeezefilm.physics.film.gas import slip_law
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.profile import flexural_profile, profile_from_function
+from squeezefilm.physics.film.periodic.resolution import DISC, STRIP, Films
 from squeezefilm.physics.film.periodic.small import (
     LEAST_DEPTH,
     enlarged,
@@ -23,16 +24,21 @@ from squeezefilm.physics.film.periodic.small import (
     small_pressure,
     small_vibration,
 )
-from squeezefilm.physics.film.periodic.solution import NO_FIELD, Field, FilmQuestion, Found
+from squeezefilm.physics.film.periodic.solution import NO_FIELD, Field, Found
+
+SHAPES = {"strip": STRIP, "disc": DISC}
+
+
+def film_of(sigma: float, eps: float, n: float, kn: float, slip: str, shape: str) -> Films:
+    return Films(*np.array([[sigma], [eps], [n], [kn]]), slip_law(slip, kn), SHAPES[shape])
 
 
 @pytest.mark.parametrize("shape", ["strip", "disc"])
 @pytest.mark.parametrize(("n", "kn"), [(1.0, 0.0), (1.4, 0.0), (1.2, 0.08)])
 def test_it_is_the_second_order_of_the_linear_film(shape: str, n: float, kn: float) -> None:
     sigma = np.geomspace(1e-2, 1e6, 9)
-    small = small_vibration(
-        sigma, np.full(9, 1e-3), shape, np.full(9, n), np.full(9, kn), slip_law("first", kn)
-    )
+    rest = (np.full(9, value) for value in (1e-3, n, kn))
+    small = small_vibration(Films(sigma, *rest, slip_law("first", kn), SHAPES[shape]))
     local = sigma / (n * (1 + 6 * kn))
     springs = n * relative_stiffness(local, shape)
     known = springs * (1.25 + 6 * kn - 1.5 * kn * (1 - n)) / (1 + 6 * kn)
@@ -53,8 +59,7 @@ def test_the_solver_differs_by_no_more_than_the_error_stated(shape: str, slip: s
     for sigma, n, kn, eps in films:
         gas = {"polytropic_exponent": n, "knudsen_number": kn, "slip": slip}
         solved = solve_uniform(sigma, eps, shape=shape, tolerance=1e-5, **gas)
-        one = (np.array([value]) for value in (sigma, eps))
-        small = small_vibration(*one, shape, np.array([n]), np.array([kn]), slip_law(slip, kn))
+        small = small_vibration(film_of(sigma, eps, n, kn, slip, shape))
         over, allowed = small.over_pressure[0], small.over_pressure_error[0]
         assert abs(solved.over_pressure - over) <= allowed + solved.over_pressure_error
         force = -solved.force_harmonics[1] / eps
@@ -77,7 +82,7 @@ def test_the_pressure_in_closed_form_is_that_of_the_force(shape: str) -> None:
     gas = {"polytropic_exponent": 1.3, "knudsen_number": 0.1, "slip": "second"}
     solved = solve_uniform(50.0, 2e-3, shape=shape, tolerance=1e-4, **gas)
     x = solved.position
-    swing, mean = small_pressure(x, 50.0, 2e-3, shape, 1.3, 0.1, slip_law("second", 0.1))
+    swing, mean = small_pressure(x, film_of(50.0, 2e-3, 1.3, 0.1, "second", shape))
     first = 2 * np.fft.fft(solved.pressure - 1.0, axis=1)[:, 1] / len(solved.time)
     assert np.abs(swing - first).max() < 2e-3 * np.abs(first).max()
     level = solved.mean_pressure - 1.0
@@ -86,8 +91,7 @@ def test_the_pressure_in_closed_form_is_that_of_the_force(shape: str) -> None:
 
 @pytest.mark.parametrize("shape", ["strip", "disc"])
 def test_the_field_of_a_film_that_hardly_moves_has_its_force(shape: str) -> None:
-    asked = FilmQuestion(shape, 20.0, 1e-3, 1.2, 0.0, "first", 1e-2, None)
-    found, field = small_film(asked, CompiledGas(1.2, 0.0, slip_law("first", 0.0)))
+    found, field = small_film(film_of(20.0, 1e-3, 1.2, 0.0, "first", shape), 1e-2)
     assert found.met
     x, T = field.position, field.time
     assert pytest.approx(2 * np.pi * np.arange(T.size) / T.size) == T

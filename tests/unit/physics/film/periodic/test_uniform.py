@@ -9,13 +9,12 @@ import pytest
 
 from squeezefilm.physics.film.gas import Aim
 from squeezefilm.physics.film.periodic.kernel import prolong
-from squeezefilm.physics.film.periodic.resolution import resolution_of
+from squeezefilm.physics.film.periodic.resolution import DISC, STRIP, Films, resolution_of
 from squeezefilm.physics.film.periodic.uniform import (
     CHECK,
     COARSE,
     COLUMNS,
     DAMPING,
-    DISC,
     ERROR,
     FINE,
     FORCE_ERROR,
@@ -27,9 +26,7 @@ from squeezefilm.physics.film.periodic.uniform import (
     RESIDUAL,
     SPACE,
     STIFFNESS,
-    STRIP,
     TIME,
-    Films,
     edge_grading,
     gap,
     grid,

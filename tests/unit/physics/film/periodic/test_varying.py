@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.physics.film.gas import Aim, CompiledGas
-from squeezefilm.physics.film.periodic.resolution import FilmResolution, collocation_times
+from squeezefilm.physics.film.periodic.resolution import STRIP, FilmResolution, collocation_times
 from squeezefilm.physics.film.periodic.uniform import (
     CHECK,
     COARSE,
@@ -23,7 +23,6 @@ from squeezefilm.physics.film.periodic.uniform import (
     OVER,
     RESIDUAL,
     SPACE,
-    STRIP,
     TIME,
     rounding,
     space_error,
