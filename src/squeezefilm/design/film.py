@@ -17,12 +17,13 @@ from squeezefilm.core.results import Result, stamp, to_json
 from squeezefilm.physics.film.gas import FilmGas
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.profile import GapFunction, GapProfile
-from squeezefilm.physics.film.periodic.solution import FilmSolution
+from squeezefilm.physics.film.periodic.solution import FilmSolution, SolvedFilm
 from squeezefilm.physics.film.planar.film import FilmPlanar, solve_planar
 from squeezefilm.physics.film.planar.grid import PlanarGap
 
 SHAPES = ("strip", "disc", "rectangle", "ellipse")
 _LINES = ("strip", "disc")
+_SOLVED = tuple(field.name for field in dataclasses.fields(SolvedFilm))
 
 
 @si.checked_numbers
@@ -43,28 +44,14 @@ class FilmRequest:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FilmAnswer(Result):
-    """The mean load W over p0 A of one film, its over-pressure W − 1 with the estimated absolute
-    error, and the first harmonic of its force: stiffness and damping over p0 A ε, `force_error` the
-    estimated absolute error of either. `force_harmonics` (8,) are the complex amplitudes F_k of the
-    force over p0 A, k from 1, `force_harmonics_error` their estimated absolute errors.
+class FilmAnswer(Result, SolvedFilm):
+    """The load of one film and the harmonics of its force, (8,), which begin with k = 1.
 
     `film` has its pressure at every place and time."""
 
     squeeze_number: si.Dimensionless
     excursion_ratio: si.Dimensionless
     request: FilmRequest
-    mean_load: si.Dimensionless
-    over_pressure: si.Dimensionless
-    over_pressure_error: si.Dimensionless
-    stiffness_relative: si.Dimensionless
-    damping_relative: si.Dimensionless
-    force_error: si.Dimensionless
-    force_harmonics: si.ComplexArray
-    force_harmonics_error: si.DimensionlessArray
-    iterations: int
-    residual: float
-    status: str
     model: str
     film: FilmSolution | FilmPlanar
     _shown: ClassVar[str] = (
@@ -73,11 +60,8 @@ class FilmAnswer(Result):
 
     def summary(self) -> dict[str, Any]:
         """Mapping of plain JSON values."""
-        values = {
-            field.name: to_json(getattr(self, field.name))
-            for field in dataclasses.fields(self)
-            if field.name != "film"
-        }
+        names = ("squeeze_number", "excursion_ratio", "request", *_SOLVED, "model")
+        values = {name: to_json(getattr(self, name)) for name in names}
         return {**values, "provenance": stamp(self.request)}
 
     def _table(self) -> Any:
@@ -165,24 +149,17 @@ def _answer(
     request: FilmRequest,
     own: str = "",
 ) -> FilmAnswer:
-    # In the plane they begin with the first.
-    from_first = slice(1, None) if isinstance(film, FilmSolution) else slice(None)
+    solved = {name: getattr(film, name) for name in _SOLVED}
+    if isinstance(film, FilmSolution):
+        for name in ("force_harmonics", "force_harmonics_error"):
+            solved[name] = solved[name][1:]
+    model = f"periodic compressible Reynolds, {request.shape}{own}"
     return FilmAnswer(
+        **solved,
         squeeze_number=film.squeeze_number,
         excursion_ratio=excursion,
         request=request,
-        mean_load=film.mean_load,
-        over_pressure=film.over_pressure,
-        over_pressure_error=film.over_pressure_error,
-        stiffness_relative=film.stiffness_relative,
-        damping_relative=film.damping_relative,
-        force_error=film.force_error,
-        force_harmonics=film.force_harmonics[from_first],
-        force_harmonics_error=film.force_harmonics_error[from_first],
-        iterations=film.iterations,
-        residual=film.residual,
-        status=film.status,
-        model=f"periodic compressible Reynolds, {request.shape}{own}",
+        model=model,
         film=film,
     )
 

@@ -39,21 +39,16 @@ class FilmQuestion:
         return f"periodic compressible Reynolds film, {name}, {law}"
 
 
-@dataclass(frozen=True)
-class FilmSolution(FilmQuestion):
-    """A period of a gas film, with the inputs and the model that made it.
+@dataclass(frozen=True, eq=False)
+class SolvedFilm:
+    """The load of a film and the harmonics of its force over a period, with estimated absolute
+    errors.
 
-    Pressures are relative to ambient, gaps to the reference gap, T = ωt in radians. `position`
-    is X = x/l0 from −1/2 to 1/2 for a strip or a profile, r/R from 0 to 1 for a disc.
-    `pressure[i, j]` and `gap[i, j]` are at position i and time j; `mean_pressure[i]` is the mean
-    over the period. `force_harmonics[k]` are complex: the area mean of P − 1 is
-    Re Σ F_k e^{ikT}. F_1 = −(stiffness_relative + i damping_relative)·excursion, so that the
-    film pushes back with stiffness and damping of that many p0·A per unit of H0.
-    `over_pressure_error` estimates the absolute error of `over_pressure` = W − 1, and
-    `force_harmonics_error[k]` that of F_k, |ΔF_k| over p0·A; `force_error` is that of stiffness +
-    i damping, and so of either. The tolerance holds for the mean
-    relative to itself, and for every harmonic k > 0 relative to the largest of them, as a rule the
-    first: |ΔF_k| ≤ tolerance·|F_1|.
+    `mean_load` W is over p0 A, as the force is; `over_pressure` is W − 1. The area mean of P − 1 is
+    Re Σ F_k e^{ikT}: `force_harmonics` are the complex F_k, `force_harmonics_error` their errors
+    |ΔF_k|. F_1 = −(stiffness_relative + i damping_relative)·excursion, so that the film pushes back
+    with stiffness and damping of that many p0·A per unit of H0; `force_error` is that of stiffness
+    + i damping, and so of either. `residual` is what Newton's method leaves, relative.
     """
 
     mean_load: si.Dimensionless
@@ -64,16 +59,30 @@ class FilmSolution(FilmQuestion):
     force_error: si.Dimensionless
     force_harmonics: si.ComplexArray
     force_harmonics_error: si.DimensionlessArray
+    iterations: int
+    residual: si.Dimensionless
+    status: str
+
+
+@dataclass(frozen=True)
+class FilmSolution(SolvedFilm, FilmQuestion):
+    """A period of a gas film, with the inputs and the model that made it.
+
+    Pressures are relative to ambient, gaps to the reference gap, T = ωt in radians. `position`
+    is X = x/l0 from −1/2 to 1/2 for a strip or a profile, r/R from 0 to 1 for a disc.
+    `pressure[i, j]` and `gap[i, j]` are at position i and time j; `mean_pressure[i]` is the mean
+    over the period. `force_harmonics` (9,) begin with that of the mean, k = 0. The tolerance holds
+    for the mean relative to itself, and for every harmonic k > 0 relative to the largest of them,
+    as a rule the first: |ΔF_k| ≤ tolerance·|F_1|.
+    """
+
     position: si.DimensionlessArray
     time: si.DimensionlessArray
     gap: si.DimensionlessArray
     pressure: si.DimensionlessArray
     mean_pressure: si.DimensionlessArray
-    iterations: int
-    residual: float
     cells: int
     times: int
-    status: str
     model: str
 
 

@@ -15,33 +15,22 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.physics.film.gas import ISOTHERMAL, FilmGas, require_film
+from squeezefilm.physics.film.periodic.solution import SolvedFilm
 from squeezefilm.physics.film.planar.balance import Film, row_block
 from squeezefilm.physics.film.planar.grid import PlanarGap
 from squeezefilm.physics.film.planar.ladder import Climb, Ladder, PlanarShape, climb_to
 
 
 @dataclass(frozen=True)
-class FilmPlanar:
+class FilmPlanar(SolvedFilm):
     """The periodic state of a film in the plane.
 
-    `mean_load` W = ⟨P⟩ over surface and period, `over_pressure` W − 1 and its estimated absolute
-    error; `stiffness_relative` fk and `damping_relative` fd: the first harmonic of the force is
-    −(fk + i fd) p0 A ε; `force_harmonics` (8,) the
-    complex amplitudes F_k, k from 1, of W(T) = W + Re Σ F_k e^{ikT}, and `force_harmonics_error`
-    their estimated absolute errors |ΔF_k|; `force_error` is that of fk + i fd. `mean_pressure` is
+    `force_harmonics` (8,) begin with k = 1. `mean_pressure` is
     the period's mean at the nodes `X`, `Y` of the finest grid, with their `area`, all (nodes,) =
     rows × columns, of the quarter X ≥ 0, Y ≥ 0 of a symmetric film. `residual` is the last relative
-    change of the gas in Newton's method.
+    change of the gas.
     """
 
-    mean_load: si.Dimensionless
-    over_pressure: si.Dimensionless
-    over_pressure_error: si.Dimensionless
-    stiffness_relative: si.Dimensionless
-    damping_relative: si.Dimensionless
-    force_error: si.Dimensionless
-    force_harmonics: si.ComplexArray
-    force_harmonics_error: si.DimensionlessArray
     X: si.DimensionlessArray
     Y: si.DimensionlessArray
     area: si.DimensionlessArray
@@ -49,9 +38,6 @@ class FilmPlanar:
     rows: int
     columns: int
     time_points: int
-    iterations: int
-    residual: si.Dimensionless
-    status: str
     shape: PlanarShape
     aspect_ratio: si.Dimensionless
     gap: PlanarGap
