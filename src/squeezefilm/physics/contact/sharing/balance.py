@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
-from typing import Annotated, Any
+from functools import partial
+from typing import Annotated
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.physics.contact.rough_contact import LEAST_GAP, ContactLaw, RoughContact
-from squeezefilm.physics.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable
+from squeezefilm.physics.contact.sharing.gas_table import DEEPEST_EXCURSION, FilmTable, complete
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,13 +81,8 @@ def share_load(
     a = np.array(np.broadcast_to(amplitude, form), dtype=float).ravel()
     p = np.array(np.broadcast_to(plateau_pressure, form), dtype=float).ravel()
     rows = np.zeros((a.size, kernel.COLUMNS))
-    solve: Any = kernel.balance_rows
     law, impedance = asperities.compiled(), _impedance(skin, table)
-    while True:
-        lacking = solve(a, p, impedance, law, table.compiled, rows)
-        if lacking < 0:
-            break
-        table.build(lacking)
+    complete(table, lambda films: kernel.balance_rows(a, p, impedance, law, films, rows))
     require_balanced(rows, asperities, a, p)
     model = _model(table, asperities, skin, "each plateau at its own balance")
     return _shared(a.reshape(form), p.reshape(form), rows, table, asperities, model)
@@ -102,31 +98,28 @@ def share_load_tied(
 ) -> LoadSharing:
     """Plateaus tied to one mean gap that carry a mean pressure (Pa), the skin rigid.
 
-    `amplitude` (m) is one-dimensional, one value for each ridge, and so are `shares`, of all the
-    ridges that each stands for (None: alike); all else that is given back is of shape ():
+    `amplitude` (m) has shape (…, ridges); `shares` (ridges,) are those of all the ridges that each
+    stands for (None: alike). All else that is given back is of the shape before the ridges:
     pressures are means over all plateaus and the period. Raises as `share_load` does.
     """
     from squeezefilm.physics.contact.sharing import kernel
 
     announce(kernel.balance, "load balance", 20)
-    a = np.ascontiguousarray(np.ravel(amplitude), dtype=float)
-    part = np.full(a.size, 1 / a.size) if shares is None else np.ascontiguousarray(shares)
-    if part.shape != a.shape:
-        raise InputError(f"{a.size} ridges need {a.size} of shares", quantity="shares")
-    ridges = kernel.CompiledRidges(a, part)
-    row = np.zeros(kernel.COLUMNS)
-    solve: Any = kernel.balance
+    a = np.ascontiguousarray(np.atleast_1d(amplitude), dtype=float)
+    *form, count = a.shape
+    part = np.full(count, 1 / count) if shares is None else np.ascontiguousarray(shares)
+    if part.shape != (count,):
+        raise InputError(f"{count} ridges need {count} of shares", quantity="shares")
     law, impedance = asperities.compiled(), _impedance(None, table)
-    while True:
-        solve(ridges, plateau_pressure, impedance, law, table.compiled, row)
-        if int(row[kernel.STATUS]) != kernel.NEEDS_PANEL:
-            break
-        table.build(int(row[kernel.PANEL]))
-    _refuse(row[None, :], a.max(keepdims=True), np.array([plateau_pressure]))
-    pressure = np.array(plateau_pressure)
-    _require_law(asperities, np.array(row[kernel.GAP] - np.max(a)), pressure)
+    rows, pressure = np.zeros((*form, kernel.COLUMNS)), np.full(form, plateau_pressure)
+    for at in np.ndindex(*form):
+        row, ridges = rows[at], kernel.CompiledRidges(a[at], part)
+        p = float(plateau_pressure)
+        complete(table, partial(kernel.balance, ridges, p, impedance, law, out=row))
+        _refuse(row[None, :], a[at].max(keepdims=True), np.array([p]))
+        _require_law(asperities, np.array(row[kernel.GAP] - a[at].max()), np.array(p))
     model = _model(table, asperities, None, "all plateaus at one mean gap")
-    return _shared(a, pressure, row, table, asperities, model)
+    return _shared(a, pressure, rows, table, asperities, model)
 
 
 def _shared(

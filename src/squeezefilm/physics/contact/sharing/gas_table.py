@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
@@ -331,3 +331,10 @@ def film_table(
 
 
 _table = lru_cache(maxsize=256)(FilmTable)
+
+
+def complete(table: FilmTable, solve: Callable[[CompiledFilms], int]) -> None:
+    """Solve by a table until no panel of it lacks; `solve` tells the number of one that does, or
+    −1. Raises as `FilmTable.build`."""
+    while (lacking := solve(table.compiled)) >= 0:
+        table.build(lacking)

@@ -21,8 +21,8 @@ BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
 """Outcomes of a balance."""
 
 # Columns of a balance's row.
-GAP, GAS, ASPERITIES, SWING, SKIN, RESIDUAL, STEPS, STATUS, PANEL = range(9)
-COLUMNS = 9
+GAP, GAS, ASPERITIES, SWING, SKIN, RESIDUAL, STEPS, STATUS = range(8)
+COLUMNS = 8
 
 _MOST_STEPS = 80
 _SETTLED = 1e-10
@@ -192,15 +192,15 @@ def balance(
     asperities: CompiledAsperities,
     films: CompiledFilms,
     out: si.FloatArray,
-) -> None:
-    """The mean gap u at which ridges tied together carry a mean pressure (Pa), into `out`.
+) -> int:
+    """The mean gap u at which ridges tied together carry a mean pressure (Pa), into `out`; the
+    panel that lacks, or −1.
 
     What is carried falls steadily with u; ln of it is nearly linear, hence a false position in
     logarithms, with the factor of Anderson and Björck where an end stays.
     """
     amplitudes, _ = ridges
     out[:] = 0.0
-    out[PANEL] = -1.0
     law = asperities.constants
     deepest = math.sqrt(-math.expm1(-films.edges[-1]))
     low = 1e-9
@@ -232,7 +232,7 @@ def balance(
         else:
             if right <= low * (1.0 + 1e-9):
                 out[STATUS] = PRESSED_THROUGH
-                return
+                return -1
             # Toward the deepest excursion, never past it.
             u = max(right - step, 0.5 * (low + right)) if right - step <= low else right - step
             if u - low < 1e-6 * low:
@@ -266,11 +266,11 @@ def balance(
             right, f_right, side = u, at, -1
     out[STEPS] = spent + 1
     if lack >= 0:
-        out[STATUS], out[PANEL] = NEEDS_PANEL, lack
-        return
+        out[STATUS] = NEEDS_PANEL
+        return lack
     if lack == -2:
         out[STATUS] = OUT_OF_TABLE
-        return
+        return -1
     out[GAP], out[GAS], out[ASPERITIES], out[SWING], out[SKIN] = u, gas, solid, b, moved
     out[RESIDUAL] = (gas + solid) / pressure - 1.0
     # Where panels of the table meet, it may step by rounding: that much is allowed.
@@ -278,6 +278,7 @@ def balance(
     if impedance[2] > 0.0 and b >= u * deepest * (1.0 - 1e-6):
         settled = False
     out[STATUS] = BALANCED if settled else UNSETTLED
+    return -1
 
 
 @compiled(error_model="numpy")
@@ -299,9 +300,8 @@ def balance_rows(
         if out[i, STEPS] > 0.0 and out[i, STATUS] != NEEDS_PANEL:
             continue
         one = CompiledRidges(amplitude[i : i + 1], whole)
-        balance(one, pressure[i], impedance, asperities, films, out[i])
-        if out[i, STATUS] == NEEDS_PANEL and lacking < 0:
-            lacking = int(out[i, PANEL])
+        lack = balance(one, pressure[i], impedance, asperities, films, out[i])
+        lacking = lack if lacking < 0 else lacking
     return lacking
 
 

@@ -33,7 +33,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import OutOfRangeError, UnreachableError
 from squeezefilm.core.materials import Gas
-from squeezefilm.physics.contact.sharing.gas_table import FilmTable
+from squeezefilm.physics.contact.sharing.gas_table import FilmTable, complete
 from squeezefilm.physics.film.closed import PaperModel, contact_mean_pressure
 from squeezefilm.physics.film.gap import PaperGap
 
@@ -119,10 +119,8 @@ def ridge_friction(
     announce(kernel.lifted_rows, "films over ridges", 5)
     met = np.maximum(np.ravel(amplitude), _LEAST_AMPLITUDE)
     gaps = np.empty(met.size)
-    while (
-        lacking := kernel.lifted_rows(met, plateau_pressure, decay_length, films.compiled, gaps)
-    ) >= 0:
-        films.build(lacking)
+    load, length = plateau_pressure, decay_length
+    complete(films, lambda known: kernel.lifted_rows(met, load, length, known, gaps))
     # Thinner films keep their gap: u³ goes with a².
     lift = gaps / decay_length * (np.ravel(amplitude) / met) ** (2 / 3)
     return np.exp(-lift).reshape(np.shape(amplitude))

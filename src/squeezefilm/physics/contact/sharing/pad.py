@@ -152,52 +152,34 @@ def pad_friction(
             f"{shares.size} shares for {swings.size} swings; give one for each, not all 0",
             quantity="shares",
         )
-    a = np.atleast_1d(np.asarray(amplitude, dtype=float))
+    a, tied = np.atleast_1d(np.asarray(amplitude, dtype=float)), limit == "one-gap"
     # Ridges on the two sides of an antinode do the same: each kind is balanced once.
-    if swings.size > _KINDS and limit == "own":
+    if swings.size > _KINDS and not tied:
         swings = np.round(_KINDS * swings) / _KINDS
     kinds, alike = np.unique(np.round(swings, 9), return_inverse=True)
     weight = np.bincount(alike, weights=shares / whole).astype(float)
-    if limit == "one-gap":
-        return _tied(table, asperities, a, np.outer(a, kinds), weight, plateau_pressure)
-    own = share_load(table, asperities, np.outer(a, kinds), plateau_pressure)
-    carrying = weight / np.sum(weight)
+    weight /= np.sum(weight)
+    met = np.outer(a, kinds)
+    if tied:
+        shared = share_load_tied(table, asperities, met, plateau_pressure, weight)
+    else:
+        shared = share_load(table, asperities, met, plateau_pressure)
+
+    def mean(values: si.FloatArray) -> si.FloatArray:
+        """The mean over all ridges, which one balance of all of them is already."""
+        return values if tied else values @ weight
+
     return PadFriction(
         amplitude=a,
         # Weights sum to 1 within rounding only.
-        relative_friction=np.minimum(own.relative_friction @ carrying, 1.0),
-        mean_gap=own.mean_gap @ weight,
-        film_pressure=own.gas_pressure @ weight,
-        asperity_pressure=own.asperity_pressure @ weight,
-        relative_friction_error=own.relative_friction_error @ weight,
-        residual=float(np.max(np.abs(own.residual))),
-        limit="own",
-        model=own.model,
-    )
-
-
-def _tied(
-    table: FilmTable,
-    asperities: ContactLaw,
-    amplitude: si.MetreArray,
-    swings: si.MetreArray,
-    shares: si.DimensionlessArray,
-    plateau_pressure: si.Pascal,
-) -> PadFriction:
-    """All plateaus at one mean gap, each of its amplitudes; `swings` (m) of shape (amplitudes,
-    ridges)."""
-    # Each balance is already the mean over all ridges.
-    tied = [share_load_tied(table, asperities, row, plateau_pressure, shares) for row in swings]
-    return PadFriction(
-        amplitude=amplitude,
-        relative_friction=np.array([shared.relative_friction for shared in tied]),
-        mean_gap=np.array([shared.mean_gap for shared in tied]),
-        film_pressure=np.array([shared.gas_pressure for shared in tied]),
-        asperity_pressure=np.array([shared.asperity_pressure for shared in tied]),
-        relative_friction_error=np.array([shared.relative_friction_error for shared in tied]),
-        residual=max(float(abs(shared.residual)) for shared in tied),
-        limit="one-gap",
-        model=tied[0].model,
+        relative_friction=np.minimum(mean(shared.relative_friction), 1.0),
+        mean_gap=mean(shared.mean_gap),
+        film_pressure=mean(shared.gas_pressure),
+        asperity_pressure=mean(shared.asperity_pressure),
+        relative_friction_error=mean(shared.relative_friction_error),
+        residual=float(np.max(np.abs(shared.residual))),
+        limit=limit,
+        model=shared.model,
     )
 
 
