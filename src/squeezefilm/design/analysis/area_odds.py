@@ -17,18 +17,19 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.kept.store import Kept
 from squeezefilm.physics.chain.active_area import CRITERIA, ActiveArea
 from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.pad_place import pad_place
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.uncertainty.drawn import KeptDraws, evaluate
+from squeezefilm.physics.uncertainty.drawn import evaluate, hash_of_draws
 from squeezefilm.physics.uncertainty.draws import Mixture, Outcome, as_drawn, mixture_of
 from squeezefilm.physics.uncertainty.intervals import quantiles
 from squeezefilm.physics.uncertainty.uncertainty import POINTS, SAMPLES, sobol_points
 
-_KEPT: KeptDraws[si.FloatArray] = KeptDraws("draws-over-areas", si.FloatArray)
+_KEPT: Kept[si.FloatArray] = Kept("draws-over-areas", si.FloatArray, large=True)
 
 WHERE = ("best", "median", "worst")
 
@@ -94,7 +95,7 @@ def area_odds(
     points = sobol_points(mixture, POINTS * samples, seed)
     outcomes = np.stack(evaluate(mixture, points, lambda _: None)[0], axis=1)
     make = functools.partial(_drawn, mixture, over, points, outcomes)
-    return AreaOdds(_KEPT.found(mixture, points, over, make))
+    return AreaOdds(_KEPT.found(hash_of_draws(mixture, points, over), make))
 
 
 @as_drawn()

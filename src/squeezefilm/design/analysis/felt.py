@@ -16,6 +16,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.kept.store import Kept
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.contact.finger.fingertip import rest_friction_factor
 from squeezefilm.physics.display import DECAY_LENGTH, Display
@@ -33,7 +34,7 @@ from squeezefilm.physics.render.resonator.envelope import (
     finest_period,
     sine_swing_kept,
 )
-from squeezefilm.physics.uncertainty.drawn import KeptDraws
+from squeezefilm.physics.uncertainty.drawn import hash_of_draws
 from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, mixture_of
 from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, ends
 from squeezefilm.physics.uncertainty.uncertainty import sobol_points
@@ -88,7 +89,7 @@ def what_survives(prediction: Prediction, time_constant: si.Second) -> GratingsL
 
 DRAWS = 64
 _KNOTS = 17
-_KEPT: KeptDraws[si.FloatArray] = KeptDraws("draws-felt", si.FloatArray)
+_KEPT: Kept[si.FloatArray] = Kept("draws-felt", si.FloatArray, large=True)
 
 Felt = Callable[[si.MetreArray], si.DimensionlessArray]
 
@@ -223,7 +224,7 @@ def _drawn(
     mixture = mixture_of(display, p)
     points = sobol_points(mixture, count, seed=1)
     make = functools.partial(_felt_of_draws, mixture, points, senses, speeds)
-    periods = _KEPT.found(mixture, points, (senses, speeds), make)
+    periods = _KEPT.found(hash_of_draws(mixture, points, (senses, speeds)), make)
     lost = float(np.mean(np.isnan(periods[:, 0])))
     if lost > MOST_REFUSED:
         return None, f"{lost:.1%} of the draws are refused, more than {MOST_REFUSED:.0%}"

@@ -10,9 +10,7 @@ import functools
 import io
 import json
 import pickle
-from collections.abc import Callable
 from hashlib import blake2b
-from typing import Any, Generic, TypeVar
 
 import numpy as np
 
@@ -25,8 +23,6 @@ from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.draws import Mixture, Outcome, Refusals, as_drawn
 
-_Found = TypeVar("_Found")
-
 # So many messages take no time.
 _TOLD = 20
 
@@ -34,27 +30,8 @@ _TOLD = 20
 _WORTH_KEEPING = 100
 
 
-class KeptDraws(Generic[_Found]):
-    """Results of draws, kept on disk from one process to the next; `kind` names the folder, and
-    `of` is the type of what is kept."""
-
-    def __init__(self, kind: str, of: Any) -> None:
-        self._kept: Kept[_Found] = Kept(kind, of, large=True)
-
-    def found(
-        self,
-        mixture: Mixture,
-        points: si.DimensionlessArray,
-        more: object,
-        make: Callable[[], _Found],
-    ) -> _Found:
-        """Results of `make` for the draws at points of the unit cube, shape (n, inputs), and of
-        whatever `more` there is to it: found where it was made before."""
-        return self._kept.found(_asked(mixture, points, more), make)
-
-
-_KEPT: KeptDraws[tuple[si.FloatArray, Refusals]] = KeptDraws(
-    "draws", tuple[si.FloatArray, Refusals]
+_KEPT: Kept[tuple[si.FloatArray, Refusals]] = Kept(
+    "draws", tuple[si.FloatArray, Refusals], large=True
 )
 
 
@@ -70,7 +47,7 @@ def evaluate(
     new = np.flatnonzero(np.isnan(outcomes[:, 0]))
     make = functools.partial(_drawn_now, mixture, points, new, tell, what)
     worth_keeping = new.size >= _WORTH_KEEPING
-    made = _KEPT.found(mixture, points[new], None, make) if worth_keeping else make()
+    made = _KEPT.found(hash_of_draws(mixture, points[new]), make) if worth_keeping else make()
     outcomes[new], refused = made
     mixture.learn(points[new], outcomes[new])
     return Outcome(*outcomes.T), dataclasses.replace(refused, evaluations=len(points))
@@ -83,9 +60,10 @@ def description_of(display: Display, prediction: Prediction, more: object = None
     return json.dumps(to_json([display, sources, prediction.summary(), prediction.law.slip, more]))
 
 
-def _asked(mixture: Mixture, points: si.DimensionlessArray, more: object = None) -> str:
-    """A hash of all that draws come from: the display with its ranges and the working point, the
-    solved plate by the numbers that draws take of it; and of what `more` is made of them."""
+def hash_of_draws(mixture: Mixture, points: si.DimensionlessArray, more: object = None) -> str:
+    """A hash of all that draws at points of the unit cube, shape (n, inputs), come from: the
+    display with its ranges and the working point, the solved plate by the numbers that draws take
+    of it; and of what `more` is made of them."""
     p = mixture.prediction
     mode, law = p.mode, p.law
     numbers = (

@@ -17,7 +17,7 @@ from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Interval, to_json
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.uncertainty.drawn import KeptDraws, evaluate, require_samples
+from squeezefilm.physics.uncertainty.drawn import evaluate, hash_of_draws, require_samples
 from squeezefilm.physics.uncertainty.draws import (
     Mixture,
     Outcome,
@@ -324,7 +324,7 @@ def _sobol(dimensions: int, count: int, seed: int) -> si.DimensionlessArray:
     return _POINTS.found(repr((dimensions, count, seed)), drawn)
 
 
-_BANDS: KeptDraws[si.DimensionlessArray] = KeptDraws("draws-band", si.DimensionlessArray)
+_BANDS: Kept[si.DimensionlessArray] = Kept("draws-band", si.DimensionlessArray, large=True)
 
 
 @as_drawn()
@@ -347,7 +347,7 @@ def friction_bands(
     mixture = Mixture(display, prediction, driven=False)
     points = sobol_points(mixture, samples, seed=1)
     make = functools.partial(_drawn_curves, mixture, points, amplitude, progress)
-    rows = _BANDS.found(mixture, points, amplitude, make)
+    rows = _BANDS.found(hash_of_draws(mixture, points, amplitude), make)
     known = np.isnan(rows).mean(axis=0) <= MOST_REFUSED
     bands = []
     for level in levels:
