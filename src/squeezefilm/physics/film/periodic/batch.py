@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -152,18 +152,8 @@ def _broadcast(*values: si.DimensionlessLike) -> Sequence[si.FloatArray]:
         raise InputError(f"the inputs do not broadcast together: {error}") from error
 
 
-class _Solved(NamedTuple):
-    """Result rows (columns in `uniform`), indices of cells and times, and which met the
-    tolerance."""
-
-    rows: si.FloatArray
-    cells: si.IntArray
-    times: si.IntArray
-    met: NDArray[np.bool_]
-
-
 def _as_batch(
-    films: Films, solved: _Solved, form: tuple[int, ...], slip: str, tolerance: float
+    films: Films, solved: _Work, form: tuple[int, ...], slip: str, tolerance: float
 ) -> FilmBatch:
     """Batch that is given back, in the shape of the inputs."""
     u, out, total = compiled(), solved.rows, len(films.squeeze_number)
@@ -206,7 +196,7 @@ def solve_all(
     progress: CountProgress | None = None,
     *,
     force: bool = False,
-) -> _Solved:
+) -> _Work:
     """Solve films, refining those that miss the tolerance; with `force` also in the first harmonic.
 
     Inputs are checked 1-D arrays with 0 ≤ ε < 1.
@@ -225,6 +215,8 @@ def solve_all(
         workers,
         progress,
         force,
+        cells,
+        times,
         np.full((total, u.COLUMNS), np.nan),
         np.zeros(total),
         np.zeros(total, dtype=bool),
@@ -247,22 +239,25 @@ def solve_all(
             pending = np.flatnonzero(~work.met)
             if turn == ROUNDS:
                 break  # what is given back is of the grids that were solved
-            pending = _refine(work, pending, cells, times)
+            pending = work.refined(pending)
     closed = fill_small(films, tolerance, work.rows, np.flatnonzero(~work.met), better=False)
     work.met[closed], work.spent[closed] = True, 0.0
     work.rows[:, u.ITERATIONS] = work.spent
-    return _Solved(work.rows, cells, times, work.met)
+    return work
 
 
 @dataclass(frozen=True)
 class _Work:
-    """Films under way: their result rows, the iterations spent on each, and which met the aim."""
+    """Films under way: the indices of their cells and times, their result rows (columns in
+    `uniform`), the iterations spent on each, and which met the aim."""
 
     films: Films
     aim: Aim
     workers: int
     progress: CountProgress | None
     force: bool
+    cells: si.IntArray
+    times: si.IntArray
     rows: si.FloatArray
     spent: si.FloatArray
     met: NDArray[np.bool_]
@@ -293,27 +288,24 @@ class _Work:
             size = np.hypot(rows[:, u.STIFFNESS], rows[:, u.DAMPING])
             self.met[group] &= rows[:, u.FORCE_ERROR] <= self.aim.tolerance * size
 
-
-def _refine(
-    work: _Work, pending: si.IntArray, cells: si.IntArray, times: si.IntArray
-) -> si.IntArray:
-    """Give pending films the cells and times that they lack, in place; those to solve again."""
-    u, tolerance, rows = compiled(), work.aim.tolerance, work.rows[pending]
-    allowed = tolerance * np.abs(rows[:, u.OVER])
-    space, time = rows[:, u.SPACE], rows[:, u.TIME]
-    if work.force:
-        # What the first harmonic lacks, in the unit of the over-pressure.
-        unit = allowed / (tolerance * np.hypot(rows[:, u.STIFFNESS], rows[:, u.DAMPING]))
-        space = np.maximum(space, rows[:, u.FORCE_SPACE] * unit)
-        time = np.maximum(time, rows[:, u.FORCE_TIME] * unit)
-    allowed = np.where(allowed > 0.0, allowed, 1e-300)
-    more_cells, more_times = refined(cells[pending], times[pending], space, time, allowed)
-    stuck = (more_cells == cells[pending]) & (more_times == times[pending])
-    # Where rounding alone is more than what is allowed, nothing is to be gained.
-    sigma, n = (
-        column[pending] for column in (work.films.squeeze_number, work.films.polytropic_exponent)
-    )
-    for at in np.flatnonzero(np.isfinite(rows[:, u.OVER])):
-        stuck[at] |= u.rounding(sigma[at], n[at], rows[at, u.OVER]) > allowed[at]
-    cells[pending], times[pending] = more_cells, more_times
-    return np.asarray(pending[~stuck])
+    def refined(self, pending: si.IntArray) -> si.IntArray:
+        """Give pending films the cells and times that they lack, in place; those to solve again."""
+        u, tolerance, rows = compiled(), self.aim.tolerance, self.rows[pending]
+        allowed = tolerance * np.abs(rows[:, u.OVER])
+        space, time = rows[:, u.SPACE], rows[:, u.TIME]
+        if self.force:
+            # What the first harmonic lacks, in the unit of the over-pressure.
+            unit = allowed / (tolerance * np.hypot(rows[:, u.STIFFNESS], rows[:, u.DAMPING]))
+            space = np.maximum(space, rows[:, u.FORCE_SPACE] * unit)
+            time = np.maximum(time, rows[:, u.FORCE_TIME] * unit)
+        allowed = np.where(allowed > 0.0, allowed, 1e-300)
+        cells, times = self.cells[pending], self.times[pending]
+        more_cells, more_times = refined(cells, times, space, time, allowed)
+        stuck = (more_cells == cells) & (more_times == times)
+        # Where rounding alone is more than what is allowed, nothing is to be gained.
+        films = self.films.at(pending)
+        sigma, n = films.squeeze_number, films.polytropic_exponent
+        for at in np.flatnonzero(np.isfinite(rows[:, u.OVER])):
+            stuck[at] |= u.rounding(sigma[at], n[at], rows[at, u.OVER]) > allowed[at]
+        self.cells[pending], self.times[pending] = more_cells, more_times
+        return np.asarray(pending[~stuck])
