@@ -68,23 +68,14 @@ def _invert(S: si.FloatArray, start: int, nt: int, ntp: int, mask: si.FloatArray
             keep = load(mask, k * ntp + v)
             one = sub(broadcast(1.0), keep)
             store(S, pivot_row + v, mul(fma(load(S, pivot_row + v), keep, one), pivot))
-        if ntp == 8:
-            keep = load(mask, k * ntp)
-            row = load(S, pivot_row)
-            for i in range(nt):
-                if i != k:
-                    at = start + i * ntp
-                    factor = broadcast(-item(S, at + k))
-                    store(S, at, fma(factor, row, mul(load(S, at), keep)))
-        else:
-            for i in range(nt):
-                if i != k:
-                    at = start + i * ntp
-                    factor = broadcast(-item(S, at + k))
-                    for v in range(0, ntp, 8):
-                        keep = load(mask, k * ntp + v)
-                        row = load(S, pivot_row + v)
-                        store(S, at + v, fma(factor, row, mul(load(S, at + v), keep)))
+        for i in range(nt):
+            if i != k:
+                at = start + i * ntp
+                factor = broadcast(-item(S, at + k))
+                for v in range(0, ntp, 8):
+                    keep = load(mask, k * ntp + v)
+                    row = load(S, pivot_row + v)
+                    store(S, at + v, fma(factor, row, mul(load(S, at + v), keep)))
 
 
 @compiled(fastmath=_FAST, error_model="numpy")
