@@ -110,9 +110,9 @@ NOT_CALLED = {
     physics.film.planar.grid.gap_values
     physics.film.planar.grid.PlanarGrid physics.film.planar.grid.disc_grid
     physics.film.planar.grid.ellipse_grid physics.film.planar.grid.graded_line
-    physics.film.planar.grid.rectangle_grid physics.film.planar.ladder.Climb
-    physics.film.planar.ladder.Extrapolated physics.film.planar.ladder.Ladder
-    physics.film.planar.ladder.Ladder.grid physics.film.planar.ladder.climb_to
+    physics.film.planar.grid.rectangle_grid physics.film.planar.film.Climb
+    physics.film.planar.film.Extrapolated physics.film.planar.film.Ladder
+    physics.film.planar.film.Ladder.grid physics.film.planar.film.climb_to
     physics.film.periodic.profile.GapProfile.grid physics.film.periodic.profile.sampled_grid
     physics.film.periodic.resolution.first_guess physics.film.periodic.resolution.refined
     physics.film.periodic.resolution.collocation_times physics.film.gas.slip_law

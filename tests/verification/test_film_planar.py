@@ -298,7 +298,7 @@ def test_ridges_that_reach_the_surface_are_refused():
 
 def test_a_tolerance_out_of_reach_raises_with_the_best_state(monkeypatch):
     lower = replace(PLANAR_MEMORY, most=2e6)
-    monkeypatch.setattr("squeezefilm.physics.film.planar.ladder.PLANAR_MEMORY", lower)
+    monkeypatch.setattr("squeezefilm.physics.film.planar.film.PLANAR_MEMORY", lower)
     with pytest.raises(ConvergenceError, match="memory") as caught:
         plane("ellipse", 10.0, 0.5, 1.5, tolerance=1e-5)
     assert caught.value.partial.over_pressure == pytest.approx(0.22470, rel=5e-3)

@@ -11,10 +11,9 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import PLANAR_MEMORY
 from squeezefilm.physics.film.gas import CompiledGas
-from squeezefilm.physics.film.planar import ladder as module
+from squeezefilm.physics.film.planar import film as module
 from squeezefilm.physics.film.planar.balance import Balance, Balancer, Film
-from squeezefilm.physics.film.planar.grid import PlanarGap
-from squeezefilm.physics.film.planar.ladder import (
+from squeezefilm.physics.film.planar.film import (
     RUNGS,
     Climb,
     Extrapolated,
@@ -24,6 +23,7 @@ from squeezefilm.physics.film.planar.ladder import (
     _solve_or_continue,
     climb_to,
 )
+from squeezefilm.physics.film.planar.grid import PlanarGap
 
 HALF = PlanarGap(0.5)
 
