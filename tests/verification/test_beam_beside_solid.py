@@ -1,7 +1,7 @@
 """How far a beam is from plates solved in three dimensions: a campaign, which prints what it found.
 
 What is told of a beam's doubt (`physics.plausibility.expected`,
-`physics.chain.free_vibration`) rests on this.
+`physics.chain.touch`) rests on this.
 """
 
 from collections.abc import Callable

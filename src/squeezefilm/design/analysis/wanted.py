@@ -12,10 +12,9 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import OutOfRangeError, SqueezefilmError, UnreachableError
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.physics.chain.free_vibration import amplitude_per_volt
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.prediction import Prediction
-from squeezefilm.physics.chain.touch import kept_at
+from squeezefilm.physics.chain.touch import amplitude_per_volt, kept_at
 from squeezefilm.physics.chain.wanted_voltage import voltage_for_friction
 from squeezefilm.physics.contact.sharing.levitation import HIGHEST_AMPLITUDE
 from squeezefilm.physics.display import Display

@@ -13,9 +13,8 @@ from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.instruments.control.gains import IdentifiedPlate
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.chain.area_map import at_best_place
-from squeezefilm.physics.chain.free_vibration import chosen_mode
 from squeezefilm.physics.chain.friction import TABLE_SPEEDS, friction_law
-from squeezefilm.physics.chain.touch import load_ratios
+from squeezefilm.physics.chain.touch import chosen_mode, load_ratios
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.beam_response import patch_capacitance
 from squeezefilm.physics.plate.layout import RectangularPlate

@@ -17,10 +17,9 @@ from scipy.interpolate import PchipInterpolator
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import GeometryError, OutOfRangeError, SqueezefilmError
 from squeezefilm.physics.chain.active_area import ActiveArea
-from squeezefilm.physics.chain.free_vibration import FreeVibration, free_vibration
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.pad_place import ALONG_RIDGE, PadPlace, met_by_pads, place_words
-from squeezefilm.physics.chain.touch import touched_amplitudes
+from squeezefilm.physics.chain.touch import FreeVibration, free_vibration, touched_amplitudes
 from squeezefilm.physics.contact.sharing.pad import PadPoints, pad_points
 from squeezefilm.physics.display import ActiveRegion, Display
 from squeezefilm.physics.plate.layout import Actuator

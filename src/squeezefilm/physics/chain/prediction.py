@@ -24,12 +24,18 @@ from squeezefilm.core.errors import InputError, OutOfRangeError, OutOfRangeWarni
 from squeezefilm.core.progress import NO_HURRY, Pace
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.physics.chain.area_map import at_best_place
-from squeezefilm.physics.chain.free_vibration import FreeVibration, chosen_mode, free_vibration
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
 from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace, pad_place, place_words
-from squeezefilm.physics.chain.touch import Touch, held_touch, touch
+from squeezefilm.physics.chain.touch import (
+    FreeVibration,
+    Touch,
+    chosen_mode,
+    free_vibration,
+    held_touch,
+    touch,
+)
 from squeezefilm.physics.display import Display, NamedDisplay, Surface
 from squeezefilm.physics.film.gap import squeeze_number
 from squeezefilm.physics.film.validity import FilmValidity, film_validity

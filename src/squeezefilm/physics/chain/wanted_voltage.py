@@ -9,11 +9,10 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE
 from squeezefilm.core.errors import UnreachableError
 from squeezefilm.physics.chain.area_map import at_best_place
-from squeezefilm.physics.chain.free_vibration import amplitude_per_volt, chosen_mode
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace, pad_place
-from squeezefilm.physics.chain.touch import kept_at
+from squeezefilm.physics.chain.touch import amplitude_per_volt, chosen_mode, kept_at
 from squeezefilm.physics.display import NamedDisplay
 from squeezefilm.physics.plate.working_mode import PlateTheory, WorkingMode
 from squeezefilm.physics.plausibility.checks import require_plausible

@@ -7,8 +7,8 @@ import pytest
 
 from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.progress import NO_HURRY, Pace
-from squeezefilm.physics.chain import free_vibration as module
-from squeezefilm.physics.chain.free_vibration import chosen_mode
+from squeezefilm.physics.chain import touch as module
+from squeezefilm.physics.chain.touch import chosen_mode
 from squeezefilm.physics.display import load_display
 
 PLATE = load_display("biet2008-plate").actuator

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.chain.free_vibration import amplitude_per_volt, free_vibration
+from squeezefilm.physics.chain.touch import amplitude_per_volt, free_vibration
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.working_mode import working_mode
 

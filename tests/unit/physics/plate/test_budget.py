@@ -6,8 +6,8 @@ from tests.verification.random_plates import random_plate
 from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.progress import Pace
 from squeezefilm.design.plate.command import _deadline, solve_plate
-from squeezefilm.physics.chain.free_vibration import chosen_mode
 from squeezefilm.physics.chain.prediction import predict
+from squeezefilm.physics.chain.touch import chosen_mode
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid import mesh

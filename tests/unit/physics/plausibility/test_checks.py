@@ -8,7 +8,7 @@ from tests.unit.physics.plausibility.described import changed
 
 from squeezefilm.core import presets
 from squeezefilm.core.errors import ConfigError
-from squeezefilm.physics.chain import free_vibration
+from squeezefilm.physics.chain import touch
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.chain.wanted_voltage import voltage_for_friction
 from squeezefilm.physics.display import Display, load_display
@@ -46,7 +46,7 @@ def test_a_slip_of_unit_is_refused_with_what_is_meant(path: str, value: float, m
 
 
 def test_thick_glue_is_refused_before_any_solve(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(free_vibration, "working_mode", None)
+    monkeypatch.setattr(touch, "working_mode", None)
     base = load_display(PLATE)
     plate = dataclasses.replace(base.actuator, glue=GlueLayer(30e-3, 3e9))  # type: ignore[arg-type]
     display = dataclasses.replace(base, actuator=plate)

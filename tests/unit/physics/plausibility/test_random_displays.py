@@ -12,7 +12,7 @@ from tests.unit.physics.plausibility.described import changed, displays, numbers
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.analysis.verdict import verdict
-from squeezefilm.physics.chain import free_vibration
+from squeezefilm.physics.chain import touch
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plausibility.checks import implausibilities
@@ -100,7 +100,7 @@ def check(seed: int, count: int, monkeypatch: pytest.MonkeyPatch) -> dict[str, i
     rng, good = np.random.default_rng(seed), some_prediction()
     curve: Any = SimpleNamespace(amplitude_for_criterion=None)
     bases = [*displays(), *(plausible_display(rng) for _ in range(5))]
-    monkeypatch.setattr(free_vibration, "working_mode", never)
+    monkeypatch.setattr(touch, "working_mode", never)
     # Of modes nearby, which are another doubt and solved for, nothing is asked.
     monkeypatch.setattr("squeezefilm.design.analysis.verdict.mode_doubts", lambda *_: ())
     counted, missed = {"not built": 0, "refused": 0, "doubted": 0}, []

@@ -67,12 +67,12 @@ def test_whatever_draws_come_from_makes_them_others(calls: list[int]) -> None:
         _mixture(STATOR, speed=0.02),
         _mixture(STATOR, vibration_amplitude=1.5e-6),
     )
-    asked = {drawn._asked(one, points) for one in others}
+    asked = {drawn.hash_of_draws(one, points) for one in others}
     assert len(asked) == len(others)
     # A range is a part of what is drawn, though displays of other ranges count as equal.
     measured = _mixture(narrower)
-    assert drawn._asked(measured, points[:, : len(measured.inputs)]) not in asked
-    assert drawn._asked(others[0], points[:64]) not in asked
+    assert drawn.hash_of_draws(measured, points[:, : len(measured.inputs)]) not in asked
+    assert drawn.hash_of_draws(others[0], points[:64]) not in asked
     assert calls == []
 
 
