@@ -64,6 +64,7 @@ NOT_CALLED = {
     physics.contact.sharing.balance.LoadSharing
     physics.contact.sliding.march.Sliding
     physics.film.periodic.batch.FilmBatch physics.film.periodic.solution.FilmSolution
+    physics.film.periodic.solution.SolvedFilm
     physics.film.planar.film.FilmPlanar
     physics.film.validity.FilmValidity physics.film.validity.ValidityCheck
     physics.texture_files.hjif.HjifExport physics.plate.ring.modes.AnnularMode
@@ -101,7 +102,9 @@ NOT_CALLED = {
     physics.film.periodic.nested.levels_of physics.film.periodic.nested.refine
     physics.film.periodic.nested.steadied physics.film.periodic.small.fill_small
     physics.film.periodic.small.reduced physics.film.periodic.solution.extrapolated_field
-    physics.film.periodic.small.small_vibration physics.film.periodic.small.small_pressure
+    physics.film.periodic.small.small_pressure
+    physics.film.periodic.small.small_film physics.film.periodic.varying.gap_rows
+    physics.film.periodic.profile.interpolant
     physics.film.periodic.small.flow_factor physics.film.periodic.small.SmallVibration
     physics.film.planar.balance.Balance physics.film.planar.balance.Balancer
     physics.film.planar.balance.Balancer.solve physics.film.planar.balance.Film

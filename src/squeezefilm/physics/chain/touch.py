@@ -73,6 +73,7 @@ class FreeVibration(NamedTuple):
     source: str
 
 
+@si.checked_numbers
 def free_vibration(
     display: Display,
     mode: WorkingMode,
@@ -96,6 +97,7 @@ def free_vibration(
     return FreeVibration(frequency, volts, float(amplitude), mode.model)
 
 
+@si.checked_numbers
 def amplitude_per_volt(mode: WorkingMode, frequency: si.Hertz) -> si.MetrePerVolt:
     """The amplitude per volt (m/V) without a finger; off resonance with the mode's neighbours."""
     if frequency == mode.resonance_frequency:
