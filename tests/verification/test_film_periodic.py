@@ -7,7 +7,7 @@ import pytest
 from tests.verification.trapped_film import trapped_load
 
 from squeezefilm.core.errors import ConvergenceError
-from squeezefilm.physics.film.gas import Aim, CompiledGas
+from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
 from squeezefilm.physics.film.periodic.kernel import newton
@@ -191,7 +191,7 @@ def load_on_one_grid(cells, nt, sigma=30.0, eps=0.6):
     p, work = np.zeros(cells * ntp), np.zeros(10 * (cells + 1) * ntp)
     over, _, left = newton(
         cells, times, Cells(g, vol, share), GridGap(H, H, H3, w, 0), CompiledGas(1.0, 0.0, 0), p,
-        SolveRoom(work, np.empty(cells * nt * ntp)), Aim(1e-12, 40),
+        SolveRoom(work, np.empty(cells * nt * ntp)), 1e-12,
     )  # fmt: skip
     assert left < 1e-9
     return over

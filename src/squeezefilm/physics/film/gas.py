@@ -105,10 +105,3 @@ class FilmGas:
 
 ISOTHERMAL = FilmGas()
 """An isothermal gas that does not slip."""
-
-
-class Aim(NamedTuple):
-    """A relative tolerance, and the most Newton steps to reach it in."""
-
-    tolerance: float
-    most: int

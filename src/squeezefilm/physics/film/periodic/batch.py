@@ -22,7 +22,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.core.progress import CountProgress
-from squeezefilm.physics.film.gas import Aim, require_film, slip_law
+from squeezefilm.physics.film.gas import require_film, slip_law
 from squeezefilm.physics.film.periodic.resolution import (
     CELLS,
     DISC,
@@ -39,7 +39,6 @@ from squeezefilm.physics.film.periodic.small import fill_small
 MAX_EXCURSION = 0.99
 """Largest excursion: above, the gap all but closes, and the error is no longer measured."""
 
-MOST_NEWTON = 60
 ROUNDS = 12
 _CHUNK = 4096
 
@@ -211,7 +210,7 @@ def solve_all(
     )
     work = _Work(
         films,
-        Aim(tolerance, MOST_NEWTON),
+        tolerance,
         workers,
         progress,
         force,
@@ -249,10 +248,11 @@ def solve_all(
 @dataclass(frozen=True)
 class _Work:
     """Films under way: the indices of their cells and times, their result rows (columns in
-    `uniform`), the iterations spent on each, and which met the aim."""
+    `uniform`), the iterations spent on each, and which met the
+    tolerance."""
 
     films: Films
-    aim: Aim
+    tolerance: float
     workers: int
     progress: CountProgress | None
     force: bool
@@ -277,20 +277,20 @@ class _Work:
         spans = [(a, min(a + portion, len(group))) for a in range(0, len(group), portion)]
 
         def part(span: tuple[int, int]) -> None:
-            u.solve_rows(*span, films, resolution, self.aim, rows, np.empty(0))
+            u.solve_rows(*span, films, resolution, self.tolerance, rows, np.empty(0))
 
         for _ in map(part, spans) if pool is None else pool.map(part, spans):
             self.tell()
         self.rows[group] = rows
         self.spent[group] += rows[:, u.ITERATIONS]
-        self.met[group] = rows[:, u.ERROR] <= self.aim.tolerance * np.abs(rows[:, u.OVER])
+        self.met[group] = rows[:, u.ERROR] <= self.tolerance * np.abs(rows[:, u.OVER])
         if self.force:
             size = np.hypot(rows[:, u.STIFFNESS], rows[:, u.DAMPING])
-            self.met[group] &= rows[:, u.FORCE_ERROR] <= self.aim.tolerance * size
+            self.met[group] &= rows[:, u.FORCE_ERROR] <= self.tolerance * size
 
     def refined(self, pending: si.IntArray) -> si.IntArray:
         """Give pending films the cells and times that they lack, in place; those to solve again."""
-        u, tolerance, rows = compiled(), self.aim.tolerance, self.rows[pending]
+        u, tolerance, rows = compiled(), self.tolerance, self.rows[pending]
         allowed = tolerance * np.abs(rows[:, u.OVER])
         space, time = rows[:, u.SPACE], rows[:, u.TIME]
         if self.force:

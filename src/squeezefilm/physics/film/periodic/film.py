@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.film.gas import Aim, CompiledGas, slip_law
-from squeezefilm.physics.film.periodic.batch import MOST_NEWTON, check_film, compiled
+from squeezefilm.physics.film.gas import CompiledGas, FilmGas, slip_law
+from squeezefilm.physics.film.periodic.batch import check_film, compiled
 from squeezefilm.physics.film.periodic.nested import (
     NEWTON_SHARE,
     PROFILE_MARGINS,
@@ -85,15 +85,15 @@ def solve_uniform(
     small = small_film(film, tolerance) if abs(excursion_ratio) < LARGEST else None
     # The closed form where it is nearer than rounding lets a solve come, or where that fails.
     if small and small[0].met and small[0].error <= compiled().rounding(sigma, n, small[0].over):
-        return assembled(asked, *small, excursion_ratio)
+        return assembled(asked, *small)
     grid, found = _refined_uniform(film, tolerance)
     if small and small[0].met and not found.met:
-        return assembled(asked, *small, excursion_ratio)
+        return assembled(asked, *small)
     mirrored = shape == "strip"
     field = extrapolated_field(grid.levels, grid.x, grid.harmonics, n, mirrored=mirrored)
     if excursion_ratio < 0.0:
         found, field = found.later(), field.later()
-    return assembled(asked, found, field, excursion_ratio)
+    return assembled(asked, found, field)
 
 
 def _refined_uniform(film: Films, tolerance: float) -> tuple[Nested, Found]:
@@ -110,7 +110,7 @@ def _refined_uniform(film: Films, tolerance: float) -> tuple[Nested, Found]:
         out = np.full((1, u.COLUMNS), np.nan)
         rows = 7 * resolution.times.row + resolution.check.row
         keep = np.empty(cells // 4 * rows)
-        u.solve_rows(0, 1, film, resolution, Aim(NEWTON_SHARE * tolerance, MOST_NEWTON), out, keep)
+        u.solve_rows(0, 1, film, resolution, NEWTON_SHARE * tolerance, out, keep)
 
         def share(m: int) -> si.FloatArray:
             g, vol, part = np.zeros(m + 1), np.zeros(m + 1), np.zeros(m + 1)
@@ -157,9 +157,9 @@ def solve_profile(
             )
         profile = profile_from_function(profile)
     check_film(squeeze_number, 0.0, polytropic_exponent, knudsen_number, tolerance)
-    sigma = float(squeeze_number)
-    gas = CompiledGas(
-        float(polytropic_exponent), float(knudsen_number), slip_law(slip, knudsen_number)
+    sigma, gas = (
+        float(squeeze_number),
+        FilmGas(polytropic_exponent, knudsen_number, slip).compiled(),
     )
     n, kn, _ = gas
     asked = FilmQuestion("profile", sigma, profile.excursion, n, kn, slip, tolerance, profile)
@@ -168,7 +168,7 @@ def solve_profile(
     shown, mirrored = NO_FIELD, profile.symmetric
     if field:
         shown = extrapolated_field(grid.levels, grid.x, grid.harmonics, n, mirrored=mirrored)
-    return assembled(asked, *reduced(found, shown, factor, tolerance), profile.excursion)
+    return assembled(asked, *reduced(found, shown, factor, tolerance))
 
 
 def _refined_profile(
@@ -182,7 +182,7 @@ def _refined_profile(
     (n, kn, _), closed, depth = gas, profile.symmetric, profile.depth
     # Rounded, so that a sweep over σ finds its grids again.
     grading = round(float(u.edge_grading(sigma / (1.0 + profile.features) ** 2, depth)), 2)
-    aim = Aim(tolerance * (NEWTON_SHARE if field else 1.0), MOST_NEWTON)
+    aim = tolerance * (NEWTON_SHARE if field else 1.0)
 
     def solve(resolution: FilmResolution) -> Nested:
         cells, times, check = resolution

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.film.gas import NO_SLIP, Aim, CompiledGas
+from squeezefilm.physics.film.gas import NO_SLIP, CompiledGas
 from squeezefilm.physics.film.mobility import slip_factor
 from squeezefilm.physics.film.periodic.lanes import (
     add,
@@ -38,6 +38,8 @@ from squeezefilm.physics.film.periodic.resolution import Cells, GridGap, PeriodT
 
 # `reassoc` and `contract` only: NaN must stay visible, so `nnan` and `ninf` stay off.
 _FAST = {"reassoc", "contract", "arcp", "nsz"}
+
+MOST_STEPS = 60
 
 
 class _Flow(NamedTuple):
@@ -187,7 +189,7 @@ def newton(
     gas: CompiledGas,
     p: si.FloatArray,
     room: SolveRoom,
-    aim: Aim,
+    tolerance: float,
 ) -> tuple[float, int, float]:
     """Improve p (m rows of times) in place; return the over-pressure, iterations, last residual.
 
@@ -210,7 +212,7 @@ def newton(
     remaining = 1e300
     fresh = True
     iteration = 0
-    while iteration < aim.most:
+    while iteration < MOST_STEPS:
         iteration += 1
         _coefficients(m, ntp, g, gap, gas, p, work, _Flow(R, q, Phi, F, cl, cr))
         if fresh:
@@ -290,7 +292,7 @@ def newton(
             return math.nan, iteration, math.inf
         # What remains after a Newton step is about its square; after a chord step, the
         # geometric tail of the steps so far.
-        goal = aim.tolerance * abs(over) / (1.0 + abs(over))
+        goal = tolerance * abs(over) / (1.0 + abs(over))
         if scale < 1.0:
             left = 1.0
         elif fresh:

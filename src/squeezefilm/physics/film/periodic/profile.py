@@ -216,16 +216,12 @@ def profile_from_function(gap: GapFunction, description: str = "given function")
     spectrum = np.abs(np.fft.rfft(now, axis=1)).max(axis=0)
     significant = np.flatnonzero(spectrum > _NEGLIGIBLE * spectrum.max())
     orders = int(significant.max()) + 1
-    _require_smooth(orders, description)
-    return GapProfile(_GivenGap(gap, orders), description)
-
-
-def _require_smooth(orders: int, description: str) -> None:
     if orders > _MOST_ORDERS:
         raise InputError(
             f"the gap of {description} has {orders} harmonics in time; at most {_MOST_ORDERS} can "
             f"be used: smooth its motion"
         )
+    return GapProfile(_GivenGap(gap, orders), description)
 
 
 def _check_periodic(

@@ -152,9 +152,9 @@ NO_FIELD = Field(np.empty(0), np.empty(0), np.empty((0, 0)), np.empty((0, 0)))
 """Empty field where the load alone is asked for."""
 
 
-def assembled(asked: FilmQuestion, found: Found, field: Field, excursion: float) -> FilmSolution:
+def assembled(asked: FilmQuestion, found: Found, field: Field) -> FilmSolution:
     """Assemble the result. Raises `ConvergenceError`, with it, where the tolerance was not met."""
-    over, harmonics = found.over, found.harmonics.copy()
+    over, harmonics, excursion = found.over, found.harmonics.copy(), asked.excursion_ratio
     harmonics[0] = over
     first, first_error = complex(np.nan, np.nan), np.nan
     if found.force is not None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.film.gas import Aim, CompiledGas
+from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.periodic.kernel import newton, prolong
 from squeezefilm.physics.film.periodic.resolution import (
     STRIP,
@@ -197,7 +197,7 @@ def solve_rows(
     stop: int,
     films: Films,
     resolution: FilmResolution,
-    aim: Aim,
+    tolerance: float,
     out: si.FloatArray,
     keep: si.FloatArray,
 ) -> None:
@@ -219,7 +219,7 @@ def solve_rows(
     blocks = max(cells * nt * ntp, max(cells // 4, 2) * fuller.number * fuller.row)
     room = SolveRoom(np.zeros(10 * rows * wide), np.empty(blocks))
     nodes, gaps = Cells(g, vol, share), GridGap(H, H, H3, w, 0)
-    close = Aim(0.03 * aim.tolerance, aim.most)
+    close = 0.03 * tolerance
     # Over-pressure and first harmonic, of the three grids and of the check.
     level, harmonic = np.empty(4), np.empty(4, dtype=np.complex128)
     coarsest = cells // 4

@@ -14,7 +14,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.film.gas import Aim, CompiledGas
+from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.periodic.kernel import newton, prolong
 from squeezefilm.physics.film.periodic.profile import evaluate, interpolant
 from squeezefilm.physics.film.periodic.resolution import (
@@ -83,7 +83,7 @@ def solve_varying(
     gas: CompiledGas,
     profile: Profile,
     resolution: FilmResolution,
-    aim: Aim,
+    tolerance: float,
     out: si.FloatArray,
     keep: si.FloatArray,
 ) -> None:
@@ -101,7 +101,7 @@ def solve_varying(
     p, other = np.zeros(rows * wide), np.zeros(rows * wide)
     blocks = max(rows * times.number * times.row, (cells // 4 + 1) * fuller.number * fuller.row)
     room = SolveRoom(np.zeros(10 * rows * wide), np.empty(blocks))
-    close = Aim(0.03 * aim.tolerance, aim.most)
+    close = 0.03 * tolerance
     level = np.zeros(3)
     check, left, its, kept = 0.0, 0.0, 0, 0
     for run in range(2):

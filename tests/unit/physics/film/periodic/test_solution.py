@@ -44,7 +44,7 @@ def put_together(*, met: bool, later: bool = False, closed: bool = False) -> Fil
     field = extrapolated_field(levels, x, harmonics, 1.0, mirrored=True)
     if later:
         found, field = found.later(), field.later()
-    return assembled(asked, found, field, eps)
+    return assembled(asked, found, field)
 
 
 def test_the_half_is_mirrored_and_extrapolated_where_both_grids_have_a_node() -> None:
@@ -78,7 +78,7 @@ def test_the_load_alone_has_neither_field_nor_harmonics() -> None:
     asked = FilmQuestion("strip", 10.0, 0.5, 1.0, 0.0, "first", 1e-3, None)
     unknown = np.full(9, np.nan)
     found = Found(0.07, 1e-5, True, 7, 1e-9, 2, TIMES, unknown.astype(complex), unknown)
-    solution = assembled(asked, found, NO_FIELD, 0.5)
+    solution = assembled(asked, found, NO_FIELD)
     assert solution.force_harmonics[0] == 0.07
     assert np.isnan([solution.stiffness_relative, solution.force_error]).all()
     assert solution.pressure.shape == (0, 0)
