@@ -174,7 +174,7 @@ NOT_CALLED = {
     physics.plate.elements.slabs.Slabs.weighted_sections physics.render.opcodes.Assembler.emit
     physics.render.opcodes.Assembler.table physics.render.texture.coordinate.require_fade
     physics.render.interpret.samples_of physics.render.interpret.values_of
-    physics.film.periodic.resolution.resolution_of physics.film.periodic.solution.assembled
+    physics.film.periodic.resolution.resolution_of
     """,
     "no number but the index of what its other arguments hold, or an array the package made": """
     physics.contact.sharing.gas_table.FilmTable.build
