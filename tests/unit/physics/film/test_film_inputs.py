@@ -83,14 +83,13 @@ def test_a_gap_of_ones_own_is_what_the_function_says():
 
 
 def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
-    for rounds, newton in ((batch, batch), (nested, film)):
+    for rounds in (batch, nested):
         monkeypatch.setattr(rounds, "ROUNDS", 1)
-        monkeypatch.setattr(newton, "MOST_NEWTON", 2)
     with pytest.raises(ConvergenceError) as caught:
         solve_uniform(10.0, 0.9, tolerance=1e-6)
     error = caught.value
-    assert error.residual > 1e-6
-    assert error.iterations > 0
+    assert error.residual == error.partial.residual
+    assert error.iterations == error.partial.iterations > 0
     assert error.partial.over_pressure == pytest.approx(1.33, abs=0.2)
     assert "not converged" in error.partial.status
     with pytest.raises(ConvergenceError) as caught:
@@ -103,9 +102,8 @@ def test_what_does_not_converge_raises_with_its_partial_result(monkeypatch):
 def test_a_partial_result_holds_nothing_that_was_not_computed(monkeypatch):
     # Compiled code is made while NumPy is itself.
     solve_profile(10.0, lambda X, T: 1.0 + 0.1 * X + 0.4 * np.cos(T))
-    for rounds, newton in ((batch, batch), (nested, film)):
+    for rounds in (batch, nested):
         monkeypatch.setattr(rounds, "ROUNDS", 1)
-        monkeypatch.setattr(newton, "MOST_NEWTON", 2)
     # What memory happens to hold is seen where it is no number.
     monkeypatch.setattr(film.np, "empty", lambda shape, **_: np.full(shape, np.nan))
     wavy = profile_from_function(lambda x, t: 1 + 0.3 * np.cos(6 * x) + 0.5 * np.cos(t))
