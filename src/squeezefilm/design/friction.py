@@ -256,6 +256,7 @@ def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
 
 
 def _ripple(p: Prediction) -> FrictionRipple | None:
-    if p.touch.law is None or p.place_was_asked:
+    # The paper's models know the finger over an antinode only.
+    if p.touch.law is None or p.place_was_asked or not p.law.kind.shares_load:
         return None
     return p.law.ripple(p.vibration_amplitude)

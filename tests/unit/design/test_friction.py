@@ -110,12 +110,22 @@ def test_a_map_is_by_a_model_that_balances_loads(stator: Display, model: str, ma
 
 
 def test_the_ripple_is_of_the_standing_wave_under_the_finger() -> None:
-    law = SimpleNamespace(ripple=lambda amplitude: ("ripple", amplitude), place=None)
+    law = SimpleNamespace(
+        ripple=lambda amplitude: ("ripple", amplitude), place=None, kind=MODEL_KINDS["levitation"]
+    )
     assert friction._ripple(prediction(law=law)) == ("ripple", 2e-6)
     # A model that holds the gap has no balance that could ripple.
     assert friction._ripple(prediction(law=law, touch=SimpleNamespace(law=None))) is None
     # At a place of the face that was asked for the wave is no even one.
     assert friction._ripple(prediction(law=law, place_was_asked=True)) is None
+
+
+@pytest.mark.parametrize("model", MODEL_KINDS)
+def test_a_friction_is_analysed_by_every_model(stator: Display, model: str) -> None:
+    result = analyze_friction(stator, model=model, samples=0)
+    assert result.summary()["model"] == model
+    # The paper's models know the finger over an antinode only: no wave is felt by them.
+    assert (result.ripple is None) == model.startswith("paper2008")
 
 
 @pytest.fixture

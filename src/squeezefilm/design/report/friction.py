@@ -181,14 +181,13 @@ def ripple(result: FrictionAnalysis) -> Figure:
     """The friction as the pad moves along the standing wave, at constant amplitude."""
     wave = result.ripple
     assert wave is not None, "nothing vibrates"
-    half, model = wave.half_wavelength, result.prediction.model
-    lifted = MODEL_KINDS[model].friction == "lift"
+    half = wave.half_wavelength
     x = np.concatenate([wave.position, wave.position + half, [2 * half]])
     y = np.concatenate([wave.relative_friction] * 2 + [wave.relative_friction[:1]])
     figure = style.new_figure(
         f"The wave itself is felt: {100 * wave.ripple:.2g} % of ripple every "
         f"{shown(half, M, 3)} under a contact of {shown(wave.contact_length, M, 3)}",
-        f"{model if lifted else 'partial-levitation'}, ridge by ridge",
+        f"{result.prediction.model}, ridge by ridge",
         4.0,
     )
     axes = figure.subplots()
