@@ -73,8 +73,6 @@ class Sittings:
 
     def __init__(self, file: Path) -> None:
         self.file = file
-        self._known: dict[str, Sitting] = {}
-        self._version: tuple[int, int, int] | None = None
         self._all()
 
     def new(self, **fields: Any) -> Sitting:
@@ -149,24 +147,16 @@ class Sittings:
         name = re.compile(rf"\.{re.escape(self.file.name)}\.[a-z0-9_]+")
         return sorted(file for file in self.file.parent.iterdir() if name.fullmatch(file.name))
 
-    def _all(self) -> Mapping[str, Sitting]:
-        """Contents of the file now; read again only where another program has replaced it."""
+    def _all(self) -> dict[str, Sitting]:
+        """Contents of the file now."""
         try:
-            found = self.file.stat()
+            self.file.lstat()
         except FileNotFoundError:
             return {}
         except OSError as error:
             raise InputError(
                 f"{self.file} cannot be read: {error.strerror}; move it away"
             ) from error
-        version = (found.st_ino, found.st_mtime_ns, found.st_size)
-        if version != self._version:
-            self._known, self._version = self._read(), version
-        return self._known
-
-    def _read(self) -> dict[str, Sitting]:
-        if not os.path.lexists(self.file):
-            return {}
         try:
             rows = read_json(self.file, OWN_BYTES, "a file of sittings")
             return {row["id"]: Sitting(**row) for row in rows}
@@ -180,11 +170,10 @@ class Sittings:
     def _changing(self) -> Iterator[dict[str, Sitting]]:
         """The sittings to be changed; what they are then is written, or nothing has changed."""
         with _locked(self.file.parent):
-            kept = self._read()
+            kept = self._all()
             yield kept
             rows = [dataclasses.asdict(sitting) for sitting in kept.values()]
             write_whole(self.file, json.dumps(rows, ensure_ascii=False, indent=1))
-            self._version = None
 
 
 def _of(kept: Mapping[str, Sitting], id: str) -> Sitting:

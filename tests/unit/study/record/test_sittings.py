@@ -12,7 +12,7 @@ from typing import NoReturn
 import pytest
 
 from squeezefilm.core.errors import InputError, RecordError
-from squeezefilm.lab.studying.studies import Studies
+from squeezefilm.lab.studying.studies import PrepareSitting, Studies
 from squeezefilm.study.record import sittings as sittings_module
 from squeezefilm.study.record.sittings import FILE, MOST_SITTINGS, Sittings
 
@@ -78,19 +78,26 @@ def test_a_full_disk_ends_no_sitting_that_runs(
     studies.create("biet2008-gratings", "one", 7)
     studies.enrol("one")
     (who,) = studies.store("one").participants()
-    asked = ("one", who["uuid"], "none", "You may stop at any time.", {}, False)
-    running = studies.prepare(*asked)["sitting"]
+    asked = PrepareSitting(
+        id=1,
+        type="prepare sitting",
+        study="one",
+        participant=who["uuid"],
+        device="none",
+        consent="You may stop at any time.",
+    )
+    running = studies.prepare(asked)["sitting"]
     with monkeypatch.context() as patched:
         _full(patched)
         for attempt in (
-            lambda: studies.prepare(*asked),
+            lambda: studies.prepare(asked),
             lambda: studies.sittings.change(running, ended=True),
         ):
             with pytest.raises(InputError, match="No space left on device"):
                 attempt()
     assert studies.sittings.is_open(running)
     assert [one.id for one in studies.sittings.of_study("one")] == [running]
-    again = studies.prepare(*asked)["sitting"]
+    again = studies.prepare(asked)["sitting"]
     assert not studies.sittings.is_open(running)
     assert studies.sittings.is_open(again)
     studies.close()
