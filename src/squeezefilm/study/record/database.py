@@ -11,6 +11,7 @@ import contextlib
 import glob
 import os
 import sqlite3
+from collections.abc import Iterator
 from pathlib import Path
 
 from squeezefilm.core.errors import InputError, RecordError
@@ -162,6 +163,10 @@ class Database:
 
     def __init__(self, path: Path, *, new: bool = False) -> None:
         self.path = path
+        self._open(new)
+
+    def _open(self, new: bool) -> None:
+        path = self.path
         # Also for who goes to another folder meanwhile.
         place = path.absolute()
         found = identity_of(place)
@@ -224,8 +229,25 @@ class Database:
             self.connection.backup(copy)
 
     def close(self) -> None:
-        """Close it; the log is folded in where nobody else has it open."""
+        """Close the file; its write-ahead log is folded in where nobody else has it open."""
         self.connection.close()
+
+    @contextlib.contextmanager
+    def closed_meanwhile(self) -> Iterator[None]:
+        """Let go of the file, and open it again at the end: for who reads its bytes.
+
+        Raises `RecordError` if it was replaced meanwhile.
+        """
+        self.close()
+        try:
+            yield
+        finally:
+            self._open(new=False)
+
+    def require_alone(self) -> None:
+        """Refuse while any other connection has the file open. Raises `RecordError`."""
+        with self.closed_meanwhile():
+            require_alone(self.path)
 
 
 def same_folders(path: Path) -> list[Path]:

@@ -30,7 +30,6 @@ from squeezefilm.study.record.database import (
     Database,
     claim,
     discard,
-    require_alone,
     require_study,
     same_folders,
 )
@@ -48,15 +47,14 @@ def utc_now() -> str:
     return datetime.now(UTC).isoformat(timespec="milliseconds")
 
 
-class StudyStore:
+class StudyStore(Database):
     """A study's file, open. Make one with `create`, open it again with `open`; a context manager.
 
     Reads return plain rows; `StudyRun` and the functions of this room are what writes trials.
     """
 
-    def __init__(self, path: Path, database: Database) -> None:
-        self.path = path
-        self._database = database
+    def __init__(self, path: Path, *, new: bool = False) -> None:
+        super().__init__(path, new=new)
         self._design: StudyDesign | None = None
 
     @classmethod
@@ -89,25 +87,17 @@ class StudyStore:
         si.require("station", station, at_least=0, below=stations)
         if path.suffix in ("", ".traces", ".backups", ".exports"):
             raise InputError(f"{path}: give the file a suffix of its own, like study.sqlite")
-        claimed = claim(path)
-        try:
+        with contextlib.ExitStack() as undoing:
+            # Nothing half-made stays, and nothing goes that somebody else put there.
+            undoing.callback(discard, path, claim(path))
             if others := same_folders(path):
                 raise InputError(
                     f"{others[0]} keeps its traces, backups and exports in the folders that {path} "
                     "would use; give a name that differs in more than the suffix"
                 )
-            database = Database(path, new=True)
-        except BaseException:
-            discard(path, claimed)
-            raise
-        store = cls(path, database)
-        try:
+            store = undoing.enter_context(cls(path, new=True))
             store._fill(design, seed, station, stations)
-        except BaseException:
-            # Nothing half-made stays, and nothing goes that somebody else put there.
-            store.close()
-            discard(path, claimed)
-            raise
+            undoing.pop_all()
         return store
 
     def _fill(self, design: StudyDesign, seed: int, station: int, stations: int) -> None:
@@ -142,7 +132,7 @@ class StudyStore:
         """
         path = Path(path)
         require_study(path)
-        store = cls(path, Database(path))
+        store = cls(path)
         try:
             store._bring_up_to_date()
             for problem in problems(store.rows, lambda: store.design):
@@ -165,27 +155,6 @@ class StudyStore:
         with self.transaction() as write:
             write.execute(UPGRADE_1)
             write.execute(f"PRAGMA user_version = {VERSION}")
-
-    def close(self) -> None:
-        """Close the file; its write-ahead log is folded in where nobody else has it open."""
-        self._database.close()
-
-    @contextlib.contextmanager
-    def closed_meanwhile(self) -> Iterator[None]:
-        """Let go of the file, and open it again at the end: for who reads its bytes.
-
-        Raises `RecordError` if it was replaced meanwhile.
-        """
-        self._database.close()
-        try:
-            yield
-        finally:
-            self._database = Database(self.path)
-
-    def require_alone(self) -> None:
-        """Refuse while any other connection has the file open. Raises `RecordError`."""
-        with self.closed_meanwhile():
-            require_alone(self.path)
 
     def require_whole(self) -> None:
         """Refuse a damaged file: numbers of it are not to be trusted. Raises `RecordError`."""
@@ -235,9 +204,9 @@ class StudyStore:
 
     def rows(self, query: str, values: Iterable[Any] = ()) -> list[dict[str, Any]]:
         """Rows of a query, as dictionaries. Raises `RecordError` if the file cannot be read."""
-        self._database.require_in_place()
+        self.require_in_place()
         try:
-            cursor = self._database.connection.execute(query, tuple(values))
+            cursor = self.connection.execute(query, tuple(values))
             names = [column[0] for column in cursor.description]
             return [dict(zip(names, row, strict=True)) for row in cursor]
         except FAILURES as error:
@@ -246,14 +215,14 @@ class StudyStore:
     @contextlib.contextmanager
     def transaction(self) -> Iterator[sqlite3.Connection]:
         """Open a transaction: all of it is on the disk when it ends, or it raises and none is."""
-        connection = self._database.connection
+        connection = self.connection
         try:
             connection.execute("BEGIN IMMEDIATE")
-            self._database.require_in_place()
+            self.require_in_place()
             yield connection
             connection.execute("COMMIT")
             # What was removed or replaced meanwhile holds this row no more.
-            self._database.require_in_place()
+            self.require_in_place()
         except FAILURES as error:
             _roll_back(connection)
             raise RecordError(
@@ -353,13 +322,6 @@ class StudyStore:
             require_plain(path)
         return stray
 
-    def compact(self) -> None:
-        """Rewrite the file without anything deleted, and empty its write-ahead log.
-
-        Raises `RecordError` while another program reads or writes it.
-        """
-        self._database.compact()
-
     def back_up(self) -> Path:
         """A copy of the file as it is now, in `backups`; there whole or not at all. Raises
         `RecordError`, also for a damaged file."""
@@ -370,7 +332,7 @@ class StudyStore:
         unfinished = target.with_name(f".{target.name}{UNFINISHED}")
         try:
             target.parent.mkdir(exist_ok=True)
-            self._database.copy_to(unfinished)
+            self.copy_to(unfinished)
             unfinished.replace(target)
             sync_folder(target.parent)
         except (*FAILURES, OSError) as error:
