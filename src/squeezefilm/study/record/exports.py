@@ -293,16 +293,11 @@ def write_orders(plan: StudyPlan, folder: str | Path) -> list[Path]:
 
 def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
     row: dict[str, Cell] = {
+        **trial.row(),
         "participant_number": number,
         "trial": trial.number,
-        "display": trial.display,
-        "block": trial.block,
-        "phase": trial.phase,
         "adaptive_series": trial.adaptive,
         "reference_first": trial.reference_first if trial.adaptive else None,
         "alternatives": "|".join(trial.alternatives),
-        "answer": trial.answer,
-        "pause_s": trial.pause,
-        "seed": trial.seed,
     }
     return row | surface_columns(plan.design, trial.stimuli, row, surface_cells)

@@ -139,13 +139,13 @@ def _require_seconds(path: str | Path, who: str, mine: Numbered) -> None:
 def _require_once(path: str | Path, who: str, mine: Numbered) -> None:
     first: dict[tuple[str, ...], int] = {}
     again = []
-    trials: dict[tuple[str, str], tuple[int, int]] = {}
+    trials: dict[tuple[str, str], int] = {}
     for line, row in mine:
         place = str(row["display"]), str(row["trial"])
         if place in trials and not row["set_aside"]:
-            said = f"trial {place[1]} of '{who}' is in line {trials[place][0]} already"
+            said = f"trial {place[1]} of '{who}' is in line {trials[place]} already"
             raise _refused(path, line, "trial", said)
-        trials[place] = line, line
+        trials[place] = line
         if _value_of(row, "response_time_s") > 0:
             cells = tuple(str(row[name]) for name in _TIMED)
             again += [(first[cells], line)] if cells in first else []
