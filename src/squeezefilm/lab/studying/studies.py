@@ -284,10 +284,11 @@ class Studies:
         sitting = self.sittings.get(id)
         if sitting.ended:
             raise InputError("this sitting has ended")
-        trial, surfaces = self.run(sitting).presented(token)
-        if not 0 <= place < len(surfaces):
-            raise InputError(f"trial {trial.number} has {len(surfaces)} surfaces; asked: {place}")
-        stimulus = surfaces[place]
+        shown = self.run(sitting).presented(token)
+        trial, count = shown.trial, len(shown.surfaces)
+        if not 0 <= place < count:
+            raise InputError(f"trial {trial.number} has {count} surfaces; asked: {place}")
+        stimulus = shown.surfaces[place]
         if not isinstance(stimulus, Stimulus):
             raise InputError(f"'{stimulus.name}' is a real grating; no device plays it")
         return stimulus, trial.seed
@@ -299,7 +300,7 @@ class Studies:
         if sitting.device == "none" or sitting.session is None:
             return False
         run = self.run(sitting)
-        return not run.recorded(token) and isinstance(run.presented(token)[1][0], Stimulus)
+        return not run.recorded(token) and isinstance(run.presented(token).surfaces[0], Stimulus)
 
     def traces(self, name: str) -> Path:
         """A study's folder of traces."""

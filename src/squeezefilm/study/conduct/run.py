@@ -96,7 +96,7 @@ class Acknowledgement:
 
 class StudyRun:
     """A session of a participant: `next_trial`, present it, `respond`, until `state` is "finished"
-    or "display changes" (then begin a session on the other display)."""
+    or "display changes" (then begin a session on the other display). `session` is its row."""
 
     def __init__(
         self, store: StudyStore, session: str, *, clock: Callable[[], si.Second] = time.monotonic
@@ -105,7 +105,7 @@ class StudyRun:
         if not rows:
             raise InputError(f"there is no session {session} in {store.path}; begin one first")
         self._store = store
-        self._session = rows[0]
+        self.session: Row = rows[0]
         self._presented: str | None = None
         self._clock = clock
         # The trial with a break before it, what was left of that, and when that was seen.
@@ -113,14 +113,9 @@ class StudyRun:
         self._answered_here = False
 
     @property
-    def session(self) -> Row:
-        """The session's row."""
-        return self._session
-
-    @property
     def participant(self) -> str:
         """The pseudonym."""
-        return str(self._session["participant"])
+        return str(self.session["participant"])
 
     @property
     def state(self) -> State:
@@ -128,7 +123,7 @@ class StudyRun:
         display = display_wanted(self._store, self.participant)
         if display is None:
             return "finished"
-        if display != self._session["display"]:
+        if display != self.session["display"]:
             return "display changes"
         return "ready" if self._presented is None else "presented"
 
@@ -152,29 +147,20 @@ class StudyRun:
         nothing may be presented.
         """
         row = next_planned(self._store, self.participant)
-        if row is None or row["display"] != self._session["display"]:
+        if row is None or row["display"] != self.session["display"]:
             return None
-        trial, surfaces, intensity = self._surfaces(row)
         if shown:
             self._store.add(
                 "presentation",
                 {
                     "uuid": str(uuid.uuid4()),
                     "trial": row["uuid"],
-                    "session": self._session["uuid"],
+                    "session": self.session["uuid"],
                     "presented_utc": utc_now(),
                 },
             )
             self._presented = row["uuid"]
-        return Presentation(
-            trial,
-            row["uuid"],
-            surfaces,
-            intensity,
-            row["presentations"] + 1,
-            self.remaining,
-            self._rest_left(row),
-        )
+        return self._presentation(row)
 
     def respond(self, token: str, response: Response) -> Acknowledgement:
         """Record an answer. When this returns, it is on the disk.
@@ -200,18 +186,18 @@ class StudyRun:
             )
         if not first["presentations"]:
             raise InputError(f"trial {planned['number']} was not presented yet; call next_trial")
-        trial, surfaces, intensity = self._surfaces(planned)
-        _require_answer(trial, response)
+        felt = self._presentation(first)
+        _require_answer(felt.trial, response)
         names = [self._store.save_trace(e.trace) for e in response.explorations if e.trace]
         names += [e.raw_trace for e in response.explorations if e.raw_trace]
-        row = self._response_row(planned, trial, response, surfaces, intensity, names)
+        row = self._response_row(felt, response, names)
         with self._store.transaction() as write:
             # Another process with the same participant may have been faster.
             done = write.execute("SELECT 1 FROM response WHERE trial = ?", [token]).fetchone()
             practice = ""
             if done is None:
                 insert(write, "response", row)
-                practice = self._come_again(write, planned, trial, response)
+                practice = self._come_again(write, planned, felt.trial, response)
         self._presented, self._answered_here = None, True
         known = self._recorded(planned)
         assert known is not None
@@ -224,20 +210,19 @@ class StudyRun:
         design = self._store.design
         reason = spoiled_by(design, response.explorations) if trial.asks else ""
         if reason:
-            set_aside(write, [planned], self._session["uuid"], reason)
+            set_aside(write, [planned], self.session["uuid"], reason)
         if trial.phase == "practice":
             return practise_again(write, design, self.participant, trial.display)
         return ""
 
-    def presented(self, token: str) -> tuple[Trial, tuple[Stimulus | Grating, ...]]:
-        """The trial of a token and its surfaces. Raises `InputError` for a token of no trial of
-        this participant, or of one that is answered or was not presented."""
+    def presented(self, token: str) -> Presentation:
+        """What is presented with a token. Raises `InputError` for a token of no trial of this
+        participant, or of one that is answered or was not presented."""
         planned = self._planned(token)
         first = next_planned(self._store, self.participant)
         if first is None or first["uuid"] != token or not first["presentations"]:
             raise InputError(f"trial {planned['number']} is not being presented; call next_trial")
-        trial, surfaces, _ = self._surfaces(planned)
-        return trial, surfaces
+        return self._presentation(first)
 
     def recorded(self, token: str) -> bool:
         """True where this trial's answer is on the disk. Raises `InputError` for a token of no
@@ -293,19 +278,30 @@ class StudyRun:
             spoiled=aside[0]["reason"] if aside else "",
         )
 
-    def _surfaces(self, row: Row) -> tuple[Trial, tuple[Stimulus | Grating, ...], float | None]:
-        """The planned trial, what is felt in it, and an adaptive series' intensity."""
-        design = self._store.design
+    def _presentation(self, row: Row) -> Presentation:
+        """The presentation of a row that `next_planned` gave."""
         trial = Trial.of_row(row)
+        return Presentation(
+            trial,
+            row["uuid"],
+            *self._surfaces(trial),
+            row["presentations"] + 1,
+            self.remaining,
+            self._rest_left(row),
+        )
+
+    def _surfaces(self, trial: Trial) -> tuple[tuple[Stimulus | Grating, ...], float | None]:
+        """What is felt in a trial, and an adaptive series' intensity."""
+        design = self._store.design
         if trial.phase == "familiarisation" and design.alternatives:
             gratings = {alternative.name: alternative for alternative in design.alternatives}
-            return trial, tuple(gratings[name] for name in trial.stimuli), None
+            return tuple(gratings[name] for name in trial.stimuli), None
         if not trial.adaptive:
-            return trial, tuple(design.stimulus(name) for name in trial.stimuli), None
+            return tuple(design.stimulus(name) for name in trial.stimuli), None
         series, task = design.series(trial.adaptive), design.described
         reference, how = design.stimulus(design.reference), (trial.reference_first, trial.answer)
         if not task.presents_comparison(*how):
-            return trial, task.arranges(reference, reference, *how), 0.0
+            return task.arranges(reference, reference, *how), 0.0
         answers = self._store.rows(
             "SELECT r.intensity, r.correct, r.choice FROM response r "
             "JOIN trial t ON t.uuid = r.trial WHERE "
@@ -319,38 +315,32 @@ class StudyRun:
         )
         intensity = adaptive_method(series, given, design.task).next_stimulus()
         comparison = design.comparison(series, intensity)
-        return trial, task.arranges(reference, comparison, *how), intensity
+        return task.arranges(reference, comparison, *how), intensity
 
     def _response_row(
-        self,
-        planned: Row,
-        trial: Trial,
-        response: Response,
-        surfaces: tuple[Stimulus | Grating, ...],
-        intensity: float | None,
-        traces: list[str],
+        self, presentation: Presentation, response: Response, traces: list[str]
     ) -> dict[str, Any]:
-        felt = response.explorations
+        trial, felt = presentation.trial, response.explorations
         correct = None
         if trial.asks and trial.answer:
             correct = int(response.choice == trial.answer)
         answered = to_json(dataclasses.replace(response, explorations=()))
         del answered["explorations"]
         return {
-            "trial": planned["uuid"],
-            "session": self._session["uuid"],
-            "stimuli": json.dumps([surface.name for surface in surfaces]),
-            "intensity": intensity,
+            "trial": presentation.token,
+            "session": self.session["uuid"],
+            "stimuli": json.dumps([surface.name for surface in presentation.surfaces]),
+            "intensity": presentation.intensity,
             "correct": correct,
             **answered,
             "path_length_m": known(sum(motion.path_length for motion in felt)) if felt else None,
             "mean_speed_m_per_s": _mean([motion.mean_speed for motion in felt]),
             "mean_normal_force_N": _mean([motion.mean_normal_force for motion in felt]),
             "traces": json.dumps(traces),
-            "seed": planned["seed"],
+            "seed": trial.seed,
             "squeezefilm_version": __version__,
-            "device_sha256": self._session["device_sha256"],
-            "calibration_sha256": self._session["calibration_sha256"],
+            "device_sha256": self.session["device_sha256"],
+            "calibration_sha256": self.session["calibration_sha256"],
         }
 
 

@@ -35,10 +35,10 @@ class Run:
         self.shown.append(shown)
         return self.next
 
-    def presented(self, token: str) -> tuple[Any, Any]:
+    def presented(self, token: str) -> Any:
         """The trial and its surfaces."""
         assert token == "token"
-        return self.trial, self.next.surfaces
+        return SimpleNamespace(trial=self.trial, surfaces=self.next.surfaces)
 
     def recorded(self, token: str) -> bool:
         """True where it is answered."""

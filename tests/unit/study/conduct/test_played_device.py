@@ -120,7 +120,7 @@ def test_a_raw_trace_belongs_to_its_answer_and_goes_with_the_participant(tmp_pat
         raw.write_bytes(b"rows")
         lost.write_bytes(b"rows of a surface that failed")
         felt = TrialMotion(0.1, 0.08, trace="time_s\n0\n", raw_trace=raw.name)
-        assert run.presented(shown.token)[0] == shown.trial
+        assert run.presented(shown.token).trial == shown.trial
         assert not run.recorded(shown.token)
         run.respond(shown.token, Response(shown.trial.alternatives[0], explorations=(felt,)))
         assert run.recorded(shown.token)
