@@ -160,7 +160,7 @@ def play_texture(asked: PlayRequest) -> PlayResult:
         )
     tell("the display at its largest amplitude")
     setup = play_setup(display, texture, device, asked)
-    with _folder(kept) as folder:
+    with folder_for_records(kept) as folder:
         truth = folder / TRUTH_NAME if device.twin else None
         outcome = _played(asked, setup, settings, folder / TRACE_NAME, truth)
         tell(JUDGING)
@@ -342,7 +342,11 @@ def _replay(sensor: str) -> Callable[[Callable[[], si.Second]], ReplaySensor] | 
 
 
 @contextlib.contextmanager
-def _folder(out: Path | None) -> Iterator[Path]:
+def folder_for_records(out: Path | None) -> Iterator[Path]:
+    """The folder `out`, made if it is not there; without one a temporary one.
+
+    Raises `InputError` for one that cannot be made.
+    """
     if out is not None:
         try:
             out.mkdir(parents=True, exist_ok=True)

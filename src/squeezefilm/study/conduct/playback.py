@@ -7,7 +7,7 @@ length that is judged afterwards.
 
 from __future__ import annotations
 
-import tempfile
+import contextlib
 import time
 from dataclasses import KW_ONLY, dataclass
 from datetime import UTC, datetime, timedelta
@@ -20,6 +20,7 @@ from squeezefilm.core.arguments import ReadBy, reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.bench.markers import Markers, markers_if
+from squeezefilm.instruments.bench.play import folder_for_records
 from squeezefilm.instruments.twin.hand import EXPLORING
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.physics.render.texture.composition import Composable
@@ -67,7 +68,7 @@ class Playback:
         surface: Surface,
         *,
         keep: Path | None,
-        folder: tempfile.TemporaryDirectory[str] | None = None,
+        folder: contextlib.ExitStack,
         markers: Markers | None = None,
     ) -> None:
         self._device, self._surface = device, surface
@@ -168,8 +169,7 @@ class Playback:
             self._end()
         self._device.close()
         self._state = "closed"
-        if self._folder is not None:
-            self._folder.cleanup()
+        self._folder.close()
 
     @property
     def _name(self) -> str:
@@ -224,19 +224,9 @@ def play(asked: PlayingOptions) -> Playback:
     """
     surface = named(asked.surface)
     markers = markers_if(asked.lsl)
-    folder = None
-    if asked.out is None:
-        folder = tempfile.TemporaryDirectory()
-        records = Path(folder.name)
-    else:
-        records = Path(asked.out)
-        try:
-            records.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(
-                f"cannot make the folder {records}: {error.strerror}; give another"
-            ) from error
-    try:
+    keep = None if asked.out is None else Path(asked.out)
+    with contextlib.ExitStack() as folder:
+        records = folder.enter_context(folder_for_records(keep))
         orders = WorkerOrders(
             asked.display,
             asked.drive,
@@ -247,12 +237,7 @@ def play(asked: PlayingOptions) -> Playback:
         )
         device = SessionDevice(orders)
         device.prepare(surface)
-    except BaseException:
-        if folder is not None:
-            folder.cleanup()
-        raise
-    keep = None if folder is not None else records
-    return Playback(device, surface, keep=keep, folder=folder, markers=markers)
+        return Playback(device, surface, keep=keep, folder=folder.pop_all(), markers=markers)
 
 
 def named(surface: Playable) -> Surface:

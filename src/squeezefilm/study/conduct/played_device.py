@@ -47,6 +47,11 @@ class SessionDevice:
 
     One thread at a time, except `halt`, which any thread may call at any moment.
 
+    Attributes:
+        presenting: whether a surface was presented and not stopped yet.
+        began: when the device said that it plays what was presented (s, `time.monotonic`); NaN
+            before.
+
     Raises:
         InputError: a drive that may not be used in a study, or a display that this drive may not
             play, `Display.require_insulation`.
@@ -61,7 +66,7 @@ class SessionDevice:
         self._process: Any = None
         self._connection: Connection | None = None
         self._speaking = threading.Lock()
-        self._presenting, self._began = False, math.nan
+        self.presenting, self.began = False, math.nan
 
     def __enter__(self) -> Self:
         return self
@@ -70,20 +75,10 @@ class SessionDevice:
         self.close()
 
     @property
-    def presenting(self) -> bool:
-        """True where a surface was presented and not stopped yet."""
-        return self._presenting
-
-    @property
-    def began(self) -> si.Second:
-        """Time at which the device said that it plays what was presented (s, `time.monotonic`)."""
-        return self._began
-
-    @property
     def over(self) -> bool:
         """True where what was presented ended by itself, which is a failure; `stop` tells which."""
         connection = self._connection
-        return self._presenting and (connection is None or connection.poll(0.0))
+        return self.presenting and (connection is None or connection.poll(0.0))
 
     def identity(self) -> DeviceIdentity:
         """ "twin" or "serial", the display's hash, and that of the pickup's calibration (of the
@@ -131,7 +126,7 @@ class SessionDevice:
         if answer[0] == "ended":
             why = answer[1] or "it was stopped before it played"
             raise DeviceError(f"the surface could not be presented: {why}. It comes again")
-        self._presenting, self._began = True, float(answer[1])
+        self.presenting, self.began = True, float(answer[1])
 
     def stop(self) -> TrialMotion:
         """Ramp to zero, disarm, close the record; returns how the finger explored.
@@ -151,9 +146,9 @@ class SessionDevice:
     def ended(self) -> tuple[str, TrialMotion]:
         """Stop as `stop` does, and return a failure: what failed (empty: nothing) and the
         exploration, of which nothing is known where the process that plays failed."""
-        if not self._presenting:
+        if not self.presenting:
             return "", TrialMotion()
-        self._presenting = False
+        self.presenting = False
         self.halt()
         try:
             answer = self._heard(STOP_LIMIT)
@@ -183,7 +178,7 @@ class SessionDevice:
         with self._speaking:
             process, connection = self._process, self._connection
             self._process = self._connection = None
-        self._presenting = False
+        self.presenting = False
         if connection is not None:
             # The broken pipe ends what plays, safely.
             connection.close()
@@ -194,7 +189,7 @@ class SessionDevice:
                 process.join()
 
     def _require_silence(self) -> None:
-        if self._presenting:
+        if self.presenting:
             raise InputError("a surface is being presented; stop it first")
 
     def _asked(self, order: tuple[Any, ...], expected: str) -> tuple[Any, ...]:

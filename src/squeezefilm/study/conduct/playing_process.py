@@ -73,17 +73,10 @@ _TWIN = TwinSettings(sensor=LVDT_10_KHZ, pickup=PickupModel(kind="sensing_patch"
 
 @dataclass(frozen=True)
 class WorkerOrders:
-    """Orders to the process: what plays, and on what.
+    """Orders to the process: what plays, and on what, as `study.conduct.playback.play` says.
 
-    Args:
-        target: the display, a preset's name or a file.
-        drive: "twin", or "serial:PORT".
-        traces: folder for the raw records, the study's own folder of traces.
-        amplitude_per_pickup: vibration amplitude per signal of the device's pickup (m/V); None if
-            it was never calibrated. A twin's is known.
-        settings: of a twin; all are assumed.
-        stroke: of a twin's finger, as `motion_from` reads it, to and fro for ever.
-        rate: of the loop (Hz).
+    `target` is the display; raw records go to the folder `traces`. The pickup of a twin, whose
+    `settings` are all assumed, needs no `amplitude_per_pickup`: it is known.
     """
 
     target: str | Path
@@ -116,7 +109,6 @@ class Bench:
 
     def __init__(self, connection: Connection, orders: WorkerOrders) -> None:
         self._connection, self._orders = connection, orders
-        self._display: Display | None = None
         self._twin = contextlib.ExitStack()
         self._finger: str | None = None
         self._stream = ""
@@ -141,7 +133,8 @@ class Bench:
         """The carrier swept over the resonance at a quarter of the display's voltage, with no
         finger (a twin's lifts it); the amplitude is judged where the pickup is calibrated. A device
         without a pickup is not measurable."""
-        display, mode = self._loaded(), predict(self._loaded()).mode
+        display = self._display
+        mode = predict(display).mode
         volts = VERIFICATION_SHARE * display.drive.voltage
         twin = self._orders.drive == "twin"
         limits = display.limits(mode.resonance_frequency, volts, twin=twin)
@@ -227,18 +220,17 @@ class Bench:
         if pickup.kind == "sensing_patch":
             # It hears the amplitude itself: no plate is to be solved for it.
             return 1 / pickup.sensitivity
-        point = working_point(self._loaded(), self._orders.settings)
+        point = working_point(self._display, self._orders.settings)
         return point.pickup_calibration(pickup)
 
-    def _loaded(self) -> Display:
-        if self._display is None:
-            self._display = load_display(self._orders.target)
-        return self._display
+    @cached_property
+    def _display(self) -> Display:
+        return load_display(self._orders.target)
 
     def _setup(self, surface: TextureFile) -> PlaySetup:
         twin = self._orders.drive == "twin"
         device = KnownDevice(LVDT_10_KHZ, self._amplitude_per_pickup, twin=twin)
-        return play_setup(self._loaded(), surface, device, HowToPlay(rate=self._orders.rate))
+        return play_setup(self._display, surface, device, HowToPlay(rate=self._orders.rate))
 
     def _streaming(self, finger: str) -> str:
         """The drive's stream; a twin with that finger is started unless it is there."""
