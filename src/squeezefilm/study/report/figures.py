@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.core.kit import style
-from squeezefilm.study.report.words import model_fit, whose
+from squeezefilm.study.report.words import model_fit, people_needed, whose
 from squeezefilm.study.tasks.findings import PARTS
 
 if TYPE_CHECKING:
@@ -172,12 +172,11 @@ def _by_people(figure: Figure, curve: PowerCurve, said: str) -> Axes:
 @style.drawn
 def power(curve: PowerCurve) -> Figure:
     """Power against the number of people, with the error of the simulation."""
-    needed, surely = curve.needed, curve.needed_surely
-    said = f"{needed} people reach {100 * curve.target:g} % power"
-    if needed is None:
-        most = int(curve.participants[-1])
-        said = f"{most} people do not reach {100 * curve.target:g} % power"
-    elif surely is not None and surely != needed:
+    said, surely = (
+        people_needed(curve, f"reach {100 * curve.target:g} % power"),
+        curve.needed_surely,
+    )
+    if surely is not None and surely != curve.needed:
         said += f"; {surely} do beyond the simulation's error"
     figure = style.new_figure(
         said,
@@ -193,11 +192,10 @@ def power(curve: PowerCurve) -> Figure:
 def precision(found: PlannedPrecision) -> Figure:
     """Share of studies that are precise enough against the number of people."""
     curve = found.curve
-    wanted = f"± {100 * found.precision:g} %" if found.measure in PARTS else ""
-    wanted = wanted or f"± {found.precision:g}"
-    said = f"{curve.needed} people give the {found.measure} within {wanted}"
-    if curve.needed is None:
-        said = f"{int(curve.participants[-1])} people do not give the {found.measure} to {wanted}"
+    wanted = (
+        f"± {100 * found.precision:g} %" if found.measure in PARTS else f"± {found.precision:g}"
+    )
+    said = people_needed(curve, f"give the {found.measure} within {wanted}")
     figure = style.new_figure(
         f"{said} in {100 * curve.target:g} % of studies",
         f"simulated studies, {curve.studies} per size; bars are 95 % Clopper–Pearson bounds of the "

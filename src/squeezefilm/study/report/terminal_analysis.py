@@ -12,6 +12,7 @@ from squeezefilm.study.report.page import evidence_rows, evidence_said, remarks
 from squeezefilm.study.report.words import (
     SCREENING_HEAD,
     key_rows,
+    people_needed,
     read_first,
     screening_rows,
     whose,
@@ -56,10 +57,7 @@ def show_power(power: PlannedPower) -> None:
     heading(console, f"{power.first} against {power.second}{where}, SIMULATED")
     head = ("people", "studies that find it", "95 % bounds of the simulation")
     table(console, head, _by_size(curve), fixed=(0,))
-    if curve.needed is None:
-        console.print(f"{curve.participants[-1]} people do not reach {100 * curve.target:.0f} %.")
-    else:
-        console.print(f"{curve.needed} people reach {100 * curve.target:.0f} % power.")
+    console.print(f"{people_needed(curve, f'reach {100 * curve.target:.0f} % power')}.")
     console.print(
         f"{sides} test over people at {curve.alpha:g}; the pool's own {own} is "
         f"{power.difference:.3g} (0 for nothing); {_rests_on(power, curve.studies)}",
@@ -77,11 +75,8 @@ def show_precision(precision: PlannedPrecision) -> None:
     held = [f"{100 * share:.0f} %" for share in precision.held]
     rows = [(*row, share) for row, share in zip(_by_size(curve), held, strict=True)]
     table(console, head, rows, fixed=(0,))
-    target = f"{100 * curve.target:.0f} % of the studies"
-    if curve.needed is None:
-        console.print(f"{curve.participants[-1]} people do not give it in {target}.")
-    else:
-        console.print(f"{curve.needed} people give it in {target}.")
+    reach = f"give it in {100 * curve.target:.0f} % of the studies"
+    console.print(f"{people_needed(curve, reach)}.")
     # Beyond what so many studies scatter.
     scatter = 2 * (0.95 * 0.05 / curve.studies) ** 0.5
     short = curve.participants[precision.held < 0.95 - scatter]

@@ -13,6 +13,7 @@ from squeezefilm.study.tasks.findings import EQUALITY, PARTS, TaskAnalysis
 if TYPE_CHECKING:
     from squeezefilm.study.identification.analysis import IdentificationAnalysis
     from squeezefilm.study.identification.condition_means import Course
+    from squeezefilm.study.identification.power import PowerCurve
     from squeezefilm.study.identification.screening import Screening
     from squeezefilm.study.identification.sensitivity import OrderedSensitivity
     from squeezefilm.study.psychometric.estimate import Estimate
@@ -269,11 +270,7 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
     carried, fit = analysis.information, analysis.sensitivity
     rows = [
         *(
-            (
-                "Proportion correct",
-                f"{100 * analysis.proportion_correct:.3g} %",
-                between(interval, 100, " %"),
-            )
+            ("Proportion correct", *_value_and_interval(interval, 100.0, " %"))
             for interval in analysis.intervals
         ),
         ("Guessing", f"{100 * analysis.matrix.chance:.3g} %", ""),
@@ -306,6 +303,13 @@ def _identification_rows(analysis: IdentificationAnalysis) -> Rows:
             )
         ]
     return rows
+
+
+def people_needed(curve: PowerCurve, reach: str) -> str:
+    """Words like "12 people reach 80 % power", or that the most who were tried do not."""
+    if curve.needed is None:
+        return f"{curve.participants[-1]} people do not {reach}"
+    return f"{curve.needed} people {reach}"
 
 
 def model_fit(fit: OrderedSensitivity) -> str:

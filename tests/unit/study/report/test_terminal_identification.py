@@ -90,4 +90,4 @@ def test_heads_of_power_are_not_broken_on_a_narrow_terminal() -> None:
 
 
 def test_too_few_people_are_told() -> None:
-    assert printed(lambda: show_power(power(None)))[5] == "8 people do not reach 80 %."
+    assert printed(lambda: show_power(power(None)))[5] == "8 people do not reach 80 % power."
