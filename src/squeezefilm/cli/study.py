@@ -265,14 +265,14 @@ def gratings(
     """Write what a workshop needs to make the real gratings that a study compares with: drawing,
     DXF, widths with tolerances, and what the design calls period."""
     from squeezefilm.study.design.study_design import load_design
-    from squeezefilm.study.report.boards import HEAD, board_rows, boards, write_boards
+    from squeezefilm.study.report.boards import board_rows, boards, write_boards
     from squeezefilm.study.report.terminal import show_boards
 
     found = load_design(design)
     within = read_option(tolerance, "tolerance", "m")
     page = write_boards(found, out, within)
     made = boards(found)
-    show_boards(HEAD, board_rows(made, within), [difference.says for difference in made])
+    show_boards(*board_rows(made, within), [difference.says for difference in made])
     typer.echo(f"page: {page}")
 
 

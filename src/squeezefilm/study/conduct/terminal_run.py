@@ -22,7 +22,6 @@ from squeezefilm.core.results import write_whole
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.stimuli import Stimulus
-from squeezefilm.physics.render.motion.stroke import FingerPath
 from squeezefilm.study.conduct.again import COUNTED, why_begun_again
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, Response, StudyRun
 from squeezefilm.study.conduct.sessions import (
@@ -194,18 +193,15 @@ def _sitting(conditions: Path | None, consent: bool) -> SessionConditions:
     return sitting
 
 
-def _free_path(display: Display) -> FingerPath:
-    """Path by which the hand of a twin explores freely: as a median simulated person would."""
+def _free_path(display: Display, file: Path) -> str:
+    """The file, written with the path by which the hand of a twin explores freely: as a median
+    simulated person would."""
     from squeezefilm.study.simulated.chain_tables import free_path
 
     observer = load_observer()
-    return free_path(display, observer, observer.median_finger())
-
-
-def _written(path: FingerPath, file: Path) -> Path:
-    table = Table({"time_s": path.time, "x_m": path.x, "y_m": path.y})
-    write_whole(file, csv_text(table))
-    return file
+    path = free_path(display, observer, observer.median_finger())
+    write_whole(file, csv_text(Table({"time_s": path.time, "x_m": path.x, "y_m": path.y})))
+    return str(file)
 
 
 def _device(
@@ -232,7 +228,7 @@ def _device(
     stroke = EXPLORING
     if drive == "twin" and store.design.exploring == "free":
         folder = closing.enter_context(tempfile.TemporaryDirectory())
-        stroke = str(_written(_free_path(loaded), Path(folder) / "hand.csv"))
+        stroke = _free_path(loaded, Path(folder) / "hand.csv")
     orders = WorkerOrders(
         display, drive, store.traces, amplitude_per_pickup=amplitude_per_pickup, stroke=stroke
     )

@@ -26,7 +26,7 @@ from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import M, printable, shown
 from squeezefilm.core.kit.page_style import bullets, links, page, section, stamped, text_table
 from squeezefilm.core.kit.sheet import sheet_figure
-from squeezefilm.core.results import stamp, to_json
+from squeezefilm.core.results import stamp
 from squeezefilm.physics.perception.stimuli import Grating
 from squeezefilm.study.design.study_design import StudyDesign
 
@@ -136,7 +136,7 @@ def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERA
         title,
         "for a workshop; lengths in millimetres in the DXF",
         section("What the study calls its lengths", bullets(board.says for board in found))
-        + section("The boards", _table(found, tolerance))
+        + section("The boards", text_table(_CAPTION, *board_rows(found, tolerance)))
         + section("The boards, to scale", f'<figure class="scroll" tabindex="0">{picture}</figure>')
         + section("Files", f"<p>{links(name for name in files if name != 'boards.png')}</p>"),
         stamped(numbers["provenance"], "SHA-256 of the design") + ".",  # type: ignore[arg-type] # made above
@@ -150,30 +150,31 @@ def _numbers(board: Board) -> dict[str, object]:
     return {
         "name": grating.name,
         "length_means": grating.period_means,
-        **to_json(
-            {
-                "spatial_period_m": grating.period,
-                "ridge_width_m": board.ridge_width,
-                "groove_width_m": board.groove_width,
-                "ridge_height_m": grating.ridge_height,
-                "length_m": grating.length,
-                "width_m": grating.width,
-                "ridges": board.ridges,
-                "last_ridge_width_m": float(board.end[-1] - board.begin[-1]),
-            }
-        ),
+        "spatial_period_m": grating.period,
+        "ridge_width_m": board.ridge_width,
+        "groove_width_m": board.groove_width,
+        "ridge_height_m": grating.ridge_height,
+        "length_m": grating.length,
+        "width_m": grating.width,
+        "ridges": board.ridges,
+        "last_ridge_width_m": float(board.end[-1] - board.begin[-1]),
         "material": grating.material,
     }
 
 
-HEAD = ("Board", "Period", "Ridge", "Groove", "Ridges", "Ridge height", "Board size", "Material")
-"""Head of `board_rows`."""
+_HEAD = ("Board", "Period", "Ridge", "Groove", "Ridges", "Ridge height", "Board size", "Material")
+_CAPTION = (
+    "Widths along the stroke. Errors of single ridges must not add up: the place of each is from "
+    "the board's end, within the same tolerance. The tolerance is assumed unless asked for."
+)
 
 
-def board_rows(all_boards: tuple[Board, ...], tolerance: si.Metre) -> list[tuple[str, ...]]:
-    """Rows of what is to be made, as texts."""
+def board_rows(
+    all_boards: tuple[Board, ...], tolerance: si.Metre
+) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Head and rows of what is to be made, as texts."""
     within = f"± {shown(tolerance, M, 2)}"
-    return [
+    return _HEAD, [
         (
             board.grating.name,
             shown(board.grating.period, M, 4),
@@ -186,15 +187,6 @@ def board_rows(all_boards: tuple[Board, ...], tolerance: si.Metre) -> list[tuple
         )
         for board in all_boards
     ]
-
-
-def _table(every: tuple[Board, ...], tolerance: si.Metre) -> str:
-    caption = (
-        "Widths along the stroke. Errors of single ridges must not add up: the place of each is "
-        "from the board's end, within the same tolerance. The tolerance is assumed unless asked "
-        "for."
-    )
-    return text_table(caption, HEAD, board_rows(every, tolerance))
 
 
 def drawing_of(found: tuple[Board, ...]) -> Drawing:

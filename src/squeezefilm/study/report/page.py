@@ -101,10 +101,9 @@ def write_overview(
     """Write a page per display, each in its own folder, and one to read first above them, with
     `more` sections (HTML) below; of simulated participants `named` is the study."""
     folder, places = require_folder(folder), _folders_of(analyses)
-    for place, analysis in zip(places, analyses.values(), strict=True):
-        write_study(analysis, folder / place, progress=progress)
     sections, name, origin = "", named, "simulated"
     for place, (display, analysis) in zip(places, analyses.items(), strict=True):
+        write_study(analysis, folder / place, progress=progress)
         name, origin = analysis.name.removesuffix(f", {display}"), analysis.origin
         link = f'<p><a href="{escape(place)}/index.html">All numbers and figures</a></p>'
         sections += section(escape(printable(display)), bullets(read_first(analysis)) + link)
@@ -192,39 +191,33 @@ def _screening(analysis: StudyAnalysis) -> str:
 def _worked(analysis: StudyAnalysis) -> str:
     """Section on exploration, and the methods section."""
     found = ""
-    if head := _exploration_head(analysis):
+    if any(analysis.exploration.values()):
         caption = "Means over people by stimulus; in brackets the t interval over people"
-        found += section(
-            "Exploration in numbers", text_table(caption, head, exploration_rows(analysis))
-        )
+        table = text_table(caption, *exploration_rows(analysis))
+        found += section("Exploration in numbers", table)
     if analysis.methods:
         found += section("Methods, for a paper", f"<p>{as_html(analysis.methods)}</p>")
     return found
 
 
-def _exploration_head(analysis: StudyAnalysis) -> tuple[str, ...]:
-    """Head of `exploration_rows`; empty where no path was kept."""
-    known = [key for key, rows in analysis.exploration.items() if rows]
-    return ("Stimulus", *map(_key_words, known)) if known else ()
-
-
-def exploration_rows(analysis: StudyAnalysis) -> list[tuple[str, ...]]:
-    """Exploration of each stimulus: means over people with their intervals."""
-    known = [rows for rows in analysis.exploration.values() if rows]
-    names = list(dict.fromkeys(row.name for rows in known for row in rows))
+def exploration_rows(
+    analysis: StudyAnalysis,
+) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+    """Head and rows of the exploration of each stimulus: means over people with their intervals."""
+    known = {key: rows for key, rows in analysis.exploration.items() if rows}
+    names = dict.fromkeys(row.name for rows in known.values() for row in rows)
     found = []
     for name in names:
         cells = []
-        for rows in known:
-            mine = [row for row in rows if row.name == name]
-            if not mine:
+        for rows in known.values():
+            row = next((row for row in rows if row.name == name), None)
+            if row is None:
                 cells.append("–")
                 continue
-            first = mine[0]
-            bounds = "" if math.isnan(first.low) else f" ({first.low:.3g} to {first.high:.3g})"
-            cells.append(f"{first.mean:.3g}{bounds}")
+            bounds = "" if math.isnan(row.low) else f" ({row.low:.3g} to {row.high:.3g})"
+            cells.append(f"{row.mean:.3g}{bounds}")
         found.append((name, *cells))
-    return found
+    return ("Stimulus", *map(_key_words, known)), found
 
 
 def _key_words(key: str) -> str:

@@ -21,7 +21,9 @@ def test_each_stimulus_has_its_own_means_in_the_order_of_the_quantities() -> Non
             "speed_m_s": (mean("b", 0.08), mean("c", 0.05, 0.04, 0.07)),
         }
     )
-    assert exploration_rows(analysis) == [
+    head, rows = exploration_rows(analysis)
+    assert head == ("Stimulus", "duration (s)", "speed m (s)")
+    assert rows == [
         ("a", "2.35 (2 to 3)", "–"),
         ("b", "4 (3.5 to 4.57)", "0.08"),
         ("c", "–", "0.05 (0.04 to 0.07)"),
