@@ -11,7 +11,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import shown
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.design.tasks.task import JUDGED
-from squeezefilm.study.report.words import estimate_words, scale_of
+from squeezefilm.study.report.words import TextTable, estimate_words, scale_of
 from squeezefilm.study.tasks.findings import TaskAnalysis
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 
 
-def confusion_rows(matrix: ConfusionMatrix) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+def confusion_rows(matrix: ConfusionMatrix) -> TextTable:
     """Head and rows of a confusion matrix, as texts: shares of a column, with their trials."""
     rows = [
         (

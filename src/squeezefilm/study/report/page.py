@@ -30,7 +30,7 @@ from squeezefilm.study.report import figures as draw
 from squeezefilm.study.report import task_figures
 from squeezefilm.study.report.answer_tables import answer_parts, confusion_rows
 from squeezefilm.study.report.words import (
-    SCREENING_HEAD,
+    TextTable,
     key_rows,
     read_first,
     screening_rows,
@@ -184,8 +184,7 @@ def _screening(analysis: StudyAnalysis) -> str:
         "z is near a standard normal deviate for somebody who guesses, and below 0 for answers "
         "that are mixed up"
     )
-    rows = screening_rows(analysis.screening)
-    return section("Who does the task", text_table(caption, SCREENING_HEAD, rows))
+    return section("Who does the task", text_table(caption, *screening_rows(analysis.screening)))
 
 
 def _worked(analysis: StudyAnalysis) -> str:
@@ -200,9 +199,7 @@ def _worked(analysis: StudyAnalysis) -> str:
     return found
 
 
-def exploration_rows(
-    analysis: StudyAnalysis,
-) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+def exploration_rows(analysis: StudyAnalysis) -> TextTable:
     """Head and rows of the exploration of each stimulus: means over people with their intervals."""
     known = {key: rows for key, rows in analysis.exploration.items() if rows}
     names = dict.fromkeys(row.name for rows in known.values() for row in rows)
@@ -313,7 +310,7 @@ def evidence_said(tables: ChainTables) -> str:
     )
 
 
-def evidence_rows(tables: ChainTables, index: int) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
+def evidence_rows(tables: ChainTables, index: int) -> TextTable:
     """Head and rows of what is felt of each stimulus on a display: evidence and spatial period of
     its clearest rhythm; along x and along y where surfaces are explored freely."""
     felt = tables.virtual.d_prime[index, ..., 0], tables.virtual.period[index, ..., 0]

@@ -10,7 +10,6 @@ from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.study.report.answer_tables import answer_parts, confusion_rows
 from squeezefilm.study.report.page import evidence_rows, evidence_said, remarks
 from squeezefilm.study.report.words import (
-    SCREENING_HEAD,
     key_rows,
     people_needed,
     read_first,
@@ -41,8 +40,7 @@ def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
             if part.heading != "People" or len(part.rows) <= _SHOWN_PEOPLE:
                 table(console, part.head, part.rows, fixed=(0,))
         if analysis.screening is not None and analysis.screening.named:
-            rows = screening_rows(analysis.screening, named=True)
-            table(console, SCREENING_HEAD, rows, fixed=(0, 1))
+            table(console, *screening_rows(analysis.screening, named=True), fixed=(0, 1))
         table(console, ("", "", ""), key_rows(analysis), fixed=(0,))
         for note in analysis.notes:
             console.print(f"  {note}", style="dim", highlight=False)

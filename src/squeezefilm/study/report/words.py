@@ -19,6 +19,8 @@ if TYPE_CHECKING:
     from squeezefilm.study.psychometric.estimate import Estimate
     from squeezefilm.study.tasks.analyze import StudyAnalysis
 Rows = list[tuple[str, str, str]]
+TextTable = tuple[tuple[str, ...], list[tuple[str, ...]]]
+"""Head and rows of a table, as texts."""
 _SURE = 0.05
 
 
@@ -133,13 +135,9 @@ def _screening_first(screening: Screening) -> list[str]:
     return [*said, f"{count} {verbs[0]} not do the task ({names}), and {verbs[1]} {done}."]
 
 
-SCREENING_HEAD = ("Participant", "z", "Judged")
-"""Head of `screening_rows`."""
-
-
-def screening_rows(screening: Screening, named: bool = False) -> list[tuple[str, ...]]:
-    """Rows of everybody, judged; or those only who do not do the task."""
-    return [
+def screening_rows(screening: Screening, named: bool = False) -> TextTable:
+    """Everybody, judged; or those only who do not do the task."""
+    return ("Participant", "z", "Judged"), [
         (
             person.person,
             "–" if math.isnan(person.follows) else f"{person.follows:.1f}",
