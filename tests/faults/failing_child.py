@@ -21,7 +21,7 @@ from tests.faults.study_child import Device, Script, begin
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.instruments.session.record.trace import read_trace
 from squeezefilm.instruments.session.record.trace_file import TraceWriter
-from squeezefilm.lab.studying.studies import Studies
+from squeezefilm.lab.studying.studies import PrepareSitting, Studies
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.conduct.terminal_run import conduct
 from squeezefilm.study.design.study_design import StudyDesign
@@ -197,9 +197,15 @@ class Sitting(Job):
     def made(self, studies: Studies) -> str:
         """A new sitting."""
         (who,) = studies.store("one").participants()
-        text = "You may stop at any time."
-        found = studies.prepare("one", who["uuid"], "none", text, {}, False)
-        return str(found["sitting"])
+        asked = PrepareSitting(
+            id=1,
+            type="prepare sitting",
+            study="one",
+            participant=who["uuid"],
+            device="none",
+            consent="You may stop at any time.",
+        )
+        return str(studies.prepare(asked)["sitting"])
 
     def work(self) -> None:
         """Another, in the same lab and in a second one."""
