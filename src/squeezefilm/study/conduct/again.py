@@ -74,23 +74,22 @@ def _copied(write: sqlite3.Connection, trials: Sequence[Row]) -> list[str]:
     return copies
 
 
-def practise_again(write: sqlite3.Connection, design: StudyDesign, who: str, display: str) -> str:
+def practise_again(store: StudyStore, write: sqlite3.Connection, who: str, display: str) -> str:
     """Plan another round of practice where the last one was below the criterion. Returns what to
     say, an empty text where there is nothing. In a transaction that is open.
 
     A round that was not reached after `practice_rounds` is said, and the study goes on.
     """
+    design = store.design
     if not design.practice_criterion:
         return ""
     # Columns of the trial alone, and whether the answer was right.
-    cursor = write.execute(
+    rows = store.rows(
         "SELECT t.*, r.correct FROM trial t LEFT JOIN response r ON r.trial = t.uuid "
         f"WHERE t.participant = ? AND t.display = ? AND t.phase = 'practice' AND {COUNTED} "
         "ORDER BY t.number",
         [who, display],
     )
-    names = [column[0] for column in cursor.description]
-    rows = [dict(zip(names, row, strict=True)) for row in cursor]
     if any(row["correct"] is None for row in rows):
         return ""
     last = rows[-design.practice :]

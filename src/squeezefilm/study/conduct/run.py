@@ -207,12 +207,11 @@ class StudyRun:
         self, write: sqlite3.Connection, planned: Row, trial: Trial, response: Response
     ) -> str:
         """Plan a spoiled trial again, and practice that was not good enough."""
-        design = self._store.design
-        reason = spoiled_by(design, response.explorations) if trial.asks else ""
+        reason = spoiled_by(self._store.design, response.explorations) if trial.asks else ""
         if reason:
             set_aside(write, [planned], self.session["uuid"], reason)
         if trial.phase == "practice":
-            return practise_again(write, design, self.participant, trial.display)
+            return practise_again(self._store, write, self.participant, trial.display)
         return ""
 
     def presented(self, token: str) -> Presentation:

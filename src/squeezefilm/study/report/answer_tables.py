@@ -50,12 +50,11 @@ def answer_parts(analysis: StudyAnalysis) -> list[Part]:
         caption = "Per cent of each column; in brackets trials"
         return [Part("Confusions", caption, *confusion_rows(analysis.matrix))]
     of_people = f"{analysis.measure[:1].upper()}{analysis.measure[1:]} of each person"
-    parts = [Part("People", of_people, PERSON_HEAD, person_rows(analysis))]
-    if analysis.conditions:
-        caption = "Answers by stimulus; intervals as the numbers say"
-        head, rows = condition_head(analysis), condition_rows(analysis)
-        parts.insert(0, Part("Stimuli", caption, head, rows))
-    return parts
+    people = Part("People", of_people, *person_rows(analysis))
+    if not analysis.conditions:
+        return [people]
+    caption = "Answers by stimulus; intervals as the numbers say"
+    return [Part("Stimuli", caption, condition_head(analysis), condition_rows(analysis)), people]
 
 
 def condition_head(analysis: TaskAnalysis) -> tuple[str, ...]:
@@ -89,14 +88,10 @@ def condition_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
     return rows
 
 
-PERSON_HEAD = ("Participant", "Estimate", "Interval", "Trials", "Remark")
-"""Head of `person_rows`."""
-
-
-def person_rows(analysis: TaskAnalysis) -> list[tuple[str, ...]]:
+def person_rows(analysis: TaskAnalysis) -> TextTable:
     """Each person's Weber fraction, exponent or d′."""
     scale, unit = scale_of(analysis)
-    return [
+    return ("Participant", "Estimate", "Interval", "Trials", "Remark"), [
         (
             person.person,
             f"{scale * person.estimate.value:.3g}{unit}",

@@ -17,9 +17,10 @@ from squeezefilm.study.tasks.findings import TaskAnalysis
 def test_a_task_has_its_stimuli_and_people_and_no_confusions(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    for name in ("condition_head", "condition_rows", "person_rows"):
+    for name in ("condition_head", "condition_rows"):
         monkeypatch.setattr(answer_tables, name, lambda _, name=name: name)
-    people = {"title": "People", "head": answer_tables.PERSON_HEAD, "rows": "person_rows"}
+    monkeypatch.setattr(answer_tables, "person_rows", lambda _: ("head", "rows"))
+    people = {"title": "People", "head": "head", "rows": "rows"}
     alone = _tables("plate", made_result(TaskAnalysis, measure="d", conditions=()))
     assert alone == {"tables": [people], "confusion": None}
     both = _tables("plate", made_result(TaskAnalysis, measure="d", conditions=("4 mm",)))

@@ -238,7 +238,7 @@ def test_nothing_is_planned_twice_without_a_reason(tmp_path: Path) -> None:
     store, run = begun(tmp_path / "n.sqlite", gratings(1))
     with store.transaction() as write:
         set_aside(write, [], str(run.session["uuid"]), "nothing")
-        assert practise_again(write, store.design, run.participant, "biet2008-plate") == ""
+        assert practise_again(store, write, run.participant, "biet2008-plate") == ""
     assert store.rows("SELECT * FROM set_aside") == []
     assert spoiled_by(load_design("period-jnd"), ()) == ""
 
