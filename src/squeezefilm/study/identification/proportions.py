@@ -86,10 +86,10 @@ def recentred_interval(
         raise InputError("no resample gave a finite value; there is no interval")
     tail = (1 - level) / 2
     wide = expansion(participants, level) / float(stats.norm.isf(tail))
-    low, high = estimate + wide * (np.quantile(values, [tail, 1 - tail]) - values.mean())
+    ends = estimate + wide * (np.quantile(values, [tail, 1 - tail]) - values.mean())
     # An unbiased estimate may lie beyond what can be, and all resamples to one side of their mean.
-    low, high = holding(estimate, *np.clip([low, high], least, greatest))
-    return Estimate(estimate, float(low), float(high), level, "participant bootstrap, recentred")
+    low, high = np.clip(ends, least, greatest)
+    return holding(estimate, low, high, level, "participant bootstrap, recentred")
 
 
 Method = Literal["Wilson", "Jeffreys", "Clopper–Pearson"]
@@ -127,8 +127,7 @@ def proportion_interval(
     tail = (1 - level) / 2
     low = 0.0 if successes == 0 else float(posterior.ppf(tail))
     high = 1.0 if successes == trials else float(posterior.isf(tail))
-    ends = holding(share, low, high)
-    return Estimate(share, float(ends[0]), float(ends[1]), level, method)
+    return holding(share, low, high, level, method)
 
 
 def participant_interval(
@@ -152,8 +151,8 @@ def participant_interval(
     right = np.trace(pooled, axis1=1, axis2=2) / pooled.sum(axis=(1, 2))
     tail = float(stats.norm.sf(expansion(whole.shape[0], level)))
     correct = float(np.trace(whole.sum(axis=0)) / whole.sum())
-    low, high = holding(correct, *np.quantile(right, [tail, 1 - tail]))
-    return Estimate(correct, float(low), float(high), level, "participant bootstrap")
+    low, high = np.quantile(right, [tail, 1 - tail])
+    return holding(correct, low, high, level, "participant bootstrap")
 
 
 def permutation_test(

@@ -131,9 +131,8 @@ def sensitivity(
     h = _within(random.beta(hits + 0.5, signals - hits + 0.5, draws))
     f = _within(random.beta(false_alarms + 0.5, noises - false_alarms + 0.5, draws))
     values = np.array([of(float(a), float(b)) for a, b in zip(h, f, strict=True)])
-    ends = np.quantile(values, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
-    low, high = holding(point, *ends)
-    return Estimate(point, float(low), float(high), level, "Jeffreys, over trials")
+    low, high = np.quantile(values, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
+    return holding(point, low, high, level, "Jeffreys, over trials")
 
 
 def _within(rates: si.FloatArray) -> si.FloatArray:

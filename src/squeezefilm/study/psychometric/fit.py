@@ -179,9 +179,7 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
         fitted=fitted,
         level=level,
         posterior=posterior,
-        posterior_interval={
-            name: _opened(function, name, posterior.interval(name, level)) for name in fitted
-        },
+        posterior_interval={name: _opened(function, name, posterior, level) for name in fitted},
         deviance=max(2.0 * (saturated - likelihood), 0.0),
         bounded_by_prior=_bounded(prior, posterior),
         falling_p=falling_probability(answered.x, k, n),
@@ -210,10 +208,13 @@ def falling_probability(
     return float(ndtr(float(away @ (positive - trials * share)) / np.sqrt(spread)))
 
 
-def _opened(function: PsychometricFunction, name: str, interval: tuple[float, float]) -> Interval:
+def _opened(
+    function: PsychometricFunction, name: str, posterior: PsychometricPosterior, level: float
+) -> Interval:
     """The interval of a parameter of a function, opened to its value there."""
-    low, high = holding(getattr(function, name), *interval)
-    return Interval(float(low), float(high))
+    interval = posterior.interval(name, level)
+    opened = holding(getattr(function, name), *interval, level, "posterior")
+    return Interval(opened.low, opened.high)
 
 
 def _likeliest(answered: Answered) -> si.FloatArray:

@@ -22,7 +22,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.physics.display import load_display
 from squeezefilm.study.identification.power import PowerCurve, above_0, curve_of, sizes_of
-from squeezefilm.study.psychometric.estimate import t_interval
+from squeezefilm.study.psychometric.estimate import Estimate, t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import chain_tables
 from squeezefilm.study.simulated.planned_power import (
@@ -31,7 +31,7 @@ from squeezefilm.study.simulated.planned_power import (
     PlannedStudies,
     on_one_display,
 )
-from squeezefilm.study.tasks.findings import PARTS
+from squeezefilm.study.tasks.findings import PARTS, through
 from squeezefilm.study.tasks.measures import measured
 from squeezefilm.study.tasks.thresholds import on_grid
 
@@ -41,8 +41,7 @@ PEOPLE = 400
 _TRUTHS: Kept[tuple[str, float]] = Kept("simulated-truths", tuple[str, float])
 _SHARES: Kept[tuple[float, float]] = Kept("simulated-shares", tuple[float, float])
 
-Ends = tuple[float, float, float]
-Interval = Callable[[si.IntArray], Ends]
+Interval = Callable[[si.IntArray], Estimate]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -99,25 +98,24 @@ def planned_precision(asked: PrecisionAsked) -> PlannedPrecision:
     def fitted() -> tuple[str, Interval]:
         return interval_of(asked.answers(tables, people), asked.tell)
 
-    def interval(who: si.IntArray) -> Ends:
+    def interval(who: si.IntArray) -> Estimate:
         return fitted()[1](who)
 
     of_people = f"{tables.asked} {people} {asked.seed}"
     measure, truth = _TRUTHS.found(
-        of_people, lambda: (fitted()[0], float(interval(np.arange(people))[0]))
+        of_people, lambda: (fitted()[0], interval(np.arange(people)).value)
     )
 
-    def precise(ends: Ends) -> bool:
-        _, low, high = ends
+    def precise(found: Estimate) -> bool:
         if measure in PARTS:
-            return low > 0 and math.sqrt(high / low) - 1.0 <= precision
-        return 0.5 * (high - low) <= precision
+            return found.low > 0 and math.sqrt(found.high / found.low) - 1.0 <= precision
+        return 0.5 * (found.high - found.low) <= precision
 
     def shares(size: int) -> tuple[float, float]:
         random = np.random.default_rng([asked.seed, size])
         each = [interval(random.integers(0, people, size)) for _ in range(studies)]
-        holds = [low <= truth <= high for _, low, high in each]
-        return float(np.mean([precise(ends) for ends in each])), float(np.mean(holds))
+        holds = [truth in found for found in each]
+        return float(np.mean([precise(found) for found in each])), float(np.mean(holds))
 
     counts, held = [], []
     for size in sizes:
@@ -144,20 +142,10 @@ def interval_of(answers: Answers, tell: Callable[[str], None]) -> tuple[str, Int
     design, in_runs = main.design, any(series.in_runs for series in main.design.adaptive)
     tell("each person's fit")
     if design.described.model and design.on_a_scale and not in_runs:
-        people = on_grid(main)
-
-        def fraction(who: si.IntArray) -> Ends:
-            found = people.population.estimate(0.95, who)
-            return math.exp(found.mean), math.exp(found.low), math.exp(found.high)
-
-        return design.measure, fraction
+        population = on_grid(main).population
+        return design.measure, lambda who: through(population.estimate(0.95, who)[0], math.exp)
     measure, values = person_values(main)
-
-    def mean(who: si.IntArray) -> Ends:
-        found = t_interval(values[who], 0.95)
-        return found.value, found.low, found.high
-
-    return measure, mean
+    return measure, lambda who: t_interval(values[who], 0.95)
 
 
 def person_values(main: Answers) -> tuple[str, si.FloatArray]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -18,7 +17,6 @@ from squeezefilm.study.identification.condition_means import (
 )
 from squeezefilm.study.identification.screening import Screening
 from squeezefilm.study.psychometric.estimate import Estimate
-from squeezefilm.study.tasks.population import PopulationEstimate
 
 EQUALITY = "point of equality"
 """Measure of adjustments and of limits about a reference: a difference from it."""
@@ -174,11 +172,3 @@ def through(estimate: Estimate, rising: Callable[[float], float]) -> Estimate:
     """An estimate on another scale, by a rising function of it."""
     value, low, high = (rising(end) for end in (estimate.value, estimate.low, estimate.high))
     return Estimate(value, low, high, estimate.level, estimate.method)
-
-
-def of_population(found: PopulationEstimate, method: str) -> tuple[Estimate, Estimate]:
-    """A population of logarithms as a typical person's value, and the spread of the logarithm."""
-    mean = Estimate(found.mean, found.low, found.high, found.level, method)
-    how = "Q profile, over people"
-    spread = Estimate(found.spread, found.spread_low, found.spread_high, found.level, how)
-    return through(mean, math.exp), spread

@@ -7,10 +7,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy import stats
 from scipy.stats import mstats
 
-from squeezefilm.study.psychometric.estimate import Estimate
+from squeezefilm.study.psychometric.estimate import Estimate, student
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.by_condition import (
     MEASURE,
@@ -22,7 +21,7 @@ from squeezefilm.study.tasks.findings import (
     ConditionFinding,
     PersonEstimate,
     PersonFunction,
-    of_population,
+    through,
 )
 from squeezefilm.study.tasks.scales import (
     exponents,
@@ -34,7 +33,6 @@ from squeezefilm.study.tasks.scales import (
 from squeezefilm.study.tasks.thresholds import of_settings, on_grid, settings_of
 
 Tell = Callable[[str], None]
-_POPULATION = "posterior, mixed model"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,10 +74,9 @@ def _trimmed(persons: Sequence[PersonEstimate], level: float) -> Estimate | None
         return None
     kept = values.size - 2 * cut
     error = float(mstats.winsorize(values, (cut / values.size,) * 2).std(ddof=1))
-    reach = float(stats.t.isf((1 - level) / 2, kept - 1)) * error * math.sqrt(values.size - 1)
-    reach /= math.sqrt(kept * (kept - 1.0))
+    error *= math.sqrt((values.size - 1) / (kept * (kept - 1.0)))
     mean = float(values[cut : values.size - cut].mean())
-    return Estimate(mean, mean - reach, mean + reach, level, "trimmed by a fifth at either end")
+    return student(mean, error, kept - 1, level, "trimmed by a fifth at either end")
 
 
 def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
@@ -92,9 +89,8 @@ def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> Measur
     pooled, spread, robust = persons[0].estimate, None, None
     if len(persons) > 1:
         population = people.population
-        pooled, spread = of_population(population.estimate(level), _POPULATION)
-        low, middle, high = (math.exp(end) for end in population.robust(level))
-        robust = Estimate(middle, low, high, level, "posterior, some do not do the task")
+        mean, spread = population.estimate(level)
+        pooled, robust = through(mean, math.exp), through(population.robust(level), math.exp)
         # Answers at random go into a criterion where there is one.
         criterion = main.model.criterion
         notes += [note for note in [population.lapse_note] if note and not criterion]

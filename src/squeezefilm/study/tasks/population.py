@@ -24,14 +24,15 @@ answers of all say which h.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import chdtri
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
+from squeezefilm.study.psychometric.estimate import Estimate, holding
 
 _MEANS, _SPREADS = 161, 41
 _WIDEST = 2.0
@@ -58,24 +59,6 @@ def lapse_weights() -> si.DimensionlessArray:
     below = np.array([1.0 - (1.0 - _EDGES) ** (1.0 / h - 1.0) for h in MEAN_LAPSES])
     weights = np.diff(below, axis=1)
     return np.asarray(weights / weights.sum(axis=1, keepdims=True))
-
-
-@dataclass(frozen=True, slots=True)
-class PopulationEstimate:
-    """Mean and spread over people of a quantity, in the unit of x.
-
-    `mean` is the posterior's median of μ with a central credible interval. `spread` is that of τ,
-    between the ends of what the scatter of the people does not refuse; all NaN for one person.
-    """
-
-    mean: float
-    low: float
-    high: float
-    spread: float
-    spread_low: float
-    spread_high: float
-    level: si.Dimensionless
-    participants: int
 
 
 class Population:
@@ -155,27 +138,28 @@ class Population:
 
     def estimate(
         self, level: si.Dimensionless = 0.95, people: si.IntArray | None = None
-    ) -> PopulationEstimate:
-        """Mean and spread over people, of all or of those of the numbers `people`.
+    ) -> tuple[Estimate, Estimate]:
+        """Mean and spread over people in the unit of x, of all or of those of the numbers `people`:
+        the posterior's median of μ with a central credible interval, and that of τ between the ends
+        of what the scatter of the people does not refuse.
 
-        With one person the interval of μ is wide, and τ is not known.
+        With one person the interval of μ is wide, and τ is not known: NaN.
         Raises `InputError` for a level not between 0 and 1.
         """
         si.require("level", level, above=0.0, below=1.0)
         logs = self._logs if people is None else self._logs[people]
         total = logs.sum(axis=0)
-        low, mean, high = self._mean(total, level)
+        mean = self._mean(total, level, "posterior, mixed model")
         weight = np.exp(total - total.max()).sum(axis=(0, 2)) * self._widths
         _, spread, _ = _quantiles(self._edges, weight, (0.0, 0.5, 1.0))
         lapses = np.einsum("msl,s->l", np.exp(total - total.max()), self._widths)
         chosen = range(self.size) if people is None else people
         moments = np.array([self._moments(person, lapses) for person in chosen])
-        _, least, most = scatter_interval(moments[:, 0], moments[:, 1], level)
+        scatter = scatter_interval(moments[:, 0], moments[:, 1], level)
         if logs.shape[0] == 1:
-            spread = least = most = float("nan")
+            return mean, Estimate(math.nan, math.nan, math.nan, level, scatter.method)
         # People who are more alike than chance makes them refuse every spread.
-        least, most = min(least, spread), max(most, spread)
-        return PopulationEstimate(mean, low, high, spread, least, most, level, logs.shape[0])
+        return mean, holding(spread, scatter.low, scatter.high, level, scatter.method)
 
     def _moments(self, person: int, lapses: si.FloatArray) -> tuple[float, float]:
         """Mean and variance of x as a likelihood has them, under weights of mean lapse rates."""
@@ -184,9 +168,9 @@ class Population:
         mean = float(density @ self._x)
         return mean, float(density @ (self._x - mean) ** 2)
 
-    def robust(self, level: si.Dimensionless = 0.95) -> tuple[float, float, float]:
-        """Lower end, median and upper end of the mean over people who do the task, where each may
-        be one of the `NOT_DOING_IT` who do not: a mixture in place of a verdict."""
+    def robust(self, level: si.Dimensionless = 0.95) -> Estimate:
+        """The mean over people who do the task, where each may be one of the `NOT_DOING_IT` who do
+        not: a mixture in place of a verdict."""
         si.require("level", level, above=0.0, below=1.0)
         greatest = [(likelihood * self._width).max() for likelihood in self._people]
         other = np.array(self._otherwise) / np.array(greatest)
@@ -194,21 +178,22 @@ class Population:
         with np.errstate(divide="ignore"):
             otherwise = np.log(NOT_DOING_IT * other * np.sqrt(2 * np.pi))
         mixed = np.logaddexp(np.log(1 - NOT_DOING_IT) + self._logs, otherwise[:, None, None, None])
-        return self._mean(mixed.sum(axis=0), level)
+        return self._mean(mixed.sum(axis=0), level, "posterior, some do not do the task")
 
-    def _mean(self, total: si.FloatArray, level: float) -> tuple[float, float, float]:
-        """Ends and median of μ from the logarithm of a likelihood of all people."""
+    def _mean(self, total: si.FloatArray, level: float, method: str) -> Estimate:
+        """Median of μ with its interval from the logarithm of a likelihood of all people."""
         weight = np.exp(total - total.max()).sum(axis=2) @ self._widths
         step = self._means[1] - self._means[0]
         edges = np.append(self._means - step / 2, self._means[-1] + step / 2)
-        return _quantiles(edges, weight, (0.5 * (1.0 - level), 0.5, 0.5 * (1.0 + level)))
+        tails = 0.5 * (1.0 - level), 0.5 * (1.0 + level)
+        return Estimate(*_quantiles(edges, weight, (0.5, *tails)), level, method)
 
 
 def scatter_interval(
     values: si.FloatArray, variances: si.FloatArray, level: si.Dimensionless = 0.95
-) -> tuple[float, float, float]:
+) -> Estimate:
     """The deviation of normal people that makes their scatter what is expected (Paule and Mandel
-    1982), and the ends of those that it does not refuse (the Q profile: Viechtbauer 2007,
+    1982), between the ends of those that it does not refuse (the Q profile: Viechtbauer 2007,
     10.1002/sim.2514).
 
     `values` are estimates of two people or more, `variances` of their errors, both (people,) and
@@ -221,7 +206,8 @@ def scatter_interval(
     tails = float(chdtri(free, 0.5 * (1.0 - level))), float(chdtri(free, 0.5 * (1.0 + level)))
     # Scatter falls with the deviation.
     middle, least, most = np.interp([-float(free), *(-tail for tail in tails)], -scatter, _TRIED)
-    return float(middle), float(least), float(most)
+    how = "Q profile, over people"
+    return Estimate(float(middle), float(least), float(most), level, how)
 
 
 def _quantiles(

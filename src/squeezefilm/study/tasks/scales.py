@@ -22,7 +22,7 @@ from scipy.special import softmax
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.proportions import proportion_interval
-from squeezefilm.study.psychometric.estimate import Estimate, t_interval
+from squeezefilm.study.psychometric.estimate import Estimate, student, t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import ConditionFinding, PersonEstimate, through
 from squeezefilm.study.tasks.population import scatter_interval
@@ -103,13 +103,13 @@ def strengths(
         covariance = covariance @ (sums.T @ sums) @ covariance * (free + 1) / free
     from_mean = np.eye(size) - 1 / size
     logs, covariance = from_mean @ logs, from_mean @ covariance @ from_mean
-    reach = float(stats.t.isf((1 - level) / 2, free)) * np.sqrt(np.diag(covariance))
+    errors = np.sqrt(np.diag(covariance))
     findings = []
     for k, surface in enumerate(shown.tolist()):
         here = (order == k).any(axis=0)
         wins, pairs = int(before[k].sum()), int(before[k].sum() + before[:, k].sum())
         share = proportion_interval(wins, pairs, level)
-        ln_strength = Estimate(logs[k], logs[k] - reach[k], logs[k] + reach[k], level, how)
+        ln_strength = student(logs[k], errors[k], free, level, how)
         findings.append(
             ConditionFinding(
                 main.surfaces[surface].name,
@@ -145,8 +145,8 @@ def rank_exponents(main: Answers, level: si.Dimensionless) -> list[PersonEstimat
         steps = np.diff(levels[order], axis=0)
         sure = bool((steps <= 0).all() or (steps >= 0).all())
         (value,), _, information = fitted(order, levels[:, None], sure)
-        reach = float(stats.norm.isf((1 - level) / 2)) / math.sqrt(float(information[0, 0]))
-        estimate = Estimate(value, value - reach, value + reach, level, "Fisher, own orders")
+        error = 1.0 / math.sqrt(float(information[0, 0]))
+        estimate = student(value, error, math.inf, level, "Fisher, own orders")
         persons.append(PersonEstimate(main.people[person], estimate, order.shape[1], sure))
     return persons
 
@@ -164,13 +164,10 @@ def exponents(
     for person in people:
         mine = main.participant == person
         x, y = np.log(main.values[main.presented[0][mine]]), np.log(main.estimate[mine])
-        dx = x - x.mean()
-        if not np.any(dx) or x.size < 3:
+        if x.size < 3 or np.ptp(x) == 0:
             continue
-        slope = float(dx @ y / (dx @ dx))
-        residual = float(np.sum((y - y.mean() - slope * dx) ** 2)) / (x.size - 2)
-        reach = float(stats.t.isf((1 - level) / 2, x.size - 2)) * math.sqrt(residual / (dx @ dx))
-        estimate = Estimate(slope, slope - reach, slope + reach, level, "t, own line")
+        line = stats.linregress(x, y)
+        estimate = student(line.slope, line.stderr, x.size - 2, level, "t, own line")
         persons.append(PersonEstimate(main.people[person], estimate, x.size, False))
     return persons, *of_exponents(persons, level)
 
@@ -186,8 +183,7 @@ def of_exponents(
     slopes = np.array([estimate.value for estimate in own])
     sure = float(stats.norm.isf((1 - level) / 2))
     errors = np.array([(estimate.high - estimate.low) / (2 * sure) for estimate in own])
-    spread = Estimate(*scatter_interval(slopes, errors**2, level), level, "Q profile, over people")
-    return t_interval(slopes, level), spread
+    return t_interval(slopes, level), scatter_interval(slopes, errors**2, level)
 
 
 def magnitude_conditions(

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import stats
 from scipy.special import betaln, ndtr
 
 from squeezefilm.core import quantities as si
@@ -24,7 +23,7 @@ from squeezefilm.study.adaptive.series import adaptive_method
 from squeezefilm.study.adaptive.staircase import Ending, Runs
 from squeezefilm.study.design.tasks.task import DifferenceModel
 from squeezefilm.study.design.tasks.two_surfaces import QUARTILE
-from squeezefilm.study.psychometric.estimate import Estimate, t_interval
+from squeezefilm.study.psychometric.estimate import Estimate, student, t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import (
     EQUALITY,
@@ -240,16 +239,11 @@ def _own(sides: list[si.FloatArray], level: float) -> tuple[Estimate, float]:
     free = sum(some.size - 1 for some in sides)
     if free < 1:
         ends = np.concatenate(sides)
-        own = t_interval(ends, level)
-        return Estimate(own.value, own.low, own.high, level, "t, over runs"), float(
-            ends.std(ddof=1)
-        )
+        return t_interval(ends, level, "t, over runs"), float(ends.std(ddof=1))
     value = float(np.mean([some.mean() for some in sides]))
     variance = sum(float(((some - some.mean()) ** 2).sum()) for some in sides) / free
     error = math.sqrt(variance * sum(1 / some.size for some in sides)) / len(sides)
-    reach = float(stats.t.isf((1 - level) / 2, free)) * error
-    own = Estimate(value, value - reach, value + reach, level, "t, over runs")
-    return own, math.sqrt(variance)
+    return student(value, error, free, level, "t, over runs"), math.sqrt(variance)
 
 
 def of_settings(

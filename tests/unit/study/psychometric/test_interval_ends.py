@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
+import pytest
 
 from squeezefilm.study.psychometric.estimate import holding
 
 
-def test_an_interval_is_opened_only_where_the_estimate_lies_outside() -> None:
-    low, high = holding(np.array([0.5, 2.0, 4.0]), 1.0, 3.0)
-    assert low.tolist() == [0.5, 1.0, 1.0]
-    assert high.tolist() == [3.0, 3.0, 4.0]
+@pytest.mark.parametrize(
+    ("estimate", "low", "high"), [(0.5, 0.5, 3.0), (2.0, 1.0, 3.0), (4.0, 1.0, 4.0)]
+)
+def test_an_interval_is_opened_only_where_the_estimate_lies_outside(
+    estimate: float, low: float, high: float
+) -> None:
+    found = holding(estimate, 1.0, 3.0, 0.95, "by hand")
+    assert (found.value, found.low, found.high) == (estimate, low, high)
 
 
 def test_an_end_that_is_not_known_stays_so() -> None:
-    low, high = holding(1.0, math.nan, 0.5)
-    assert math.isnan(low)
-    assert high == 1.0
-    low, high = holding(math.nan, 0.0, 0.5)
-    assert (low, high) == (0.0, 0.5)
+    found = holding(1.0, math.nan, 0.5, 0.95, "by hand")
+    assert math.isnan(found.low)
+    assert found.high == 1.0
+    found = holding(math.nan, 0.0, 0.5, 0.95, "by hand")
+    assert (found.low, found.high) == (0.0, 0.5)
