@@ -11,6 +11,7 @@ asks for. **Every number that comes out is simulated.**
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
 from collections.abc import Callable
@@ -18,6 +19,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
@@ -30,7 +32,7 @@ from squeezefilm.study.design.tasks.task import Percepts
 from squeezefilm.study.design.trials import Trial, trials
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import ChainTables, difference
-from squeezefilm.study.simulated.participants import CHUNK, SimulatedPeople
+from squeezefilm.study.simulated.participants import CHUNK, SimulatedPeople, unanswered
 
 _FAINTEST = 0.05
 """Strength (d′) below which magnitudes fall no further."""
@@ -39,11 +41,11 @@ _JUDGED = ("spatial_period", "friction_depth")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Given:
-    """Answers to one trial of everybody: numbers of answers, or estimates; and how sure."""
+    """Answers to one trial of everybody: how unsure, and numbers of answers, or estimates."""
 
-    choice: si.IntArray
-    estimate: si.DimensionlessArray
     doubt: si.DimensionlessArray
+    choice: si.IntArray | int = -1
+    estimate: si.DimensionlessArray | float = math.nan
 
 
 def simulate_judgements(
@@ -67,7 +69,7 @@ def simulate_judgements(
         [trial for trial in trials(design, person, seed) if trial.asks]
         for person in range(min(participants, CHUNK))
     ]
-    parts = []
+    answers = unanswered(design, room.surfaces, schedules, participants)
     for first in range(0, participants, CHUNK):
         count = min(CHUNK, participants - first)
         people = SimulatedPeople.drawn(
@@ -79,12 +81,13 @@ def simulate_judgements(
             room.directions,
             # One surface has the noise of two: nobody's answers depend on how tasks are kept.
             max(design.described.surfaces, 2),
+            count,
         )
-        parts.append(_chunk(room, people, schedules[:count], first))
+        _answer(room, people, schedules[:count], answers, first)
         # Twenty words are enough for however many.
         if 20 * (first + count) // participants > 20 * first // participants:
             tell(f"{first + count} of {participants} simulated participants")
-    return _together(room, participants, parts)
+    return dataclasses.replace(answers, surfaces=tuple(room.surfaces))
 
 
 class _Room:
@@ -98,7 +101,6 @@ class _Room:
             *(trial.stimulus for trial in design.catch),
         ]
         self.place = {surface.name: number for number, surface in enumerate(self.surfaces)}
-        self.display = {name: number for number, name in enumerate(design.displays)}
         self._chosen: dict[tuple[str, float], int] = {}
         self._felt: dict[tuple[int, int, int], tuple[si.FloatArray, si.FloatArray]] = {}
         self.directions = tables.virtual.period.shape[-2]
@@ -136,35 +138,26 @@ class _Room:
         return Candidates(np.array([one for one, _ in found]), np.array([one for _, one in found]))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Part:
-    """Answers of a chunk of people, shape (people, trials), and their surfaces, (…, surfaces)."""
-
-    participant: si.IntArray
-    schedules: list[list[Trial]]
-    presented: si.IntArray
-    intensity: si.FloatArray
-    choice: si.IntArray
-    estimate: si.FloatArray
-    time: si.SecondArray
-
-
-def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], begin: int) -> _Part:
+def _answer(
+    room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], answers: Answers, begin: int
+) -> None:
+    """Let people answer, whose numbers begin with `begin`: fills their rows of `answers`."""
     design, observer = room.design, room.observer
     count, asked = len(schedules), len(schedules[0])
-    task, answers = design.described, design.answers
-    surfaces, reference = task.surfaces, room.place.get(design.reference, -1)
+    task, reference = design.described, room.place.get(design.reference, -1)
     methods: dict[tuple[int, str, str], AdaptiveMethod] = {}
-    shape = count, asked
-    choice = np.full(shape, -1, dtype=np.int64)
-    presented = np.full((*shape, surfaces), -1, dtype=np.int64)
-    intensity, estimate, time = (np.full(shape, np.nan) for _ in range(3))
-    display = np.array([[room.display[one.display] for one in row] for row in schedules])
+
+    def mine(values: NDArray[Any]) -> Any:
+        return values.reshape(*values.shape[:-1], -1, asked)[..., begin : begin + count, :]
+
+    display, presented, intensity = map(
+        mine, (answers.display, answers.presented, answers.intensity)
+    )
+    choice, estimate, time = map(mine, (answers.choice, answers.estimate, answers.response_time))
     judge = _judge(room, people)
     for at in range(asked):
         for person, row in enumerate(schedules):
             trial = row[at]
-            shown = [room.place[name] for name in trial.stimuli]
             if trial.adaptive:
                 how = trial.reference_first, trial.answer
                 comparison, intensity[person, at] = reference, 0.0
@@ -173,34 +166,31 @@ def _chunk(room: _Room, people: SimulatedPeople, schedules: list[list[Trial]], b
                         methods, design, person, trial
                     ).next_stimulus()
                     comparison = room.chosen(trial.adaptive, float(intensity[person, at]))
-                shown = list(task.arranges(reference, comparison, *how))
-            presented[person, at] = shown
+                presented[:, person, at] = task.arranges(reference, comparison, *how)
         skill = 1.0 + observer.learning_excess * math.exp(-at / observer.learning_trials)
         felt = [
             perceived(
-                room.presented(display[:, at], people.finger[:count], presented[:, at, place]),
+                room.presented(display[:, at], people.finger, presented[place, :, at]),
                 observer,
                 np.full((count, 1), skill),
-                people.spread[:count, None],
-                people.noise[at, place, :count],
-                people.blur[at, place, :count],
+                people.spread[:, None],
+                people.noise[at, place],
+                people.blur[at, place],
             )
-            for place in range(surfaces)
+            for place in range(task.surfaces)
         ]
-        given = judge(felt, skill, at, count)
+        given = judge(felt, skill, at)
         choice[:, at], estimate[:, at] = given.choice, given.estimate
         time[:, at] = (observer.response_time + observer.doubt_time * given.doubt) * np.exp(
-            observer.response_time_spread * people.slowness[at, :count]
+            observer.response_time_spread * people.slowness[at]
         )
         for person, row in enumerate(schedules):
             if row[at].adaptive:
-                said: Any = answers[choice[person, at]]
+                said: Any = design.answers[choice[person, at]]
                 if not hears_choice(design.series(row[at].adaptive), task):
                     said = said == row[at].answer
                 method = _standing(methods, design, person, row[at])
                 method.update(float(intensity[person, at]), said)
-    who = begin + np.arange(count)
-    return _Part(who, schedules, presented, intensity, choice, estimate, time)
 
 
 def _standing(
@@ -216,7 +206,7 @@ def _standing(
     return methods[key]
 
 
-_Judge = Callable[[list[Perceived], float, int, int], _Given]
+_Judge = Callable[[list[Perceived], float, int], _Given]
 
 
 def _judge(room: _Room, people: SimulatedPeople) -> _Judge:
@@ -240,7 +230,7 @@ def _judged(
     """Judged amounts on a scale, and the standard deviation of one percept on it."""
     if room.design.judged == "friction_depth":
         return felt.strength, np.full(felt.strength.shape, skill)
-    return felt.log_period, people.spread[: felt.log_period.size] * skill
+    return felt.log_period, people.spread * skill
 
 
 def _remembered(room: _Room, finger: si.IntArray) -> si.FloatArray:
@@ -252,7 +242,7 @@ def _remembered(room: _Room, finger: si.IntArray) -> si.FloatArray:
 
 
 def _decided(
-    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int
 ) -> _Given:
     """Answers as the task's record decides; of who lapses, or has nothing to decide by, guesses."""
     decides = room.design.described.decides
@@ -264,39 +254,38 @@ def _decided(
         # How strong a surface is can be said of one that is hardly felt.
         known = np.ones_like(known)
         # Where nothing is felt there is the noise of a percept.
-        noise = skill * people.noise[at, :, :count].reshape(-1, count, people.noise[0, 0, 0].size)
+        noise = skill * people.noise[at, :, :, 0, 0]
         judged = [
-            (np.where(np.isfinite(level), level, alone[:, 0]), deviation)
+            (np.where(np.isfinite(level), level, alone), deviation)
             for (level, deviation), alone in zip(judged, noise, strict=False)
         ]
     level, deviation = np.array([one for one, _ in judged]), judged[0][1]
-    remembered = _remembered(room, people.finger[:count])
+    remembered = _remembered(room, people.finger)
     criterion = room.observer.detection_criterion
     found = decides(Percepts(level, known, deviation, criterion, remembered))
-    blind = ~found.decided | (people.blind[at, :count] < people.lapse[:count])
+    blind = ~found.decided | (people.blind[at] < people.lapse)
     number = len(room.design.answers)
-    guess = number - 1 - np.floor(people.guess[at, :count] * number).astype(np.int64)
+    guess = number - 1 - np.floor(people.guess[at] * number).astype(np.int64)
     choice = np.where(blind, guess, found.choice)
-    return _Given(choice, np.full(count, np.nan), np.where(blind, 1.0, found.doubt))
+    return _Given(np.where(blind, 1.0, found.doubt), choice)
 
 
 def _alike_in_plane(
-    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int
 ) -> _Given:
     one, other = felt
     # Strengths in each direction, and periods in those in which both are felt.
     terms = one.strength.shape[-1] + np.sum(one.felt & other.felt, axis=-1)
-    apart = difference(one, other, np.full((count, 1), skill), people.spread[:count, None])
+    apart = difference(one, other, np.full((terms.size, 1), skill), people.spread[:, None])
     apart = apart / np.sqrt(terms)
     limit = room.observer.detection_criterion
-    blind = people.blind[at, :count] < people.lapse[:count]
-    choice = np.where(blind, people.guess[at, :count] < 0.5, apart > limit).astype(np.int64)
-    doubt = np.where(blind, 1.0, np.exp(-np.abs(apart - limit)))
-    return _Given(choice, np.full(count, np.nan), doubt)
+    blind = people.blind[at] < people.lapse
+    choice = np.where(blind, people.guess[at] < 0.5, apart > limit).astype(np.int64)
+    return _Given(np.where(blind, 1.0, np.exp(-np.abs(apart - limit))), choice)
 
 
 def _number(
-    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int, count: int
+    room: _Room, people: SimulatedPeople, felt: list[Perceived], skill: float, at: int
 ) -> _Given:
     design = room.design
     values = np.array([design.judged_value(stimulus) for stimulus in design.stimuli])
@@ -305,56 +294,21 @@ def _number(
     one = _in_clearest_direction(felt[0])
     if design.judged == "friction_depth":
         # Strength has no unit of its own: that of the reference is felt as often as it likes.
-        known = _remembered(room, people.finger[:count])
+        known = _remembered(room, people.finger)
         step = percept_deviation(room.observer.strength_weber_fraction)
         level, known = (step * np.maximum(x, _FAINTEST) for x in (one.strength, known))
-        error = people.memory[:count] * step / np.tanh(known)
+        error = people.memory * step / np.tanh(known)
         # Back from steps of the noise to strengths.
         level, known = np.log(np.sinh(level)), np.log(np.sinh(known))
     else:
         level = np.where(one.felt, one.log_period, math.log(FINEST_PERIOD))
-        known, error = np.full(count, math.log(here)), people.spread * people.memory
-        error = error[:count]
-    scale = design.modulus or people.scale[:count]
+        known, error = np.array(math.log(here)), people.spread * people.memory
+    scale = design.modulus or people.scale
     number = scale * np.exp(level - known - error)
-    blind = people.blind[at, :count] < people.lapse[:count]
+    blind = people.blind[at] < people.lapse
     least, most = float(values.min()) / here, float(values.max()) / here
-    anything = scale * least * (most / least) ** people.guess[at, :count]
+    anything = scale * least * (most / least) ** people.guess[at]
     number = np.where(blind, anything, number)
     digits = 10.0 ** (np.floor(np.log10(number)) - 1.0)
     doubt = np.where(one.felt & ~blind, 0.3, 1.0)
-    none = np.full(count, -1, dtype=np.int64)
-    return _Given(none, np.round(number / digits) * digits, doubt)
-
-
-def _together(room: _Room, participants: int, parts: list[_Part]) -> Answers:
-    design = room.design
-    names = {name: number for number, name in enumerate(design.answers)}
-    series = {one.name: number for number, one in enumerate(design.adaptive)}
-    rows = [trial for part in parts for row in part.schedules for trial in row]
-    asked = len(parts[0].schedules[0])
-
-    def joined(of: str) -> si.FloatArray:
-        return np.concatenate([getattr(part, of).ravel() for part in parts])
-
-    def whole(found: list[int]) -> si.IntArray:
-        return np.array(found, dtype=np.int64)
-
-    shown = np.concatenate([one.presented.reshape(-1, one.presented.shape[2]) for one in parts]).T
-    return Answers(
-        design=design,
-        origin="simulated",
-        people=tuple(f"simulated-{person + 1}" for person in range(participants)),
-        surfaces=tuple(room.surfaces),
-        participant=np.repeat(np.arange(participants), asked),
-        number=whole([row.number for row in rows]),
-        phase=np.array([row.phase for row in rows], dtype=np.str_),
-        display=whole([room.display[row.display] for row in rows]),
-        series=whole([series.get(row.adaptive, -1) for row in rows]),
-        presented=shown,
-        intensity=joined("intensity"),
-        choice=joined("choice").astype(np.int64),
-        right=whole([names.get(row.answer, -1) for row in rows]),
-        estimate=joined("estimate"),
-        response_time=joined("time"),
-    )
+    return _Given(doubt, estimate=np.round(number / digits) * digits)

@@ -11,7 +11,10 @@ practice. Where a surface is matched with the stimuli themselves, `chain_tables`
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,14 +24,57 @@ from squeezefilm.core.hard_limits import SIMULATED_TRIALS, require_within
 from squeezefilm.physics.perception.observer import Observer
 from squeezefilm.physics.perception.percepts import perceived_anew
 from squeezefilm.physics.perception.senses import Candidates, percept_deviation
+from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.design.trials import trials
+from squeezefilm.study.design.trials import Trial, trials
 from squeezefilm.study.identification.confusion import participant_counts
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.chain_tables import ChainTables, recalled_distances
 
 _MOST_PEOPLE = 1_000_000
 _STREAM = 29
+
+
+def unanswered(
+    design: StudyDesign,
+    surfaces: Sequence[Stimulus],
+    schedules: Sequence[Sequence[Trial]],
+    participants: int,
+) -> Answers:
+    """Trials of so many simulated people before anybody answers: schedules repeat, and what an
+    adaptive series will present is −1."""
+    rows = np.arange(participants) % len(schedules)
+    place = {surface.name: number for number, surface in enumerate(surfaces)}
+    displays = {name: number for number, name in enumerate(design.displays)}
+    series = {one.name: number for number, one in enumerate(design.adaptive)}
+    names = {name: number for number, name in enumerate(design.answers)}
+    planned = [trial for schedule in schedules for trial in schedule]
+    chosen = [-1] * design.described.surfaces
+    shown = [[place[name] for name in trial.stimuli] or chosen for trial in planned]
+    size = participants * len(schedules[0])
+
+    def of_all(values: Sequence[Any]) -> NDArray[Any]:
+        found = np.array(values)
+        each = found.reshape(len(schedules), -1, *found.shape[1:])[rows]
+        return each.reshape(size, *found.shape[1:])
+
+    return Answers(
+        design=design,
+        origin="simulated",
+        people=tuple(f"simulated-{person + 1}" for person in range(participants)),
+        surfaces=tuple(surfaces),
+        participant=np.repeat(np.arange(participants), len(schedules[0])),
+        number=of_all([trial.number for trial in planned]),
+        phase=of_all([trial.phase for trial in planned]),
+        display=of_all([displays[trial.display] for trial in planned]),
+        series=of_all([series.get(trial.adaptive, -1) for trial in planned]),
+        presented=np.ascontiguousarray(of_all(shown).T),
+        intensity=np.full(size, np.nan),
+        choice=np.full(size, -1),
+        right=of_all([names.get(trial.answer, -1) for trial in planned]),
+        estimate=np.full(size, np.nan),
+        response_time=np.full(size, np.nan),
+    )
 
 
 def simulate_matches(tables: ChainTables, participants: int, seed: int) -> Answers:
@@ -38,34 +84,27 @@ def simulate_matches(tables: ChainTables, participants: int, seed: int) -> Answe
     trials count for learning only.
     """
     design = tables.design
-    display, stimulus, number = _orders(design, min(participants, CHUNK), seed)
-    rows = np.arange(participants) % CHUNK
-    chunks = []
+    schedules = [_main_trials(design, person, seed) for person in range(min(participants, CHUNK))]
+    answers = unanswered(design, design.stimuli, schedules, participants)
+    planned = answers.display, answers.presented[0], answers.number - 1
+    display, stimulus, number = (values.reshape(participants, -1)[:CHUNK] for values in planned)
+    choice = answers.choice.reshape(participants, -1)
+    time = answers.response_time.reshape(participants, -1)
     for first in range(0, participants, CHUNK):
         count = min(CHUNK, participants - first)
         random = np.random.default_rng([seed, _STREAM, first // CHUNK])
-        chunks.append(_answers(tables, display, stimulus, number, random, count))
-    asked = display.shape[1]
-    size = participants * asked
-    nothing: si.FloatArray = np.full(size, np.nan)
-    shown = stimulus[rows].ravel()
-    return Answers(
-        design=design,
-        origin="simulated",
-        people=tuple(f"simulated-{person + 1}" for person in range(participants)),
-        surfaces=design.stimuli,
-        participant=np.repeat(np.arange(participants), asked),
-        number=number[rows].ravel() + 1,
-        phase=np.full(size, "main"),
-        display=display[rows].ravel(),
-        series=np.full(size, -1, dtype=np.int64),
-        presented=shown.reshape(1, -1),
-        intensity=nothing,
-        choice=np.concatenate([choice for choice, _ in chunks]).ravel(),
-        right=right_answers(design)[shown],
-        estimate=nothing,
-        response_time=np.concatenate([times for _, times in chunks]).ravel(),
-    )
+        here = slice(first, first + count)
+        choice[here], time[here] = _answers(tables, display, stimulus, number, random, count)
+    return answers
+
+
+def _main_trials(design: StudyDesign, person: int, seed: int) -> list[Trial]:
+    asked = (trial for trial in trials(design, person, seed) if trial.asks)
+    return [
+        dataclasses.replace(trial, number=number)
+        for number, trial in enumerate(asked, 1)
+        if trial.phase == "main"
+    ]
 
 
 def match_counts(answers: Answers, display: int = 0) -> si.IntArray:
@@ -90,25 +129,6 @@ def right_answers(design: StudyDesign) -> si.IntArray:
     names = design.answers
     right = [design.answer_to(stimulus) for stimulus in design.stimuli]
     return np.array([names.index(name) if name else -1 for name in right], dtype=np.int64)
-
-
-def _orders(
-    design: StudyDesign, people: int, seed: int
-) -> tuple[si.IntArray, si.IntArray, si.IntArray]:
-    places = {stimulus.name: i for i, stimulus in enumerate(design.stimuli)}
-    displays = {name: i for i, name in enumerate(design.displays)}
-    rows = []
-    for person in range(people):
-        asked = [trial for trial in trials(design, person, seed) if trial.asks]
-        rows.append(
-            [
-                (displays[one.display], places[one.stimuli[0]], number)
-                for number, one in enumerate(asked)
-                if one.phase == "main"
-            ]
-        )
-    table = np.array(rows, dtype=np.int64)
-    return table[:, :, 0], table[:, :, 1], table[:, :, 2]
 
 
 def _answers(
@@ -204,7 +224,8 @@ _OWN_SCALE, _OWN_MIDDLE = 0.5, 10.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SimulatedPeople:
-    """Simulated people, up to sixty, and all their noise; arrays begin with the person."""
+    """Simulated people, up to sixty, and their noise of each trial; arrays have a person a row, or
+    begin with the trial, of a percept with the surface in it, and have the person then."""
 
     finger: si.IntArray
     spread: si.DimensionlessArray
@@ -227,20 +248,21 @@ class SimulatedPeople:
         chunk: int,
         directions: int,
         surfaces: int = 2,
+        count: int = CHUNK,
     ) -> SimulatedPeople:
-        """People of a chunk; nobody depends on how many there are."""
+        """The first `count` people of a chunk; nobody depends on how many there are."""
         random = np.random.default_rng([seed, _PEOPLE_STREAM, chunk])
         normal, among = random.standard_normal, random.random
         clear = percept_deviation(observer.period_weber_fraction)
         return cls(
-            finger=random.integers(0, fingers, CHUNK),
-            spread=clear * np.exp(observer.period_spread * normal(CHUNK)),
-            lapse=observer.lapse_rate * np.exp(observer.lapse_spread * normal(CHUNK)),
-            scale=_OWN_MIDDLE * np.exp(_OWN_SCALE * normal(CHUNK)),
-            memory=normal(CHUNK),
-            noise=normal((asked, surfaces, CHUNK, directions, observer.candidates)),
-            blur=normal((asked, surfaces, CHUNK, directions)),
-            blind=among((asked, CHUNK)),
-            guess=among((asked, CHUNK)),
-            slowness=normal((asked, CHUNK)),
+            finger=random.integers(0, fingers, CHUNK)[:count],
+            spread=clear * np.exp(observer.period_spread * normal(CHUNK))[:count],
+            lapse=observer.lapse_rate * np.exp(observer.lapse_spread * normal(CHUNK))[:count],
+            scale=_OWN_MIDDLE * np.exp(_OWN_SCALE * normal(CHUNK))[:count],
+            memory=normal(CHUNK)[:count],
+            noise=normal((asked, surfaces, CHUNK, directions, observer.candidates))[:, :, :count],
+            blur=normal((asked, surfaces, CHUNK, directions))[:, :, :count],
+            blind=among((asked, CHUNK))[:, :count],
+            guess=among((asked, CHUNK))[:, :count],
+            slowness=normal((asked, CHUNK))[:, :count],
         )

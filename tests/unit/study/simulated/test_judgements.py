@@ -165,13 +165,13 @@ def test_alike_in_the_plane_is_within_the_criterion_of_noise_alone() -> None:
         for _ in range(2)
     )
     people: Any = SimpleNamespace(
-        spread=np.full(count + 2, 0.3),
-        blind=np.array([[9.0] * 8, [0.9, 0.9, 0.9, 0.9, 0.01, 0.01, 0.0, 0.0]]),
-        lapse=np.full(count + 2, 0.05),
-        guess=np.array([[0.0] * 8, [0.0, 0.0, 0.0, 0.0, 0.4, 0.6, 0.0, 0.0]]),
+        spread=np.full(count, 0.3),
+        blind=np.array([[9.0] * 6, [0.9, 0.9, 0.9, 0.9, 0.01, 0.01]]),
+        lapse=np.full(count, 0.05),
+        guess=np.array([[0.0] * 6, [0.0, 0.0, 0.0, 0.0, 0.4, 0.6]]),
     )
     room: Any = SimpleNamespace(observer=SimpleNamespace(detection_criterion=0.8))
-    given = _alike_in_plane(room, people, [one, other], 1.2, 1, count)
+    given = _alike_in_plane(room, people, [one, other], 1.2, 1)
     for k in range(count):
         terms, square = 2, 0.0
         for way in range(2):

@@ -89,6 +89,9 @@ def test_nobody_depends_on_how_many_there_are() -> None:
 def test_everybody_has_noise_in_each_direction() -> None:
     people = SimulatedPeople.drawn(OBSERVER, 6, 3, 11, 1, 2)
     assert people.noise.shape == (3, 2, 60, 2, OBSERVER.candidates)
+    few = SimulatedPeople.drawn(OBSERVER, 6, 3, 11, 1, 2, count=7)
+    assert np.array_equal(few.noise, people.noise[:, :, :7])
+    assert np.array_equal(few.slowness, people.slowness[:, :7])
 
 
 def test_what_is_assumed_is_said_for_each_way_of_exploring() -> None:
