@@ -184,7 +184,6 @@ def test_alike_in_the_plane_is_within_the_criterion_of_noise_alone() -> None:
         assert given.choice[k] == ((k == 4) if blind else (apart > 0.8))
         assert given.doubt[k] == pytest.approx(1.0 if blind else math.exp(-abs(apart - 0.8)))
     assert np.isnan(given.estimate).all()
-    assert given.estimate.shape == (count,)
 
 
 class Varied(ChainTables):
