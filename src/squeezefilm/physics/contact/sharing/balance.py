@@ -10,7 +10,7 @@ with the film solved (`gas_table`) and p_a the asperities' law, which does not k
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated
 
@@ -77,15 +77,55 @@ def share_load(
     from squeezefilm.physics.contact.sharing import kernel
 
     announce(kernel.balance_rows, "load balance", 20)
+    if skin is not None:
+        swings = np.vectorize(partial(_swings, table, asperities, skin), otypes=[float, float])
+        gap, moved = swings(amplitude, plateau_pressure)
+        rigid = share_load(table, asperities, gap, plateau_pressure)
+        met = np.broadcast_to(amplitude, gap.shape)
+        model = rigid.model.replace("rigid skin", "yielding skin")
+        return replace(rigid, amplitude=met, skin_amplitude=moved, model=model)
     form = np.broadcast_shapes(np.shape(amplitude), np.shape(plateau_pressure))
     a = np.array(np.broadcast_to(amplitude, form), dtype=float).ravel()
     p = np.array(np.broadcast_to(plateau_pressure, form), dtype=float).ravel()
     rows = np.zeros((a.size, kernel.COLUMNS))
-    law, impedance = asperities.compiled(), _impedance(skin, table)
-    complete(table, lambda films: kernel.balance_rows(a, p, impedance, law, films, rows))
+    law = asperities.compiled()
+    complete(table, lambda films: kernel.balance_rows(a, p, law, films, rows))
     require_balanced(rows, asperities, a, p)
-    model = _model(table, asperities, skin, "each plateau at its own balance")
+    model = _model(table, asperities, "each plateau at its own balance")
     return _shared(a.reshape(form), p.reshape(form), rows, table, asperities, model)
+
+
+def _swings(
+    table: FilmTable, asperities: ContactLaw, skin: Skin, amplitude: float, pressure: float
+) -> tuple[float, float]:
+    """Amplitudes of gap and skin (m) where the skin yields to the alternating pressure.
+
+    b = a/(1 + Z/D): D the skin's dynamic stiffness, Z = [film + 2⟨p_a cos T⟩/b] that of the gap.
+    A light skin resonates on the film, and the gap may have several swings: the least is taken,
+    which is the one met as the plate's amplitude rises.
+    """
+    from scipy.optimize import brentq
+
+    from squeezefilm.physics.contact.sharing import kernel
+
+    if amplitude == 0:
+        return 0.0, 0.0
+    law, D = asperities.compiled(), skin.dynamic_stiffness(table.frequency)
+
+    def moved(swing: float) -> complex:
+        """Z/D, what the skin moves over what the gap does."""
+        u = float(share_load(table, asperities, swing, pressure).mean_gap)
+        k, d = (kernel.film_value(which, u, swing, table.compiled)[0] for which in (1, 2))
+        return complex(k + kernel.asperity_mean(law, u, swing)[1] / swing, d) / D
+
+    def excess(swing: float) -> float:
+        return swing * abs(1 + moved(swing)) - amplitude
+
+    low, high = 1e-6 * amplitude, 0.6 * amplitude
+    while excess(high) < 0:
+        low, high = high, 1.15 * high
+    swing = float(brentq(excess, low, high, xtol=1e-14 * amplitude, rtol=1e-14))
+    return swing, swing * abs(moved(swing))
 
 
 @si.checked_numbers
@@ -110,15 +150,15 @@ def share_load_tied(
     part = np.full(count, 1 / count) if shares is None else np.ascontiguousarray(shares)
     if part.shape != (count,):
         raise InputError(f"{count} ridges need {count} of shares", quantity="shares")
-    law, impedance = asperities.compiled(), _impedance(None, table)
+    law = asperities.compiled()
     rows, pressure = np.zeros((*form, kernel.COLUMNS)), np.full(form, plateau_pressure)
     for at in np.ndindex(*form):
         row, ridges = rows[at], kernel.CompiledRidges(a[at], part)
         p = float(plateau_pressure)
-        complete(table, partial(kernel.balance, ridges, p, impedance, law, out=row))
+        complete(table, partial(kernel.balance, ridges, p, law, out=row))
         _refuse(row[None, :], a[at].max(keepdims=True), np.array([p]))
         _require_law(asperities, np.array(row[kernel.GAP] - a[at].max()), np.array(p))
-    model = _model(table, asperities, None, "all plateaus at one mean gap")
+    model = _model(table, asperities, "all plateaus at one mean gap")
     return _shared(a, pressure, rows, table, asperities, model)
 
 
@@ -137,14 +177,14 @@ def _shared(
         "mean_gap": kernel.GAP,
         "gas_pressure": kernel.GAS,
         "asperity_pressure": kernel.ASPERITIES,
-        "gap_amplitude": kernel.SWING,
-        "skin_amplitude": kernel.SKIN,
         "residual": kernel.RESIDUAL,
         "steps": kernel.STEPS,
     }
     return LoadSharing(
         amplitude=amplitude,
         plateau_pressure=pressure,
+        gap_amplitude=amplitude,
+        skin_amplitude=np.zeros(pressure.shape),
         film_error=table.relative_error,
         asperities=asperities,
         model=model,
@@ -160,7 +200,7 @@ def require_balanced(
     from squeezefilm.physics.contact.sharing import kernel
 
     _refuse(rows, amplitude, pressure)
-    _require_law(law, rows[:, kernel.GAP] - rows[:, kernel.SWING], pressure)
+    _require_law(law, rows[:, kernel.GAP] - amplitude, pressure)
 
 
 def _require_law(law: ContactLaw, nearest: si.FloatArray, pressure: si.FloatArray) -> None:
@@ -190,18 +230,10 @@ def _require_law(law: ContactLaw, nearest: si.FloatArray, pressure: si.FloatArra
         )
 
 
-def _impedance(skin: Skin | None, table: FilmTable) -> si.FloatArray:
-    if skin is None:
-        return np.zeros(3)
-    D = skin.dynamic_stiffness(table.frequency)
-    return np.array([D.real, D.imag, 1.0])
-
-
-def _model(table: FilmTable, asperities: ContactLaw, skin: Skin | None, tie: str) -> str:
-    yields = "rigid" if skin is None else "yielding"
+def _model(table: FilmTable, asperities: ContactLaw, tie: str) -> str:
     return (
         f"partial levitation, {tie}: strip films of {table.width * 1e6:.4g} µm with slip "
-        f"'{table.slip}', {asperities.words}, {yields} skin"
+        f"'{table.slip}', {asperities.words}, rigid skin"
     )
 
 

@@ -21,8 +21,8 @@ BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
 """Outcomes of a balance."""
 
 # Columns of a balance's row.
-GAP, GAS, ASPERITIES, SWING, SKIN, RESIDUAL, STEPS, STATUS = range(8)
-COLUMNS = 8
+GAP, GAS, ASPERITIES, RESIDUAL, STEPS, STATUS = range(6)
+COLUMNS = 6
 
 _MOST_STEPS = 80
 _SETTLED = 1e-10
@@ -103,92 +103,25 @@ def film_value(which: int, u: float, a: float, films: CompiledFilms) -> tuple[fl
 
 
 @compiled(error_model="numpy")
-def _swing(
-    a: float,
-    u: float,
-    impedance: si.FloatArray,
-    asperities: CompiledAsperities,
-    films: CompiledFilms,
-) -> tuple[float, float, int]:
-    """Amplitudes of gap and skin (m) where the skin yields to the alternating pressure.
-
-    b = a/(1 + Z/D): D the skin's dynamic stiffness, Z = [film + 2⟨p_a cos T⟩/b] that of the gap.
-    """
-    if a <= 0.0:
-        return 0.0, 0.0, -1
-    D = complex(impedance[0], impedance[1])
-    deepest = u * math.sqrt(-math.expm1(-films.edges[-1])) * (1.0 - 1e-9)
-    low, f_low, high, f_high = 0.0, -a, math.nan, math.nan
-    # A light skin resonates on the film, and the gap may have several swings: the least is taken,
-    # which is the one met as the plate's amplitude rises.
-    b, moved, side = min(0.6 * a, 0.3 * deepest), 0.0, 0
-    for _ in range(_MOST_STEPS):
-        k, lack = film_value(1, u, b, films)
-        if lack != -1:
-            return b, moved, lack
-        d, lack = film_value(2, u, b, films)
-        if lack != -1:
-            return b, moved, lack
-        Z = complex(k + asperity_mean(asperities, u, b)[1] / b, d)
-        moved = b * abs(Z / D)
-        miss = b * abs(1.0 + Z / D) - a
-        if abs(miss) <= 1e-13 * a:
-            return b, moved, -1
-        if miss < 0.0:
-            if b >= deepest:
-                # No swing of an open gap: the search for u moves on to wider ones.
-                return b, moved, -1
-            low, f_low = b, miss
-            if side == -1 and not math.isnan(high):
-                f_high *= 0.5
-            side = -1
-        else:
-            high, f_high = b, miss
-            if side == 1:
-                f_low *= 0.5
-            side = 1
-        if math.isnan(high):
-            b = min(1.15 * b, deepest)
-            continue
-        if high - low < 1e-14 * high:
-            return b, moved, -1
-        b = (low * f_high - high * f_low) / (f_high - f_low)
-        if not low < b < high:
-            b = 0.5 * (low + high)
-    return b, moved, -3
-
-
-@compiled(error_model="numpy")
 def _carried(
-    u: float,
-    ridges: CompiledRidges,
-    impedance: si.FloatArray,
-    asperities: CompiledAsperities,
-    films: CompiledFilms,
-) -> tuple[float, float, float, float, int]:
-    """Mean gas and asperity pressure (Pa) of ridges at a gap u; swing and skin amplitude of the
-    last; the panel lacking."""
+    u: float, ridges: CompiledRidges, asperities: CompiledAsperities, films: CompiledFilms
+) -> tuple[float, float, int]:
+    """Mean gas and asperity pressure (Pa) of ridges at a gap u, and the panel lacking."""
     amplitudes, shares = ridges
-    gas, solid, b, moved = 0.0, 0.0, 0.0, 0.0
+    gas, solid = 0.0, 0.0
     for i in range(len(amplitudes)):
-        b = amplitudes[i]
-        if impedance[2] > 0.0:
-            b, moved, lack = _swing(b, u, impedance, asperities, films)
-            if lack != -1:
-                return 0.0, 0.0, b, moved, lack
-        over, lack = film_value(0, u, b, films)
+        over, lack = film_value(0, u, amplitudes[i], films)
         if lack != -1:
-            return 0.0, 0.0, b, moved, lack
+            return 0.0, 0.0, lack
         gas += shares[i] * over
-        solid += shares[i] * asperity_mean(asperities, u, b)[0]
-    return gas, solid, b, moved, -1
+        solid += shares[i] * asperity_mean(asperities, u, amplitudes[i])[0]
+    return gas, solid, -1
 
 
 @compiled(error_model="numpy")
 def balance(
     ridges: CompiledRidges,
     pressure: float,
-    impedance: si.FloatArray,
     asperities: CompiledAsperities,
     films: CompiledFilms,
     out: si.FloatArray,
@@ -209,7 +142,6 @@ def balance(
     for i in range(len(amplitudes)):
         if amplitudes[i] > 0.0:
             low = max(low, nearest)
-        # A yielding skin can swing further than the plate.
         low = max(low, amplitudes[i] / deepest * (1.0 + 1e-9))
     # Where exponential asperities alone would carry the load; with the gas it is further out.
     step = law[2]
@@ -217,7 +149,7 @@ def balance(
     alone = law[1] + swing - step * math.log(pressure / (law[0] * bessel(0, swing / step)))
     guess = max(low + 0.5 * step, alone)
     u, at, spent = guess, math.nan, 0
-    gas, solid, b, moved, lack = _carried(u, ridges, impedance, asperities, films)
+    gas, solid, lack = _carried(u, ridges, asperities, films)
     if lack == -1:
         at = math.log((gas + solid) / pressure)
     left, right, f_left, f_right = math.nan, math.nan, math.nan, math.nan
@@ -237,7 +169,7 @@ def balance(
             u = max(right - step, 0.5 * (low + right)) if right - step <= low else right - step
             if u - low < 1e-6 * low:
                 u = low
-        gas, solid, b, moved, lack = _carried(u, ridges, impedance, asperities, films)
+        gas, solid, lack = _carried(u, ridges, asperities, films)
         if lack != -1:
             break
         at = math.log((gas + solid) / pressure)
@@ -252,7 +184,7 @@ def balance(
         u = (left * f_right - right * f_left) / (f_right - f_left)
         if not left < u < right or right - left < 1e-15 * u:
             u = 0.5 * (left + right)
-        gas, solid, b, moved, lack = _carried(u, ridges, impedance, asperities, films)
+        gas, solid, lack = _carried(u, ridges, asperities, films)
         if lack != -1:
             break
         at = math.log((gas + solid) / pressure)
@@ -271,13 +203,10 @@ def balance(
     if lack == -2:
         out[STATUS] = OUT_OF_TABLE
         return -1
-    out[GAP], out[GAS], out[ASPERITIES], out[SWING], out[SKIN] = u, gas, solid, b, moved
+    out[GAP], out[GAS], out[ASPERITIES] = u, gas, solid
     out[RESIDUAL] = (gas + solid) / pressure - 1.0
     # Where panels of the table meet, it may step by rounding: that much is allowed.
-    settled = lack == -1 and abs(out[RESIDUAL]) < 1e-8
-    if impedance[2] > 0.0 and b >= u * deepest * (1.0 - 1e-6):
-        settled = False
-    out[STATUS] = BALANCED if settled else UNSETTLED
+    out[STATUS] = BALANCED if abs(out[RESIDUAL]) < 1e-8 else UNSETTLED
     return -1
 
 
@@ -285,7 +214,6 @@ def balance(
 def balance_rows(
     amplitude: si.FloatArray,
     pressure: si.FloatArray,
-    impedance: si.FloatArray,
     asperities: CompiledAsperities,
     films: CompiledFilms,
     out: si.FloatArray,
@@ -300,7 +228,7 @@ def balance_rows(
         if out[i, STEPS] > 0.0 and out[i, STATUS] != NEEDS_PANEL:
             continue
         one = CompiledRidges(amplitude[i : i + 1], whole)
-        lack = balance(one, pressure[i], impedance, asperities, films, out[i])
+        lack = balance(one, pressure[i], asperities, films, out[i])
         lacking = lack if lacking < 0 else lacking
     return lacking
 
@@ -347,13 +275,13 @@ def felt_stiffness(
     balance or comes nearer than the contact's law goes.
     """
     met, shares = pad.ridges
-    pressure, rigid = np.full(met.size, pad.pressure), np.zeros(3)
-    lacking = balance_rows(antinode * met, pressure, rigid, pad.asperities, films, out)
+    swings, pressure = antinode * met, np.full(met.size, pad.pressure)
+    lacking = balance_rows(swings, pressure, pad.asperities, films, out)
     if lacking >= 0:
         return math.nan, complex(math.nan), lacking
     gap = 0.0
     for i in range(met.size):
-        if out[i, STATUS] != BALANCED or out[i, GAP] - out[i, SWING] < pad.least_gap:
+        if out[i, STATUS] != BALANCED or out[i, GAP] - swings[i] < pad.least_gap:
             return math.nan, complex(math.nan), -2
         gap += shares[i] * out[i, GAP]
     # The plateaus' mean gap beside the antinode's swing, which most of them do not meet: no deeper
