@@ -83,6 +83,7 @@ NOT_CALLED = {
     physics.render.resonator.compensation.CompensatedDrive
     physics.render.fidelity.report.FidelityReport physics.render.motion.estimator.MotionCounts
     physics.render.motion.estimator.MotionEstimate
+    physics.render.fidelity.rendered_stroke.LoopRun
     physics.render.fidelity.rendered_stroke.RenderedStroke physics.render.program.renderer.Counters
     physics.render.program.renderer.Rendered physics.chain.touch.Touch
     """,

@@ -41,13 +41,33 @@ friction divided by that of the unexcited surface (1), of the same shape."""
 _WINDOW_ROWS = 4096
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RenderedStroke:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class LoopRun:
+    """A run of a loop: its inputs, how often the drive met an end, and what made it (`model`).
+
+    `sensor` and `estimator` are None where the position is known; `saturated_top` and
+    `saturated_bottom` are the share of steps whose command met a limit (1), `silent` that at which
+    the finger's place was not known and the drive was off (1).
+    """
+
+    envelope: DrivenEnvelope
+    compensation: Compensation
+    control_rate: si.Hertz
+    sensor: SensorModel | None
+    estimator: MotionEstimator | None
+    seed: int
+    saturated_top: si.Dimensionless
+    saturated_bottom: si.Dimensionless
+    silent: si.Dimensionless
+    model: str
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class RenderedStroke(LoopRun):
     """A stroke as a finger meets it, and as it should have met it; arrays of shape (steps,).
 
-    Attributes:
-        texture, trajectory, envelope, compensation, control_rate, sensor, estimator, seed: the
-            inputs; `sensor` and `estimator` are None where the position is known.
+    Attributes beside those of `LoopRun`:
+        texture, trajectory: the inputs.
         time: of each control step (s).
         position: of the finger (m), and `speed` along x, signed (m/s).
         estimate: of the motion at each step, for that step; None without a sensor.
@@ -56,19 +76,10 @@ class RenderedStroke:
         amplitude: of the envelope, its magnitude (m, zero-to-peak).
         relative_friction_wanted, relative_friction_rendered: at `wanted` and at `amplitude`, under
             the finger's true speed (1).
-        saturated_top, saturated_bottom: share of steps whose command met a limit (1).
-        silent: share of steps at which the finger's place was not known and the drive was off (1).
-        model: what made it.
     """
 
     texture: Texture
     trajectory: Trajectory
-    envelope: DrivenEnvelope
-    compensation: Compensation
-    control_rate: si.Hertz
-    sensor: SensorModel | None
-    estimator: MotionEstimator | None
-    seed: int
     time: si.SecondArray
     position: si.MetreArray
     speed: si.MetrePerSecondArray
@@ -78,10 +89,6 @@ class RenderedStroke:
     amplitude: si.MetreArray
     relative_friction_wanted: si.DimensionlessArray
     relative_friction_rendered: si.DimensionlessArray
-    saturated_top: si.Dimensionless
-    saturated_bottom: si.Dimensionless
-    silent: si.Dimensionless
-    model: str
 
 
 @si.checked_numbers

@@ -6,6 +6,7 @@ whatever was rendered.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,10 +19,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import LAG_PRODUCTS, require_within
 from squeezefilm.core.kit.numbers import M, S, shown
-from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke
-from squeezefilm.physics.render.motion.estimator import MotionEstimator
-from squeezefilm.physics.render.motion.sensor import SensorModel
-from squeezefilm.physics.render.resonator.compensation import Compensation, DrivenEnvelope
+from squeezefilm.physics.render.fidelity.rendered_stroke import LoopRun, RenderedStroke
 
 PerMetreArray = Annotated[si.FloatArray, si.Unit("1/m")]
 _Mask = np.ndarray[tuple[int], np.dtype[np.bool_]]
@@ -38,13 +36,12 @@ _MOST_LINES = 6
 _FAINT_LINE = 0.01
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class FidelityReport:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class FidelityReport(LoopRun):
     """Report on the friction rendered beside the friction wanted; every field has a JSON form.
 
-    Attributes:
+    Attributes beside those of `LoopRun`:
         texture, trajectory: as text.
-        envelope, compensation, control_rate, sensor, estimator, seed: the inputs.
         judged: time that was judged, without the start (s).
         mean_speed: of the finger meanwhile (m/s).
         wanted_swing: peak to peak of the relative friction wanted (1).
@@ -59,20 +56,12 @@ class FidelityReport:
         lag: by which the rendered pattern trails the finger (m), by cross-correlation; within
             half a period for a periodic texture. Negative where it comes early.
         lag_time: `lag` over the mean speed (s).
-        saturated_top, saturated_bottom, silent: shares of steps (1), see `RenderedStroke`.
         position_error, speed_error: RMS of the estimate (m, m/s); None without a sensor.
         samples_refused: outliers, doubles and the like; None without a sensor.
-        model: what made it.
     """
 
     texture: str
     trajectory: str
-    envelope: DrivenEnvelope
-    compensation: Compensation
-    control_rate: si.Hertz
-    sensor: SensorModel | None
-    estimator: MotionEstimator | None
-    seed: int
     judged: si.Second
     mean_speed: si.MetrePerSecond
     wanted_swing: si.Dimensionless
@@ -83,13 +72,9 @@ class FidelityReport:
     swing_kept: si.DimensionlessArray
     lag: si.Metre
     lag_time: si.Second
-    saturated_top: si.Dimensionless
-    saturated_bottom: si.Dimensionless
-    silent: si.Dimensionless
     position_error: si.Metre | None
     speed_error: si.MetrePerSecond | None
     samples_refused: int | None
-    model: str
 
 
 def fidelity_report(
@@ -121,14 +106,9 @@ def fidelity_report(
     lag = _lag(passes, getattr(stroke.texture, "spatial_period", None), float(frequencies.max()))
     position_error, speed_error, refused = _errors_of_estimate(stroke, judged)
     return FidelityReport(
+        **{field.name: getattr(stroke, field.name) for field in dataclasses.fields(LoopRun)},
         texture=repr(stroke.texture),
         trajectory=repr(stroke.trajectory),
-        envelope=stroke.envelope,
-        compensation=stroke.compensation,
-        control_rate=stroke.control_rate,
-        sensor=stroke.sensor,
-        estimator=stroke.estimator,
-        seed=stroke.seed,
         judged=float(stroke.time[-1] - skip),
         mean_speed=mean_speed,
         wanted_swing=float(np.ptp(wanted)),
@@ -139,13 +119,9 @@ def fidelity_report(
         swing_kept=swing,
         lag=lag,
         lag_time=lag / mean_speed,
-        saturated_top=stroke.saturated_top,
-        saturated_bottom=stroke.saturated_bottom,
-        silent=stroke.silent,
         position_error=position_error,
         speed_error=speed_error,
         samples_refused=refused,
-        model=stroke.model,
     )
 
 
