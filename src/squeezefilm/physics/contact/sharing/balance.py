@@ -106,6 +106,7 @@ def _swings(
     """
     from scipy.optimize import brentq
 
+    from squeezefilm.physics.contact.asperity_kernel import asperity_mean
     from squeezefilm.physics.contact.sharing import kernel
 
     if amplitude == 0:
@@ -116,7 +117,7 @@ def _swings(
         """Z/D, what the skin moves over what the gap does."""
         u = float(share_load(table, asperities, swing, pressure).mean_gap)
         k, d = (kernel.film_value(which, u, swing, table.compiled)[0] for which in (1, 2))
-        return complex(k + kernel.asperity_mean(law, u, swing)[1] / swing, d) / D
+        return complex(k + asperity_mean(law, u, swing)[1] / swing, d) / D
 
     def excess(swing: float) -> float:
         return swing * abs(1 + moved(swing)) - amplitude
