@@ -6,6 +6,7 @@ import pytest
 
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.validation import explanations as prototype
+from squeezefilm.validation.command import Reproduction
 from squeezefilm.validation.explanations import (
     MEASURED_AMPLITUDE,
     MEASURED_FREQUENCY,
@@ -16,13 +17,9 @@ from squeezefilm.validation.explanations import (
     paper_points,
     prototype_study,
 )
-from squeezefilm.validation.report.page import prototype_sections
-from squeezefilm.validation.report.prototype import (
-    identifiability,
-    prototype_markdown,
-    sentences,
-    separation_table,
-)
+from squeezefilm.validation.report.page import validation_markdown
+from squeezefilm.validation.report.prototype import identifiability, sentences, separation_table
+from squeezefilm.validation.values import paper_design
 
 
 def _case(name: str) -> Explanation:
@@ -90,13 +87,11 @@ def test_a_parameter_that_cannot_explain_is_refused() -> None:
 
 @pytest.mark.nightly
 def test_the_study_is_shown(study: PrototypeStudy) -> None:
-    text = "\n".join(prototype_markdown(study))
+    text = validation_markdown(Reproduction((), (), paper_design(), study))
     assert "30.5 kHz" in text
     assert "35.6 kHz" in text
     assert "a heavier plate" in text
-    sections = prototype_sections(study)
-    assert len(sections) == 2
-    assert all("<table>" in section for section in sections)
+    assert "| Explanation" in text or "| explanation" in text
     assert identifiability(study).get_suptitle().startswith("2 explanations")
 
 
