@@ -302,10 +302,8 @@ def _functions(value: SweptColumn, there: NDArray[np.bool_]) -> list[si.FloatArr
         return [scaled[x.astype(int), k] for k in range(scaled.shape[1])]
     u = 2 * (x - x.min()) / np.ptp(x) - 1
     most = min(max(_DEGREES), len(np.unique(x)) - 1)
-    return [
-        math.sqrt(2 * k + 1) * np.polynomial.legendre.legval(u, np.eye(k + 1)[k])
-        for k in range(1, most + 1)
-    ]
+    polynomials = np.polynomial.legendre.legvander(u, most) * np.sqrt(2 * np.arange(most + 1) + 1)
+    return list(polynomials.T[1:])
 
 
 def _terms(
@@ -329,10 +327,8 @@ def _matrix(
 ) -> si.FloatArray:
     columns = []
     for term in terms:
-        product = np.ones(count)
-        for functions, k in zip(single, term, strict=True):
-            product = product * functions[k - 1] if k else product
-        columns.append(product)
+        used = [functions[k - 1] for functions, k in zip(single, term, strict=True) if k]
+        columns.append(np.prod([np.ones(count), *used], axis=0))
     return np.column_stack(columns)
 
 
@@ -352,13 +348,11 @@ def _sums(
     coefficients: si.FloatArray, terms: Sequence[tuple[int, ...]], count: int
 ) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     """Shares of the fit's variance: of each value alone, with others, of pairs alone."""
-    powers = coefficients**2
-    used = [tuple(k for k, power in enumerate(term) if power) for term in terms]
-    variance = sum(p for p, u in zip(powers, used, strict=True) if u) or 1.0
-    first = [sum(p for p, u in zip(powers, used, strict=True) if u == (k,)) for k in range(count)]
-    total = [sum(p for p, u in zip(powers, used, strict=True) if k in u) for k in range(count)]
+    powers, used = coefficients**2, np.array(terms, dtype=bool)
+    several = used.sum(axis=1)
+    powers = powers / (powers[several > 0].sum() or 1.0)
     pairs = [
-        sum(p for p, u in zip(powers, used, strict=True) if u == pair)
+        powers[(several == 2) & used[:, pair].all(axis=1)].sum()
         for pair in itertools.combinations(range(count), 2)
     ]
-    return tuple(np.array(shares, float) / variance for shares in (first, total, pairs))  # type: ignore[return-value]
+    return powers[several == 1] @ used[several == 1], powers @ used, np.array(pairs)
