@@ -218,6 +218,9 @@ def dxf_text(drawing: Drawing) -> str:
     audit = document.audit()
     if audit.has_errors:
         raise InputError(f"the drawing is not sound: {audit.errors[0].message}")
+    # ezdxf adds these from a set, whose order is another one in every process.
+    document.classes.add_required_classes(document.dxfversion)
+    document.classes.classes = dict(sorted(document.classes.classes.items()))
     stream = io.StringIO()
     # Without the moment and a random identifier: a drawing of the same things is the same file.
     fixed = options.write_fixed_meta_data_for_testing

@@ -94,6 +94,9 @@ def test_numbers_are_short_and_round_to_a_ten_thousandth() -> None:
 def test_the_same_drawing_is_the_same_file() -> None:
     whole = Drawing(LAYERS, (rectangle("A", 0.0, 0.0, 1e-3, 1e-3),))
     assert dxf_text(whole) == dxf_text(whole)
+    # In every process, whatever the order that sets have in it.
+    classes = [dxf_class.dxf.name for dxf_class in read(io.StringIO(dxf_text(whole))).classes]
+    assert classes == sorted(classes)
 
 
 def test_what_has_no_size_is_refused() -> None:
