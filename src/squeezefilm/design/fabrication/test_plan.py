@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from squeezefilm.core import quantities as si
 from squeezefilm.design.fabrication.wiring import NodalLines
 from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted
+from squeezefilm.measure.calibration.calibration import UNITS
 from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.physics.chain.pad_place import place_words
 from squeezefilm.physics.chain.prediction import Prediction
@@ -76,17 +77,6 @@ class BenchFacts:
 
 
 _OF_DRAWS = "zero-to-peak; as friction's interval, which allows no error of the plate's model"
-_UNITS = {
-    "mass": "kg",
-    "resonance_frequency": "Hz",
-    "parallel_resonance_frequency": "Hz",
-    "coupling_coefficient": "1",
-    "static_capacitance": "F",
-    "quality_factor": "1",
-    "amplitude_per_volt": "m/V",
-    "half_wavelength": "m",
-    FRICTION: "1",
-}
 
 
 def test_plan(known: BenchFacts) -> tuple[TestStep, ...]:
@@ -113,7 +103,7 @@ def _of(known: BenchFacts, answer: str, what: str, value: float | None, remark: 
     interval, level = (matching[0].interval, matching[0].level) if matching else (None, None)
     if value is None and matching:
         value = matching[0].median
-    return Check(what, answer, _UNITS[answer], value, interval, level, (), remark)
+    return Check(what, answer, UNITS.get(answer, "1"), value, interval, level, (), remark)
 
 
 def _weighing(known: BenchFacts) -> TestStep:

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 _ROOM = (172.0, 150.0)
 _MIDDLE = 122.0
 _ABOVE = 26.0
-HEAD = ("No.", "x", "y", "Length", "Width", "Thick", "Joined to", "Poled")
 
 
 def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
@@ -47,24 +46,9 @@ def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     _cut_marks(sheet, plate, cut, sign)
     whole = _dimensions(sheet, plate, sign)
     low = top - size_y - 34.0
-    extra = section_view(sheet, made, made.parts, _MIDDLE, low, _keys_of_thickness(plate))
+    extra = section_view(sheet, made, made.parts, _MIDDLE, low)
     said = [*_said(plate, face, whole), *extra, *common]
-    return finished(sheet, made, HEAD, electrode_rows(made.electrodes), said)
-
-
-def electrode_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
-    """Rows of where each ceramic lies and what its outer electrode is joined to, in millimetres."""
-    rows = []
-    for electrode in electrodes:
-        shape = electrode.footprint
-        assert isinstance(shape, Rectangle)
-        sizes = (shape.x, shape.y, shape.length, shape.width, electrode.thickness)
-        poled = "away" if electrode.poling > 0 else "towards"
-        where = "" if electrode.face == "bottom" else " (top)"
-        rows.append(
-            (f"{electrode.ceramic}{where}", *map(millimetres, sizes), electrode.connection, poled)
-        )
-    return rows
+    return finished(sheet, made, said)
 
 
 def _plan(sheet: Sheet, made: Fabrication, plate: RectangularPlate, face: str, sign: float) -> None:
@@ -167,14 +151,6 @@ def _dimensions(sheet: Sheet, plate: RectangularPlate, sign: float) -> bool:
     if len(y) > 1 or 0.0 not in y:
         whole &= sheet.ordinates(y.values(), plate.length, 8.5, upright=True)
     return whole
-
-
-def _keys_of_thickness(plate: RectangularPlate) -> dict[int, str]:
-    keys = {0: "actuator.thickness"}
-    for n in range(1, len(plate.patches) + 1):
-        keys[n] = f"actuator.patches.{n - 1}.thickness"
-        keys[-n] = "actuator.glue.thickness"
-    return keys
 
 
 def _said(plate: RectangularPlate, face: str, whole: bool) -> Iterable[str]:

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 _ROOM = (160.0, 145.0)
 _MIDDLE = 118.0
 _ABOVE = 24.0
-HEAD = ("Sector", "From", "To", "Joined to", "Poled")
 
 
 def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
@@ -56,21 +55,9 @@ def round_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
     teeth = [part for part in made.parts if part.kind == "substrate"][1:]
     shown = [part for part in made.parts if part not in teeth[1:]]
     low = sheet.origin[1] - reach - 16.0 - 7.0 * len(lines)
-    extra = section_view(sheet, made, shown, _MIDDLE, low, _keys_of_thickness(actuator))
+    extra = section_view(sheet, made, shown, _MIDDLE, low)
     said = [*_said(made), *extra, *common]
-    return finished(sheet, made, HEAD, sector_rows(made.electrodes), said)
-
-
-def sector_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
-    """Rows of where each electrode begins and ends, and what it is joined to."""
-    rows = []
-    for electrode in electrodes:
-        shape = electrode.footprint
-        assert isinstance(shape, Sector)
-        ends = (f"{math.degrees(angle):.6g}°" for angle in (shape.start, shape.end))
-        poled = "away" if electrode.poling > 0 else "towards"
-        rows.append((electrode.name, *ends, electrode.connection, poled))
-    return rows
+    return finished(sheet, made, said)
 
 
 def _ring(parts: Sequence[Part], kind: str) -> Sector:
@@ -162,16 +149,6 @@ def _diameters(actuator: DiscPlate | AnnularStator) -> list[tuple[float, str, st
         (actuator.diameter, "actuator.diameter", "⌀"),
     ]
     return sorted((row for row in diameters if row[0] > 0), key=lambda row: row[0])
-
-
-def _keys_of_thickness(actuator: DiscPlate | AnnularStator) -> dict[int, str]:
-    if isinstance(actuator, AnnularStator):
-        return {}
-    return {
-        0: "actuator.thickness",
-        1: "actuator.ceramic_thickness",
-        -1: "actuator.glue.thickness",
-    }
 
 
 def _said(made: Fabrication) -> Iterable[str]:

@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.formats.drawing import millimetres
 from squeezefilm.core.kit.folder import csv_text
 from squeezefilm.core.kit.numbers import shown
 from squeezefilm.core.results import to_json
-from squeezefilm.design.fabrication.report.rectangular_sheet import HEAD as CERAMICS
-from squeezefilm.design.fabrication.report.rectangular_sheet import electrode_rows
-from squeezefilm.design.fabrication.report.round_sheet import HEAD as SECTORS
-from squeezefilm.design.fabrication.report.round_sheet import sector_rows
-from squeezefilm.design.fabrication.wiring import leads_of
+from squeezefilm.design.fabrication.wiring import Electrode, leads_of
 from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.parts import Rectangle, Sector
 
 if TYPE_CHECKING:
     from squeezefilm.design.fabrication.fabricate import Fabrication
     from squeezefilm.design.fabrication.test_plan import Check
     from squeezefilm.design.fabrication.wiring import BillRow
 
+CERAMICS = ("No.", "x", "y", "Length", "Width", "Thick", "Joined to", "Poled")
+SECTORS = ("Sector", "From", "To", "Joined to", "Poled")
 BILL = ("Item", "What", "Count", "Material", "Size", "Made", "Mass", "Remark")
 STEP = ("Read", "As described", "Expected", "Measured", "Inside", "Remark")
 EXPECTED = ("Quantity", "As described", "Expected", "Remark")
@@ -120,6 +121,33 @@ def layout_rows(made: Fabrication) -> tuple[tuple[str, ...], list[tuple[str, ...
     if isinstance(made.display.actuator, RectangularPlate):
         return CERAMICS, electrode_rows(made.electrodes)
     return SECTORS, sector_rows(made.electrodes)
+
+
+def electrode_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
+    """Rows of where each ceramic lies and what its outer electrode is joined to, in millimetres."""
+    rows = []
+    for electrode in electrodes:
+        shape = electrode.footprint
+        assert isinstance(shape, Rectangle)
+        sizes = (shape.x, shape.y, shape.length, shape.width, electrode.thickness)
+        poled = "away" if electrode.poling > 0 else "towards"
+        where = "" if electrode.face == "bottom" else " (top)"
+        rows.append(
+            (f"{electrode.ceramic}{where}", *map(millimetres, sizes), electrode.connection, poled)
+        )
+    return rows
+
+
+def sector_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
+    """Rows of where each electrode begins and ends, and what it is joined to."""
+    rows = []
+    for electrode in electrodes:
+        shape = electrode.footprint
+        assert isinstance(shape, Sector)
+        ends = (f"{math.degrees(angle):.6g}°" for angle in (shape.start, shape.end))
+        poled = "away" if electrode.poling > 0 else "towards"
+        rows.append((electrode.name, *ends, electrode.connection, poled))
+    return rows
 
 
 def lead_rows(made: Fabrication) -> list[tuple[str, ...]]:

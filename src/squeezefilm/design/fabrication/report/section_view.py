@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -17,6 +17,7 @@ from squeezefilm.design.fabrication.report.sheet_parts import (
     tolerance_said,
 )
 from squeezefilm.design.fabrication.wiring import ANTIPHASE
+from squeezefilm.physics.plate.layout import Actuator, AnnularStator, RectangularPlate
 from squeezefilm.physics.plate.parts import Part, Rectangle, Sector
 
 if TYPE_CHECKING:
@@ -80,12 +81,10 @@ def section_view(
     parts: Sequence[Part],
     middle: float,
     top: float,
-    keys: Mapping[int, str],
 ) -> tuple[str, ...]:
     """Draw the best cut through `parts` about a `middle` with its upper face at `top` (mm of
     paper), with the thicknesses of the substrate and, at the right end, of what is bonded to each
-    face; `keys` are those of the description by what they are of (0: the substrate, n: ceramic n,
-    −n: its glue). Notes of tolerances that have no room beside their numbers."""
+    face. Notes of tolerances that have no room beside their numbers."""
     cut = best_cut(parts)
     met = [(part, widths) for part in parts if (widths := spans(part, cut))]
     high, low = max(part.top for part, _ in met), min(part.bottom for part, _ in met)
@@ -110,8 +109,8 @@ def section_view(
     base, said = met[0][0], []
     right = max(ends) + shift
     for part in (base, *_stacks(met)):
-        number = {"ceramic": part.number, "glue": -part.number}.get(part.kind, 0)
-        key = keys.get(number, "") if part is base or number else ""
+        tooth = part.kind == "substrate" and part is not base
+        key = "" if tooth else _key_of_thickness(part, made.display.actuator)
         said.append((part, key, tolerance_said(made.display, key) if key else ""))
     room = VIEWS[2] + 4.0 - (right / sheet.unit + sheet.origin[0])
     fits = max(end for *_, end in _columns(said)) <= room
@@ -138,6 +137,17 @@ def section_view(
         if tolerance
     ]
     return () if fits or not stated else (f"Thicknesses: {'; '.join(stated)}.",)
+
+
+def _key_of_thickness(part: Part, actuator: Actuator) -> str:
+    """Key of the description that a part's thickness has; "" where it states none."""
+    if isinstance(actuator, AnnularStator):
+        return ""
+    of_ceramic = "ceramic_thickness"
+    if isinstance(actuator, RectangularPlate):
+        of_ceramic = f"patches.{part.number - 1}.thickness"
+    keys = {"substrate": "thickness", "ceramic": of_ceramic, "glue": "glue.thickness"}
+    return f"actuator.{keys[part.kind]}"
 
 
 _Said = tuple[Part, str, str]

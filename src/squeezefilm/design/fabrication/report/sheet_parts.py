@@ -26,6 +26,7 @@ from squeezefilm.core.formats.drawing import (
 )
 from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.results import stamp
+from squeezefilm.design.fabrication.report.rows import layout_rows
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.parameters import value_at
 
@@ -331,8 +332,6 @@ def title_block(sheet: Sheet, title: str, name: str, rows: Sequence[tuple[str, s
 def finished(
     sheet: Sheet,
     made: Fabrication,
-    head: Sequence[str],
-    rows: Sequence[Sequence[str]],
     texts: Iterable[str],
 ) -> Drawing:
     """The drawing of a sheet that has its views: with title block, table of electrodes, notes."""
@@ -355,7 +354,7 @@ def finished(
             ("Date (UTC)", str(origin["created_utc"])[:10]),
         ],
     )
-    y = table(sheet, head, rows, VIEWS[3], block + 110.0)
+    y = table(sheet, *layout_rows(made), VIEWS[3], block + 110.0)
     notes(sheet, texts, y - 3.0)
     return sheet.drawing()
 

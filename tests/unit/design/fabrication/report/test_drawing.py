@@ -30,8 +30,8 @@ from squeezefilm.core.kit.sheet import sheet_figure
 from squeezefilm.design.fabrication.fabricate import Fabrication
 from squeezefilm.design.fabrication.report import sheet_parts
 from squeezefilm.design.fabrication.report.page import drawing_sheet
-from squeezefilm.design.fabrication.report.rectangular_sheet import electrode_rows
-from squeezefilm.design.fabrication.report.round_sheet import sector_rows
+from squeezefilm.design.fabrication.report.rectangular_sheet import rectangular_sheet
+from squeezefilm.design.fabrication.report.rows import electrode_rows, sector_rows
 from squeezefilm.design.fabrication.report.section_view import Cut, best_cut, spans, stretch_for
 from squeezefilm.design.fabrication.report.sheet_parts import (
     LETTER,
@@ -190,7 +190,7 @@ def test_eleven_strips_on_a_thin_plate_are_legible(
         for k in range(11)
     )
     thin = dataclasses.replace(plate, length=0.12, width=0.02, thickness=0.5e-3, patches=strips)
-    drawing = drawing_sheet(with_body(base, thin))
+    drawing = rectangular_sheet(with_body(base, thin), ("A is driven with +V, B with −V.",))
     require_apart(drawing)
     starts = [one.said for one in drawing.items if isinstance(one, Ordinate) and not one.upright]
     assert starts == [f"{1 + 10.75 * k:g}" for k in range(11)]
