@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 import operator
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.perception.stimuli import Stimulus, Varied
+from squeezefilm.physics.perception.stimuli import Grating, Stimulus, Varied
 from squeezefilm.study.design.tasks.every_task import TASKS
-
-if TYPE_CHECKING:
-    from squeezefilm.study.design.study_design import StudyDesign
+from squeezefilm.study.design.tasks.task import StudyTask
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,79}")
 _LEAST_RANGE = 2.0
@@ -225,11 +224,17 @@ Exploring = Literal["strokes", "free"]
 """Ways to explore: to and fro along x, or over the whole face."""
 
 
-def require_matching(design: StudyDesign) -> None:
-    """Refuse answers that do not fit a design's task, or the way in which they are explored.
-    Raises `InputError` that says what fits."""
-    task, stimuli, alternatives = design.task, design.stimuli, design.alternatives
-    matching, among = task == "match-to-sample", design.matched_with == "stimuli"
+def require_matching(
+    task: str,
+    matched_with: MatchedWith,
+    exploring: Exploring,
+    stimuli: Sequence[Stimulus],
+    alternatives: Sequence[Grating],
+    names: Sequence[str],
+) -> None:
+    """Refuse answers that do not fit the task, or the way in which they are explored; `names` are
+    those that may be given. Raises `InputError` that says what fits."""
+    matching, among = task == "match-to-sample", matched_with == "stimuli"
     if among and (not matching or alternatives or len(stimuli) < 2):
         raise InputError(
             'matched_with = "stimuli" is for match-to-sample among two or more stimuli without '
@@ -249,13 +254,12 @@ def require_matching(design: StudyDesign) -> None:
             f"task = '{task}' has no alternatives; remove them or take match-to-sample",
             quantity="alternatives",
         )
-    if alternatives and design.exploring == "free":
+    if alternatives and exploring == "free":
         raise InputError(
             'real gratings are explored by strokes along x; for exploring = "free" take '
             'matched_with = "stimuli"',
             quantity="exploring",
         )
-    names = design.answers
     for stimulus in stimuli:
         if stimulus.matches and stimulus.matches not in names:
             raise InputError(
@@ -266,13 +270,19 @@ def require_matching(design: StudyDesign) -> None:
             )
 
 
-def require_amounts(design: StudyDesign) -> None:
+def require_amounts(
+    task: StudyTask,
+    judged: str,
+    stimuli: Sequence[Stimulus],
+    amounts: Sequence[float],
+    reference: str,
+    in_amounts: bool,
+) -> None:
     """Refuse a task that compares amounts where a surface has none of what is judged (NaN): a
     shape has no period; and a reference that is not flat where one is detected against it."""
-    task, judged, reference = design.described, design.judged, design.reference
-    amounts = {stimulus.name: design.judged_value(stimulus) for stimulus in design.stimuli}
-    of_reference = amounts.get(reference)
-    if task.reference == "flat" and (judged != "friction_depth" or of_reference != 0.0):
+    flat = task.reference == "flat"
+    of_reference = dict(zip((one.name for one in stimuli), amounts, strict=True)).get(reference)
+    if flat and (judged != "friction_depth" or of_reference != 0.0):
         raise InputError(
             f"task = '{task.name}' detects a surface against a flat one: say judged = "
             '"friction_depth", and name a stimulus with waveform = "constant" as the reference',
@@ -280,10 +290,9 @@ def require_amounts(design: StudyDesign) -> None:
         )
     if task.name in ("match-to-sample", "same-different"):
         return
-    if task.ranks and any(map(math.isnan, amounts.values())):
+    if task.ranks and any(map(math.isnan, amounts)):
         return
-    for stimulus in design.stimuli:
-        amount = amounts[stimulus.name]
+    for stimulus, amount in zip(stimuli, amounts, strict=True):
         if (
             task.ordered
             and task.surfaces > 1
@@ -296,7 +305,7 @@ def require_amounts(design: StudyDesign) -> None:
                 quantity="stimuli",
             )
         if math.isnan(amount) or (
-            amount <= 0 and (task.ranks or task.model is not None) and not design.in_amounts
+            amount <= 0 and (task.ranks or task.model is not None) and not in_amounts
         ):
             raise InputError(
                 f"stimulus '{stimulus.name}' ({stimulus.kind}) has no {judged}, which "
@@ -306,9 +315,16 @@ def require_amounts(design: StudyDesign) -> None:
             )
 
 
-def require_comparison(design: StudyDesign) -> None:
+def require_comparison(
+    task: StudyTask,
+    reference: str,
+    stimuli: int,
+    is_adaptive: bool,
+    practice: int,
+    practice_criterion: si.Dimensionless,
+    modulus: si.Dimensionless,
+) -> None:
     """Refuse a task without what it compares with, and numbers that it does not take."""
-    task, reference, stimuli = design.described, design.reference, len(design.stimuli)
     if task.reference and not reference:
         raise InputError(
             f"task = '{task.name}' compares with a reference; name one of the stimuli",
@@ -320,36 +336,36 @@ def require_comparison(design: StudyDesign) -> None:
             f"[[stimuli]], there are {stimuli}",
             quantity="stimuli",
         )
-    if task.reference and stimuli < 2 and not design.adaptive:
+    if task.reference and stimuli < 2 and not is_adaptive:
         raise InputError(
             "only the reference is there; add a stimulus to compare with it, or [[adaptive]]",
             quantity="stimuli",
         )
-    if task.name == "adjustment" and not design.adaptive:
+    if task.name == "adjustment" and not is_adaptive:
         raise InputError(
             'an adjustment is a series of steps: give [[adaptive]] with method = "adjustment", its '
             "highest difference, step and count",
             quantity="adaptive",
         )
-    if design.adaptive and not task.adaptive:
+    if is_adaptive and not task.adaptive:
         taking = ", ".join(name for name, other in TASKS.items() if other.adaptive)
         raise InputError(
             f"adaptive series compare with a reference, in task = {taking}; '{task.name}' does not",
             quantity="adaptive",
         )
-    if task.reference and design.practice and stimuli < 2:
+    if task.reference and practice and stimuli < 2:
         raise InputError(
             "practice needs a stimulus to compare with the reference; add one (adaptive "
             "series use it for practice only), or practice = 0",
             quantity="practice",
         )
-    if design.practice_criterion and (not design.practice or task.name == "magnitude-estimation"):
+    if practice_criterion and (not practice or task.name == "magnitude-estimation"):
         raise InputError(
-            f"practice_criterion = {design.practice_criterion:g} needs practice with right "
+            f"practice_criterion = {practice_criterion:g} needs practice with right "
             "answers; give practice = 8 or so, or leave it out (numbers are never right)",
             quantity="practice_criterion",
         )
-    if design.modulus and (task.name != "magnitude-estimation" or not reference):
+    if modulus and (task.name != "magnitude-estimation" or not reference):
         raise InputError(
             "a modulus needs magnitude-estimation and a reference that it is given to",
             quantity="modulus",

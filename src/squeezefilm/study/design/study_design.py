@@ -137,9 +137,23 @@ class StudyDesign:
                 f"{si.did_you_mean(self.reference, known)} Stimuli: {', '.join(known)}",
                 quantity="reference",
             )
-        require_matching(self)
-        require_amounts(self)
-        require_comparison(self)
+        names = self.answers
+        require_matching(
+            self.task, self.matched_with, self.exploring, self.stimuli, self.alternatives, names
+        )
+        amounts = [self.judged_value(stimulus) for stimulus in self.stimuli]
+        require_amounts(
+            self.described, self.judged, self.stimuli, amounts, self.reference, self.in_amounts
+        )
+        require_comparison(
+            self.described,
+            self.reference,
+            len(self.stimuli),
+            bool(self.adaptive),
+            self.practice,
+            self.practice_criterion,
+            self.modulus,
+        )
         for item in self.adaptive:
             self._require_series(item)
         self._require_answers()
