@@ -57,17 +57,6 @@ class VoltageInterval:
     refused: Refusals
     seed: int
 
-    @property
-    def sentence(self) -> str:
-        """The interval, and what lies beyond the drive."""
-        low, high = (_volts(end) for end in self.interval)
-        said = f"{self.level:.0%} interval {low} to {high}, median {_volts(self.median)}"
-        if self.beyond > 0:
-            said += f"; {self.beyond:.0%} of the draws need more than the drive's {self.limit:g} V"
-        if self.never > 0:
-            said += f", {self.never:.0%} never get there"
-        return said
-
     def summary(self) -> dict[str, Any]:
         """Numbers as plain JSON values."""
         return {
@@ -96,17 +85,6 @@ class Wanted:
     why_not: str = ""
     uncertain: VoltageInterval | None = None
     why_no_interval: str = ""
-
-    @property
-    def sentence(self) -> str:
-        """Sentence on what it takes, as described and over the draws."""
-        if self.voltage is None or self.vibration_amplitude is None:
-            said = f"not reached as described: {self.why_not}"
-        else:
-            said = f"{_volts(self.voltage)} as described ({1e6 * self.vibration_amplitude:.3g} µm)"
-        if self.uncertain is not None:
-            return f"{said}; {self.uncertain.sentence}"
-        return f"{said}; no interval: {self.why_no_interval}" if self.why_no_interval else said
 
     def summary(self) -> dict[str, Any]:
         """Numbers as plain JSON values."""
@@ -157,19 +135,19 @@ def wanted_friction(
         if strict:
             raise
         volts, amplitude, why_not = None, None, str(error)
-    wanted = Wanted(relative_friction, amplitude, volts, why_not)
-    if not samples:
-        return wanted
-    if p.law.position or relative_friction >= 1:
-        why = "the finger is away from the antinode" if p.law.position else "nothing is wanted"
-        return dataclasses.replace(wanted, why_no_interval=why)
-    try:
-        unsure = uncertain_voltage(
-            display, p, relative_friction, samples=samples, seed=seed, progress=progress
-        )
-    except OutOfRangeError as error:
-        return dataclasses.replace(wanted, why_no_interval=str(error))
-    return dataclasses.replace(wanted, uncertain=unsure)
+    unsure, why = None, ""
+    if samples and p.law.position:
+        why = "the finger is away from the antinode"
+    elif samples and relative_friction >= 1:
+        why = "nothing is wanted"
+    elif samples:
+        try:
+            unsure = uncertain_voltage(
+                display, p, relative_friction, samples=samples, seed=seed, progress=progress
+            )
+        except OutOfRangeError as error:
+            why = str(error)
+    return Wanted(relative_friction, amplitude, volts, why_not, unsure, why)
 
 
 @as_drawn()
@@ -277,7 +255,3 @@ def _bracket(
             continue
         here = there
     return here, np.inf
-
-
-def _volts(value: si.Volt | None) -> str:
-    return "no voltage" if value is None else si.format_quantity(value, si.Unit("V"), 3)

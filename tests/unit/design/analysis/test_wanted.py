@@ -85,14 +85,9 @@ def test_what_it_takes_is_said(stator: Display, point: Prediction, half: Voltage
         half, interval=(20.0, None), median=77.0, beyond=0.22, never=0.05, limit=140.0
     )
     wanted = Wanted(0.5, 1.1e-6, 76.9, uncertain=found)
-    assert wanted.sentence == (
-        "76.9 V as described (1.1 µm); 90% interval 20 V to no voltage, median 77 V; 22% of the "
-        "draws need more than the drive's 140 V, 5% never get there"
-    )
     said = wanted.summary()
     assert said["voltage_interval_V"] == [20.0, None]
     assert said["share_beyond_drive"] == 0.22
-    assert Wanted(0.5, None, None, "too far").sentence == "not reached as described: too far"
     short = wanted_friction(stator, point, 0.5, samples=0)
     assert (short.uncertain, short.why_no_interval) == (None, "")
     assert wanted_friction(stator, point, 1.0).why_no_interval == "nothing is wanted"

@@ -34,12 +34,6 @@ class FirstScreen(NamedTuple):
     doubts: list[str]
     next_step: str
 
-    @property
-    def words(self) -> int:
-        """Number of words of all of it."""
-        rows = [" ".join(row) for row in self.numbers]
-        return len(" ".join([self.sentence, *rows, *self.doubts, self.next_step]).split())
-
 
 def first_screen(analysis: Analysis) -> FirstScreen:
     """The few things to decide from, of an analysis."""

@@ -37,14 +37,15 @@ def test_what_one_decides_from_is_one_screen(
 ) -> None:
     analysis = analysis_of(name)
     screen = first_screen(analysis)
-    assert 0 < screen.words <= WORDS
+    said = [screen.sentence, *screen.doubts, screen.next_step]
+    cells = [cell for row in screen.numbers for cell in row]
+    assert 0 < len(" ".join([*said, *cells]).split()) <= WORDS
     assert len(screen.numbers) <= NUMBERS
     assert len(screen.doubts) <= MOST_DOUBTS
     page.show_analysis(analysis)
     text = printed()
     assert len(text.splitlines()) < LINES
     words = " ".join(text.split())
-    said = [screen.sentence, *screen.doubts, screen.next_step]
     places = [words.index(printable(one)) for one in said]
     assert places == sorted(places)
     assert all(" ".join(" ".join(row).split()) in words for row in screen.numbers)
