@@ -68,8 +68,8 @@ def verdict(
     while an objection stands, or where the mode is not driven, nothing is good.
     """
     yield from (Finding("doubt", objection) for objection in p.objections)
-    doubts = () if p.voltage is None else mode_doubts(display, p.mode)
-    yield from (Finding("doubt", doubt.text) for doubt in doubts)
+    if p.voltage is not None:
+        yield from (Finding("doubt", doubt) for doubt in mode_doubts(display, p.mode))
     # Why is said above.
     why = None if why_not_good(display, p) is None else ""
 

@@ -4,8 +4,6 @@ of its name."""
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Literal
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
@@ -36,15 +34,6 @@ _NEAR = 0.15
 _ELSEWHERE: tuple[si.Hertz, si.Hertz] = (HEARING, 60e3)
 
 
-@dataclass(frozen=True)
-class ModeDoubt:
-    """A sentence against the working mode; of the kind "undriven" where nothing good may be said of
-    a display that works in it."""
-
-    kind: Literal["undriven", "audible", "crowded", "ambiguous"]
-    text: str
-
-
 def why_undriven(display: Display, mode: WorkingMode) -> str | None:
     """Reason why the drive does not move a plate's working mode; None where it does.
 
@@ -69,55 +58,48 @@ def why_undriven(display: Display, mode: WorkingMode) -> str | None:
     )
 
 
-def mode_doubts(display: Display, mode: WorkingMode) -> tuple[ModeDoubt, ...]:
-    """Doubts about the mode that a display works in, the worst first.
+def mode_doubts(display: Display, mode: WorkingMode) -> Iterator[str]:
+    """Sentences against the mode that a display works in, the worst first.
 
     What lies around it is taken from a plate's solution, of a plate that was not solved from
     screening (some tenths of a second); of discs and stators it is said only whether people hear
     them. Empty where nothing is to be said, or the plate cannot be screened.
     """
-    return tuple(_doubts(display, mode))
-
-
-def _doubts(display: Display, mode: WorkingMode) -> Iterator[ModeDoubt]:
     plate = display.actuator
     undriven = why_undriven(display, mode)
     if undriven is not None and isinstance(plate, RectangularPlate):
-        yield ModeDoubt("undriven", f"{undriven} {_instead(plate)}")
+        yield f"{undriven} {_instead(plate)}"
     if mode.resonance_frequency < HEARING:
-        yield ModeDoubt(
-            "audible",
+        yield (
             f"{mode.label} is audible: {si.format_quantity(mode.resonance_frequency, _HZ)} lies "
             f"below {si.format_quantity(HEARING, _HZ)}, where people hear the plate whenever it is "
-            "driven. Take a thicker or smaller plate, or a mode with more nodal lines.",
+            "driven. Take a thicker or smaller plate, or a mode with more nodal lines."
         )
     if isinstance(plate, RectangularPlate) and undriven is None:
         yield from _company(plate, mode)
 
 
-def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[ModeDoubt]:
+def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[str]:
     """Neighbours and modes of the same name."""
     modes, solid = _around(plate, mode), mode.solid
     has = None if solid is None else solid.modes.labels[solid.index]
     if solid is not None and has != plate.working_label:
         lines = "moves in its plane" if has is None else f"has nodal lines ({has[0]},{has[1]})"
-        yield ModeDoubt(
-            "ambiguous",
+        yield (
             f"The mode taken, nearest to the working_frequency, {lines} and not {mode.label}: "
-            "nodal lines and half wavelength below are those of its dominant part.",
+            "nodal lines and half wavelength below are those of its dominant part."
         )
     if (company := mode.company) is not None:
-        yield ModeDoubt("crowded", company)
+        yield company
     own = chosen(modes, mode.label, mode.resonance_frequency)
     if own is None:
         return
     if solid is None and own.crowded and own.neighbour_distance is not None:
-        yield ModeDoubt(
-            "crowded",
+        yield (
             f"{mode.label} is crowded: {own.neighbour} lies {own.neighbour_distance:.2g} "
             f"half-bandwidths away (by screening) and adds about {100 * own.neighbour_share:.0f} % "
             "of the amplitude at resonance. Small changes of the plate mix the two: nodal lines "
-            "and amplitude then differ from what is computed.",
+            "and amplitude then differ from what is computed."
         )
     same = [
         other
@@ -131,12 +113,11 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[ModeDoubt]:
             f"{shown_frequency(mode)} ({si.format_quantity(mode.alone_per_volt, _PER_VOLT, 3)})"
             for mode in sorted([own, *same], key=lambda mode: mode.frequency)
         )
-        yield ModeDoubt(
-            "ambiguous",
+        yield (
             f"{len(same) + 1} modes near have the label {mode.label}, at {listed}"
             f"{' by screening' if solid is None else ''}: the most strongly driven was taken, at "
             f"{si.format_quantity(mode.resonance_frequency, _HZ)}. To choose, write "
-            "working_frequency beside nodal_lines.",
+            "working_frequency beside nodal_lines."
         )
 
 

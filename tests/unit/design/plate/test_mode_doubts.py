@@ -58,7 +58,7 @@ def near(monkeypatch: pytest.MonkeyPatch, *modes: ListedMode) -> None:
 
 def test_a_mode_alone_is_not_doubted(monkeypatch: pytest.MonkeyPatch) -> None:
     near(monkeypatch, row("(8,0)", 30e3, 1e-7))
-    assert mode_doubts(PAPER, mode("(8,0)")) == ()
+    assert list(mode_doubts(PAPER, mode("(8,0)"))) == []
 
 
 def test_an_undriven_mode_is_named_with_the_symmetry_and_another(
@@ -66,12 +66,11 @@ def test_an_undriven_mode_is_named_with_the_symmetry_and_another(
 ) -> None:
     near(monkeypatch, row("(6,0)", 25e3, 1e-7))
     (doubt,) = mode_doubts(five_strips(5), mode("(5,0)"))
-    assert doubt.kind == "undriven"
-    assert "(5,0) is not driven: symmetry forbids (5,0)" in doubt.text
-    assert "Write nodal_lines = 6" in doubt.text
+    assert "(5,0) is not driven: symmetry forbids (5,0)" in doubt
+    assert "Write nodal_lines = 6" in doubt
     near(monkeypatch)
     (doubt,) = mode_doubts(five_strips(5), mode("(5,0)"))
-    assert doubt.text.endswith("squeezefilm modes lists what is driven.")
+    assert doubt.endswith("squeezefilm modes lists what is driven.")
 
 
 @pytest.mark.parametrize(("own", "doubted"), [(0.45, True), (0.55, False)])
@@ -85,12 +84,11 @@ def test_a_mode_that_its_neighbours_move_is_hardly_driven(own: float, doubted: b
 def test_people_hear_what_is_below_20_kHz(monkeypatch: pytest.MonkeyPatch) -> None:
     near(monkeypatch)
     (doubt,) = mode_doubts(PAPER, mode("(8,0)", 19.9e3))
-    assert doubt.kind == "audible"
-    assert "19.9 kHz" in doubt.text
-    assert mode_doubts(PAPER, mode("(8,0)", 20.1e3)) == ()
+    assert "19.9 kHz" in doubt
+    assert list(mode_doubts(PAPER, mode("(8,0)", 20.1e3))) == []
     stator = load_display("biet2008-stator")
     (doubt,) = mode_doubts(stator, mode("(0,9)", 10.8e3, solid=None))
-    assert doubt.kind == "audible"
+    assert "(0,9) is audible" in doubt
 
 
 def test_company_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -98,25 +96,23 @@ def test_company_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     near(monkeypatch, crowd)
     # A beam has no neighbours of its own; of a solved plate they are taken from its solution.
     (doubt,) = mode_doubts(PAPER, mode("(8,0)", solid=None))
-    assert doubt.kind == "crowded"
-    assert "(6,4) lies 1.5 half-bandwidths away (by screening) and adds about 30 %" in doubt.text
-    assert mode_doubts(PAPER, mode("(8,0)", beside=Neighbour("(6,4)", 31e3, 4.0, 0.19))) == ()
+    assert "(6,4) lies 1.5 half-bandwidths away (by screening) and adds about 30 %" in doubt
+    assert list(mode_doubts(PAPER, mode("(8,0)", beside=Neighbour("(6,4)", 31e3, 4.0, 0.19)))) == []
     solved = mode("(8,0)", beside=Neighbour("in plane", 31.1e3, 1.15, 0.25))
     (doubt,) = mode_doubts(PAPER, solved)
-    assert (doubt.kind, doubt.text) == ("crowded", solved.company)
-    assert "the mode in plane at 31.1 kHz lies 1.1 half-bandwidths away and adds 25 %" in doubt.text
+    assert doubt == solved.company
+    assert "the mode in plane at 31.1 kHz lies 1.1 half-bandwidths away and adds 25 %" in doubt
     # A mode that the drive hardly moves.
     idle = mode("(8,0)", beside=Neighbour("(8,1)", 31e3, 4.0, 2.9e7)).company
     assert idle is not None
     assert idle.startswith("(8,0) is hidden: the mode (8,1)")
     near(monkeypatch, row("(8,0)", 30e3, 1e-7), row("(8,0)", 31e3, 2e-8))
     (doubt,) = mode_doubts(PAPER, mode("(8,0)"))
-    assert doubt.kind == "ambiguous"
-    assert "2 modes near have the label (8,0), at 30 kHz (100 nm/V) and 31 kHz" in doubt.text
-    assert "write working_frequency" in doubt.text
+    assert "2 modes near have the label (8,0), at 30 kHz (100 nm/V) and 31 kHz" in doubt
+    assert "write working_frequency" in doubt
     # Who chose by frequency knows.
     chosen = dataclasses.replace(PAPER.actuator, working_frequency=30e3)  # type: ignore[type-var]
-    assert mode_doubts(dataclasses.replace(PAPER, actuator=chosen), mode("(8,0)")) == ()
+    assert list(mode_doubts(dataclasses.replace(PAPER, actuator=chosen), mode("(8,0)"))) == []
 
 
 def test_a_mode_chosen_by_frequency_that_has_other_lines_says_so(
@@ -126,15 +122,15 @@ def test_a_mode_chosen_by_frequency_that_has_other_lines_says_so(
     other = mode("(8,0)")
     other.solid.modes.labels = ((6, 4),)  # type: ignore[union-attr,misc]
     (doubt,) = mode_doubts(PAPER, other)
-    assert "has nodal lines (6,4) and not (8,0)" in doubt.text
+    assert "has nodal lines (6,4) and not (8,0)" in doubt
     other.solid.modes.labels = (None,)  # type: ignore[union-attr,misc]
     (doubt,) = mode_doubts(PAPER, other)
-    assert "moves in its plane" in doubt.text
+    assert "moves in its plane" in doubt
 
 
 @pytest.mark.slow
 def test_the_papers_plate_is_not_doubted() -> None:
-    assert mode_doubts(PAPER, working_mode(PAPER.actuator)) == ()
+    assert list(mode_doubts(PAPER, working_mode(PAPER.actuator))) == []
 
 
 def test_good_is_taken_back_where_the_mode_is_not_driven() -> None:
