@@ -17,7 +17,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.distributions import Uniform
-from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.errors import InputError, OutOfRangeError, SqueezefilmError
 from squeezefilm.core.results import Result
 from squeezefilm.design.analysis.coarse_shift import CoarseShifts
 from squeezefilm.physics.chain.prediction import Prediction
@@ -216,34 +216,23 @@ class _Bench:
 
     def shift(self, path: str, value: float) -> Shift:
         """Effect of one value in the place of the described one."""
-        if path.startswith("actuator."):
-            return self._of_plate(_with(self.display, path, value), path, value)
+        of_plate = path.startswith("actuator.")
+        changed = _with(self.display, path, value) if of_plate else self.display
+        frequency = amplitude = None if of_plate else 0.0
         try:
-            return Shift(value, 0.0, 0.0, self._outcome({path: value}))
-        except SqueezefilmError as error:
-            return Shift(value, 0.0, 0.0, None, str(error))
-
-    def _of_plate(self, changed: Display, path: str, value: float) -> Shift:
-        if self.by_beam and self.glued is None and path.startswith(_GLUE):
-            return Shift(
-                value,
-                None,
-                None,
-                None,
-                "a beam knows no glue: leave the theory out, or allow more time",
-            )
-        try:
-            frequency, amplitude, mode = self._moved(changed, path)
-        except SqueezefilmError as error:
-            return Shift(value, None, None, None, str(error))
-        try:
-            friction = self.friction(changed, mode)
+            if of_plate:
+                frequency, amplitude, mode = self._moved(changed, path)
+                friction = self.friction(changed, mode)
+            else:
+                friction = self._outcome({path: value})
         except SqueezefilmError as error:
             return Shift(value, frequency, amplitude, None, str(error))
         return Shift(value, frequency, amplitude, friction)
 
     def _moved(self, changed: Display, path: str) -> tuple[float, float, WorkingMode]:
         """Relative shifts of frequency and amplitude per volt, and the mode that has them."""
+        if self.by_beam and self.glued is None and path.startswith(_GLUE):
+            raise OutOfRangeError("a beam knows no glue: leave the theory out, or allow more time")
         before, actuator = self.prediction.mode, changed.actuator
         if self.beam is not None and isinstance(actuator, RectangularPlate):
             quality = before.quality_factor
