@@ -12,7 +12,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left
-from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.core.results import Result, stamp
 from squeezefilm.design.analysis.area_odds import JudgedArea, judged_area
 from squeezefilm.design.analysis.curves import ModelCurve, as_far_as_it_goes, model_curves
 from squeezefilm.design.analysis.published_claims import missed_by
@@ -81,21 +81,11 @@ class FrictionAnalysis(Result):
         sharing = None if lifted else p.touch.sharing
         unsure = self.uncertainty
         return {
-            "display": self.display.name,
-            "surface": p.surface.name,
-            "voltage_V": p.voltage,
-            "frequency_Hz": p.frequency,
-            "normal_force_N": p.normal_force,
-            "finger_speed_m_per_s": p.speed,
+            **p.summary(),
             "ambient_pressure_Pa": self.display.gas.ambient_pressure,
-            "vibration_amplitude_m": p.vibration_amplitude,
             "free_amplitude_m": p.touch.free_amplitude,
             "amplitude_kept": p.touch.kept,
-            "finger_impedance_N_s_per_m": to_json(p.touch.impedance),
-            "amplitude_model": p.amplitude_model,
-            "place": p.place_summary(),
             "active_area": None if self.active_area is None else self.active_area.summary(),
-            "relative_friction": p.relative_friction,
             "relative_friction_interval": None if unsure is None else list(unsure.interval),
             "interval_level": None if unsure is None else unsure.level,
             "relative_friction_limits": None
@@ -104,10 +94,6 @@ class FrictionAnalysis(Result):
                 "each_ridge_at_its_own_balance": p.relative_friction_limits[0],
                 "all_ridges_at_one_mean_gap": p.relative_friction_limits[1],
             },
-            "friction_reduction": p.friction_reduction,
-            "friction_coefficient": p.friction_coefficient,
-            "tangential_force_N": p.tangential_force,
-            "model": p.model,
             "load_shares": {"film": 1 - p.relative_friction, "asperities": p.relative_friction}
             if lifted
             else None
@@ -119,7 +105,6 @@ class FrictionAnalysis(Result):
                 "residual": sharing.residual,
                 "relative_friction_error": float(sharing.relative_friction_error[0]),
             },
-            "heat": to_json(p.heat),
             "standing_wave_ripple": None if self.ripple is None else self.ripple.ripple,
             "wanted": None if self.wanted is None else self.wanted.summary(),
             "models": [
@@ -132,7 +117,6 @@ class FrictionAnalysis(Result):
             "measurements_missed": _missed(p.model),
             "uncertainty": None if unsure is None else unsure.summary(),
             "verdict": as_json(self.verdict),
-            "warnings": list(p.warnings),
             "provenance": stamp(self.display),
         }
 
