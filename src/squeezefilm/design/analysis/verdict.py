@@ -19,7 +19,7 @@ from squeezefilm.design.analysis.curves import (
 )
 from squeezefilm.design.analysis.ears import AUDIBLE, EarExposure
 from squeezefilm.design.analysis.felt import GratingsLeft
-from squeezefilm.design.plate.mode_doubts import mode_doubts, why_undriven
+from squeezefilm.design.plate.listed_modes import mode_doubts, why_undriven
 from squeezefilm.physics.chain.active_area import CRITERIA
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.physics.chain.prediction import Prediction

@@ -1,7 +1,6 @@
 """List of the modes of a band that the drive can move (`squeezefilm modes`), to choose one by.
 
-A rectangular plate is screened (see `screened_modes`), a disc or a stator solved. What is said of
-the mode that a display has chosen is in `design.plate.mode_doubts`.
+A rectangular plate is screened (see `screened_modes`), a disc or a stator solved.
 """
 
 from __future__ import annotations
@@ -20,7 +19,8 @@ from squeezefilm.design.plate.listed_modes import (
     ListedMode,
     Suggestion,
     chosen,
-    listed_mode,
+    driven_modes,
+    listed_modes,
     suggested,
     wanted_frequency,
     with_neighbours,
@@ -149,10 +149,8 @@ def _of_plate(
     band: tuple[si.Hertz, si.Hertz],
     tell: SayProgress,
 ) -> ModeList:
-    driven = [mode for mode in screened_modes(plate, band) if mode.alone_per_volt > 0]
-    strongest = max((mode.alone_per_volt for mode in driven), default=0.0)
-    driven = [mode for mode in driven if mode.alone_per_volt >= DRIVEN_SHARE * strongest]
-    listed = with_neighbours([listed_mode(mode) for mode in driven])
+    driven = driven_modes(screened_modes(plate, band))
+    listed = listed_modes(driven)
     label = plate.working_label
     working, forbidden = label_name(label), forbidden_by(plate, label)
     own = chosen(listed, working, wanted_frequency(plate))

@@ -10,9 +10,8 @@ import pytest
 
 from squeezefilm.core.errors import GeometryError
 from squeezefilm.design.analysis.verdict import Finding, held_back, verdict
-from squeezefilm.design.plate import mode_doubts as room
-from squeezefilm.design.plate.listed_modes import ListedMode
-from squeezefilm.design.plate.mode_doubts import mode_doubts, why_undriven
+from squeezefilm.design.plate import listed_modes as room
+from squeezefilm.design.plate.listed_modes import ListedMode, mode_doubts, why_undriven
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.solid.resonances import Neighbour

@@ -9,7 +9,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import HZ, KELVIN, A, M, Row, V, W, shown, signed, span
 from squeezefilm.design.analysis.curves import PAPER_CRITERION
 from squeezefilm.design.analysis.verdict import NOTICED_DIFFERENCE, probability_words
-from squeezefilm.design.plate.mode_doubts import why_undriven
+from squeezefilm.design.plate.listed_modes import why_undriven
 from squeezefilm.physics.display import DECAY_LENGTH
 from squeezefilm.physics.uncertainty.parameters import parameter_name
 
