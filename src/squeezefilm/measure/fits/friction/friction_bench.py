@@ -7,6 +7,7 @@ finger differs from stroke to stroke. All intervals are of the spread between st
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,7 +28,9 @@ from squeezefilm.measure.fits.friction.strokes import Strokes, sliding_strokes
 from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
 from squeezefilm.measure.recordings.kinds import FrictionBench
 
-_DRIFT = 2  # degree in time; a finger sweats or dries
+# By the degree in time; a finger sweats or dries.
+_DRIFT = ("drift", "bend of the drift")
+_Flags = np.ndarray[tuple[int, ...], np.dtype[np.bool]]
 # Amplitudes nearer than this share of the largest are one level.
 _LEVEL = 0.04
 _MOST_LEVELS = 24
@@ -95,7 +98,7 @@ def fit_friction_bench(recording: FrictionBench) -> FrictionBenchFit:
     """
     strokes = sliding_strokes(recording)
     strokes, floating = _touching(strokes)
-    fit = _Fitted.of(strokes).read(recording, strokes)
+    fit = _Fitted.of(strokes).read(recording)
     if not floating:
         return fit
     shown = " and ".join(f"{1e6 * amplitude:.3g} µm" for amplitude in floating)
@@ -145,13 +148,13 @@ def _levels(amplitude: si.MetreArray) -> tuple[si.MetreArray, si.IntArray]:
 
 @dataclass(frozen=True, eq=False)
 class _Fitted:
-    """ln µ of strokes by columns of a `matrix`: by level, speed, force, time and direction."""
+    """ln µ of `strokes` by the columns of a `matrix`: first one for each of the `levels`, then
+    those whose `names` say it."""
 
+    strokes: Strokes
     levels: si.MetreArray
-    speed: si.MetrePerSecond
-    force: si.Newton
-    speeds_vary: bool
-    forces_vary: bool
+    middle: Mapping[str, float]
+    names: tuple[str, ...]
     matrix: si.FloatArray
     fit: SeparableFit
 
@@ -159,25 +162,25 @@ class _Fitted:
     def of(cls, strokes: Strokes) -> _Fitted:
         """Raises `InputError` for too few strokes, or columns that cannot be told apart."""
         levels, number = _levels(strokes.column("amplitude"))
-        speed, force = (np.log(strokes.column(name)) for name in ("speed", "force"))
-        middle = float(np.exp(np.mean(speed))), float(np.exp(np.mean(force)))
-        vary = bool(np.std(speed) > _VARIED), bool(np.std(force) > _VARIED)
         share = levels[number] / max(levels[-1], 1e-15)
-        columns = [(number == i).astype(float) for i in range(levels.size)]
-        for deviation, varied in ((speed - speed.mean(), vary[0]), (force - force.mean(), vary[1])):
-            if varied:
-                columns.append(deviation)
+        columns = {f"level {i}": (number == i).astype(float) for i in range(levels.size)}
+        middle = {}
+        for name in ("speed", "force"):
+            logs = np.log(strokes.column(name))
+            middle[name] = float(np.exp(np.mean(logs)))
+            if np.std(logs) > _VARIED:
+                columns[name] = logs - logs.mean()
                 if levels.size > 1:
-                    columns.append(deviation * share)
+                    columns[f"{name} by amplitude"] = columns[name] * share
         t = strokes.column("time")
         place = 2 * (t - t[0]) / max(t[-1] - t[0], 1e-12) - 1
         # Orthogonal over the strokes, so that levels are those of the session's middle.
-        basis = np.polynomial.legendre.legvander(place, _DRIFT)[:, 1:]
-        columns += list((basis - basis.mean(axis=0)).T)
+        basis = np.polynomial.legendre.legvander(place, len(_DRIFT))[:, 1:]
+        columns |= dict(zip(_DRIFT, (basis - basis.mean(axis=0)).T, strict=True))
         direction = strokes.column("direction")
         if np.ptp(direction) > 0:
-            columns.append(direction - direction.mean())
-        matrix = np.stack(columns, axis=1)
+            columns["direction"] = direction - direction.mean()
+        matrix = np.stack(list(columns.values()), axis=1)
         if len(strokes.rows) < len(columns) + 2:
             raise InputError(
                 f"{len(strokes.rows)} strokes were recorded; {levels.size} amplitudes, "
@@ -189,18 +192,12 @@ class _Fitted:
                 "be told from the others; vary them in a mixed order"
             )
         fit = linear_fit(matrix, np.log(strokes.column("coefficient")))
-        return cls(levels, *middle, *vary, matrix, fit)
+        return cls(strokes, levels, middle, tuple(columns), matrix, fit)
 
     @property
-    def after_speed(self) -> int:
-        """The first column after those of the speed."""
-        return self.levels.size + (2 if self.levels.size > 1 else 1) * self.speeds_vary
-
-    @property
-    def drift(self) -> slice:
-        """The columns of the drift."""
-        first = self.after_speed + (2 if self.levels.size > 1 else 1) * self.forces_vary
-        return slice(first, first + _DRIFT)
+    def drifts(self) -> _Flags:
+        """Flags of the drift's columns."""
+        return np.isin(self.names, _DRIFT)
 
     def sum(self, row: si.FloatArray, *, exponential: bool = False) -> Estimate:
         """A weighted sum of the fitted numbers, or e to that."""
@@ -208,43 +205,33 @@ class _Fitted:
         value, freedom = float(row @ self.fit.weights), self.fit.freedom
         return interval_around(value, error, freedom, "1", logarithmic=exponential)
 
-    def one(self, i: int, other: int | None = None) -> si.FloatArray:
-        row = np.zeros(self.matrix.shape[1])
-        row[i] = 1.0
-        if other is not None:
-            row[other] = -1.0
-        return row
-
-    def read(self, recording: FrictionBench, strokes: Strokes) -> FrictionBenchFit:
-        count = self.levels.size
+    def read(self, recording: FrictionBench) -> FrictionBenchFit:
+        count, alone = self.levels.size, np.eye(self.matrix.shape[1])
         still = self.levels[0] < _LEVEL * self.levels[-1] or count == 1
-        relative = (
-            [self.sum(self.one(i, 0), exponential=True) for i in range(1, count)] if still else []
-        )
-        from_first_to_last = np.zeros(self.matrix.shape[1])
-        from_first_to_last[self.drift] = self.matrix[-1, self.drift] - self.matrix[0, self.drift]
-        spread = float(np.sqrt(np.sum(self.fit.residual**2) / self.fit.freedom))
+        exponents = {name: self.sum(row) for name, row in zip(self.names, alone, strict=True)}
         return FrictionBenchFit(
             recording=recording,
-            strokes=strokes,
+            strokes=self.strokes,
             amplitudes=self.levels,
-            speed=self.speed,
-            normal_force=self.force,
-            coefficients=tuple(self.sum(self.one(i), exponential=True) for i in range(count)),
-            relative_friction=tuple(relative),
-            speed_exponent=self.sum(self.one(count)) if self.speeds_vary else None,
-            force_exponent=self.sum(self.one(self.after_speed)) if self.forces_vary else None,
-            drift=self.sum(from_first_to_last),
-            between_strokes=spread,
-            adequacy=self._adequacy(strokes),
+            speed=self.middle["speed"],
+            normal_force=self.middle["force"],
+            coefficients=tuple(self.sum(row, exponential=True) for row in alone[:count]),
+            relative_friction=tuple(
+                self.sum(row - alone[0], exponential=True) for row in alone[1:count] if still
+            ),
+            speed_exponent=exponents.get("speed"),
+            force_exponent=exponents.get("force"),
+            drift=self.sum((self.matrix[-1] - self.matrix[0]) * self.drifts),
+            between_strokes=float(np.sqrt(np.sum(self.fit.residual**2) / self.fit.freedom)),
+            adequacy=self._adequacy(),
         )
 
-    def _adequacy(self, strokes: Strokes) -> Adequacy:
-        friction = strokes.column("coefficient")
+    def _adequacy(self) -> Adequacy:
+        friction = self.strokes.column("coefficient")
         adequacy = adequacy_of(
             friction,
             friction - np.exp(self.fit.model),
-            lambda i: f"at {strokes.rows[i].time:.4g} s",
+            lambda i: f"at {self.strokes.rows[i].time:.4g} s",
             remedy="The finger changed otherwise than by a slow drift: leave out what went wrong.",
         )
         confounded = self._confounded()
@@ -263,13 +250,12 @@ class _Fitted:
         count = self.levels.size
         if count < 2:
             return None
-        keep = np.ones(self.matrix.shape[1], dtype=bool)
-        keep[self.drift] = False
-        # In units of the noise: what the columns alone do.
-        whole, without = (np.linalg.pinv(m.T @ m) for m in (self.matrix, self.matrix[:, keep]))
-        ratio = []
-        for i in range(1, count):
-            row = self.one(i, 0)
-            ratio.append(np.sqrt((row @ whole @ row) / (row[keep] @ without @ row[keep])))
+        # In units of the noise: what the columns alone do, of which those of levels come first.
+        apart = np.eye(count)[1:] - np.eye(count)[0]
+        whole, without = (
+            np.diag(apart @ np.linalg.pinv(m.T @ m)[:count, :count] @ apart.T)
+            for m in (self.matrix, self.matrix[:, ~self.drifts])
+        )
+        ratio = np.sqrt(whole / without)
         worst = int(np.argmax(ratio))
         return worst + 1 if ratio[worst] > _CONFOUNDED else None
