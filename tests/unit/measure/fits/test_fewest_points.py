@@ -10,7 +10,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.complex_fit import require_passive
-from squeezefilm.measure.fits.friction.strokes import sliding_strokes
+from squeezefilm.measure.fits.friction.friction_bench import sliding_strokes
 from squeezefilm.measure.fits.vibration.frequency_response import fit_frequency_response
 from squeezefilm.measure.fits.vibration.line_scan import fit_line_scan
 from squeezefilm.measure.fits.vibration.raw_signals import fit_raw_signals

@@ -9,8 +9,12 @@ import pytest
 from tests.made_bench.strokes import PlannedStrokes, recorded_strokes
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.friction.friction_bench import _Fitted, _levels, fit_friction_bench
-from squeezefilm.measure.fits.friction.strokes import sliding_strokes
+from squeezefilm.measure.fits.friction.friction_bench import (
+    _Fitted,
+    _levels,
+    fit_friction_bench,
+    sliding_strokes,
+)
 
 LEVELS = np.array([0.0, 0.5e-6, 1e-6, 2e-6])
 RELATIVE = 0.2 + 0.8 * np.exp(-LEVELS / 0.8e-6)
