@@ -7,8 +7,8 @@ places, times and frequencies of the points may not.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, Literal
+from dataclasses import dataclass, field, fields
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -70,13 +70,18 @@ class Told:
         return [(what, how) for what, how in said if how]
 
 
+@dataclass(frozen=True, eq=False)
 class _Rows:
-    """Series of one length: the attributes that `_alike` names."""
-
-    _alike: ClassVar[tuple[str, ...]]
+    """Series of one length: all fields that are arrays by their types, or where one was given."""
 
     def __post_init__(self) -> None:
-        si.require_alike(**{name: getattr(self, name) for name in self._alike})
+        given = {entry.name: (entry.type, getattr(self, entry.name)) for entry in fields(self)}
+        series = {
+            name: values
+            for name, (of, values) in given.items()
+            if "Array" in str(of) or isinstance(values, np.ndarray)
+        }
+        si.require_alike(**series)
 
 
 @si.checked_numbers
@@ -95,8 +100,6 @@ class ImpedanceSweep(_Rows):
     compensated: bool | None = None
     phase_recorded: bool = True
     in_series: si.Ohm = 0.0
-
-    _alike = ("frequency", "admittance")
 
     def as_recorded(self, admittance: si.ComplexArray) -> si.Array:
         """What such a sweep records of a body's admittance (S, (points,)): all of it; without a
@@ -120,8 +123,6 @@ class FrequencyResponse(_Rows):
     told: Told = field(default_factory=Told)
     place: tuple[si.Metre, si.Metre] | None = None
 
-    _alike = ("frequency", "displacement_per_volt", "coherence")
-
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
@@ -134,8 +135,6 @@ class LineScan(_Rows):
     frequency: si.Hertz
     voltage: si.Volt | None = None
     told: Told = field(default_factory=Told)
-
-    _alike = ("position", "displacement")
 
 
 @si.checked_numbers
@@ -150,8 +149,6 @@ class GridScan(_Rows):
     frequency: si.Hertz
     voltage: si.Volt | None = None
     told: Told = field(default_factory=Told)
-
-    _alike = ("x", "y", "displacement")
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,8 +205,6 @@ class FrictionBench(_Rows):
     told: Told = field(default_factory=Told)
     frequency: si.Hertz | None = None
 
-    _alike = ("time", "normal_force", "tangential_force", "position", "vibration_amplitude")
-
 
 FrictionQuantity = Literal["friction_force", "friction_coefficient", "relative_friction"]
 """Quantity of a friction curve: the force (N), µ, or µ′/µ."""
@@ -217,7 +212,7 @@ FrictionQuantity = Literal["friction_force", "friction_coefficient", "relative_f
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
-class FrictionCurve:
+class FrictionCurve(_Rows):
     """Friction against `vibration_amplitude` (m), both (points,), as it was measured: `friction` is
     a force in newtons, a coefficient or µ′/µ, as `quantity` says.
 
@@ -243,10 +238,7 @@ class FrictionCurve:
     def __post_init__(self) -> None:
         # In newtons or a number: whatever the unit, each is finite.
         si.require("friction", self.friction, si.Unit("1"))
-        alike = {"vibration_amplitude": self.vibration_amplitude, "friction": self.friction}
-        conditions = ("frequency", "normal_force", "speed", "spread")
-        alike |= {name: getattr(self, name) for name in conditions}
-        si.require_alike(**{name: of for name, of in alike.items() if np.ndim(of)})
+        super().__post_init__()
 
     @property
     def deviation(self) -> si.FloatArray | None:
@@ -279,8 +271,6 @@ class FrictionDecays(_Rows):
     told: Told = field(default_factory=Told)
     display: str = ""
 
-    _alike = ("decay_amplitude", "friction_coefficient")
-
 
 @si.checked_numbers
 @dataclass(frozen=True, eq=False)
@@ -294,8 +284,6 @@ class FingertipImpedances(_Rows):
     normal_force: si.Newton
     told: Told = field(default_factory=Told)
     display: str = ""
-
-    _alike = ("damping", "mass")
 
 
 @si.checked_numbers
@@ -311,8 +299,6 @@ class DetectionThresholds(_Rows):
     speed: si.MetrePerSecond
     people: Annotated[int, si.AtLeast(1)]
     told: Told = field(default_factory=Told)
-
-    _alike = ("period", "amplitude")
 
 
 Recording = (
