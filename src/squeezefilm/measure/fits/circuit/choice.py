@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -48,6 +50,9 @@ CORRECTIONS = ("coupling_loss", "leads", "drift")
 
 Fitted = tuple[ComplexFit, Layout]
 _Starts = tuple[si.HertzArray, si.DimensionlessArray]
+_Corrections = tuple[frozenset[str], ...]
+# The fit of a layout from the poles of a sweep; None where there are not so many.
+_Trial = Callable[[Layout], Fitted | None]
 
 
 def chosen_circuit(
@@ -56,53 +61,41 @@ def chosen_circuit(
     """The fit of as many branches as were asked for, or as the sweep asks for, with the corrections
     that are told; and its rivals: as many corrections of another kind, which the sweep does not
     tell from them. Raises `InputError` for a sweep without a resonance."""
-    trials = _Trials(sweep, _corrections(sweep, drift))
-    return _settled(trials, _chosen(trials, branches))
+    corrections = _corrections(sweep, drift)
+    starts = functools.cache(partial(_starts, sweep.frequency, sweep.admittance))
+
+    @functools.cache
+    def trial(layout: Layout) -> Fitted | None:
+        start = starts(layout.branches)
+        return None if start is None else _fitted(sweep, layout, *start)
+
+    return _settled(trial, corrections, _chosen(sweep, trial, corrections, branches))
 
 
-@dataclass(frozen=True, eq=False)
-class _Trials:
-    """Fits of layouts to a sweep, each made once; `corrections` are what may stand beside the
-    branches."""
-
-    sweep: ImpedanceSweep
-    corrections: tuple[frozenset[str], ...]
-    fits: dict[Layout, Fitted | None] = field(default_factory=dict)
-    starts: dict[int, _Starts | None] = field(default_factory=dict)
-
-    def of(self, layout: Layout) -> Fitted | None:
-        """The fit of a layout from the poles of the sweep; None where there are not so many."""
-        if layout not in self.fits:
-            count = layout.branches
-            if count not in self.starts:
-                self.starts[count] = _starts(self.sweep.frequency, self.sweep.admittance, count)
-            start = self.starts[count]
-            self.fits[layout] = None if start is None else _fitted(self.sweep, layout, *start)
-        return self.fits[layout]
-
-
-def _chosen(trials: _Trials, branches: int | None) -> Fitted:
+def _chosen(
+    sweep: ImpedanceSweep, trial: _Trial, corrections: _Corrections, branches: int | None
+) -> Fitted:
     """The fit of as many branches as were asked for, or as the sweep asks for."""
     counts = range(1, MOST_BRANCHES + 1) if branches is None else (branches,)
     best: Fitted | None = None
     since = 0
     for count in counts:
-        for step in _layouts(count, trials.corrections):
+        for step in _layouts(count, corrections):
             if best is not None and (best[0].correlation == 1.0 or since == _PATIENCE):
                 return best
-            tried = [trials.of(layout) for layout in step]
-            tried.append(_one_more(trials.sweep, step[0], best))
+            tried = [trial(layout) for layout in step]
+            tried.append(_one_more(sweep, step[0], best))
             told = [fit for fit in tried if fit is not None and (not best or _better(fit, best))]
             if told:
                 best, since = min(told, key=_criterion), 0
             else:
                 since += 1
     if best is None:
-        raise _no_resonance(trials.sweep, branches or 1)
+        raise _no_resonance(sweep, branches or 1)
     return best
 
 
-def _corrections(sweep: ImpedanceSweep, drift: bool) -> tuple[frozenset[str], ...]:
+def _corrections(sweep: ImpedanceSweep, drift: bool) -> _Corrections:
     """Corrections that may stand beside the branches, the plainer first: what was told stands in
     all."""
     told = {"drift"} if drift else set()
@@ -120,7 +113,7 @@ def _corrections(sweep: ImpedanceSweep, drift: bool) -> tuple[frozenset[str], ..
     )
 
 
-def _layouts(count: int, corrections: Sequence[frozenset[str]]) -> Iterator[tuple[Layout, ...]]:
+def _layouts(count: int, corrections: _Corrections) -> Iterator[tuple[Layout, ...]]:
     """Circuits of that many branches, the plainer first, those of one step beside each other; only
     one branch can soften."""
     made = [Layout(count, **dict.fromkeys(names, True)) for names in corrections]
@@ -135,15 +128,15 @@ def _corrected(layout: Layout) -> int:
     return sum(getattr(layout, name) for name in CORRECTIONS)
 
 
-def _settled(trials: _Trials, best: Fitted) -> tuple[Fitted, list[Fitted]]:
+def _settled(trial: _Trial, corrections: _Corrections, best: Fitted) -> tuple[Fitted, list[Fitted]]:
     """The fit with the corrections that are told, though what is left looked like noise (leads far
     too small to be seen there move Q by more than its interval); and its rivals."""
     if best[1].softening:
         return best, []
     corrected = _corrected(best[1])
     tried = [
-        trials.of(layout)
-        for step in _layouts(best[1].branches, trials.corrections)
+        trial(layout)
+        for step in _layouts(best[1].branches, corrections)
         for layout in step
         if corrected <= _corrected(layout) <= corrected + 1
         and (not layout.softening or best[0].correlation > 1.0)
