@@ -204,13 +204,12 @@ def _of_plate(
         return {}
     asked = tuple(dict.fromkeys(asked_by(one) for one in wanted))
     scores = NormalScores(calibration_parameters(display))
-    rows = scores.values(prior_scores(len(scores.parameters), _SOLVED, seed))
-    paths = [parameter.path for parameter in scores.parameters]
     drawn = []
-    for number, row in enumerate(rows, 1):
-        tell(f"plate {number} of {len(rows)}", (number - 1) / len(rows))
-        made = with_calibrated(display, dict(zip(paths, row.tolist(), strict=True)))
-        drawn.append(solved_answers(made.actuator, asked).values)
+    for number, values in enumerate(
+        scores.by_path(prior_scores(len(scores.parameters), _SOLVED, seed))
+    ):
+        tell(f"plate {number + 1} of {_SOLVED}", number / _SOLVED)
+        drawn.append(solved_answers(with_calibrated(display, values).actuator, asked).values)
     random = np.random.default_rng(seed)
     # Many errors of the model for each solved plate: these are cheap.
     many = np.repeat(np.array(drawn), 32, axis=0)

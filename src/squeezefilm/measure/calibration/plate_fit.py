@@ -53,14 +53,13 @@ class PlateFit:
     @property
     def paths(self) -> tuple[str, ...]:
         """Paths of the parameters."""
-        return tuple(parameter.path for parameter in self.problem.scores.parameters)
+        return self.problem.scores.paths
 
     @property
     def middle(self) -> Mapping[str, float]:
         """The values by path at the mean of the posterior's scores, which keeps what only
         combinations of them fix."""
-        row = self.problem.scores.values(self.posterior.scores.mean(axis=0)[None, :])[0]
-        return dict(zip(self.paths, row.tolist(), strict=True))
+        return next(self.problem.scores.by_path(self.posterior.scores.mean(axis=0)[None, :]))
 
 
 def answers_to_solve(display: Display, observations: tuple[Observation, ...]) -> tuple[Asked, ...]:
@@ -103,12 +102,11 @@ class Solves:
 
     def add(self, points: si.DimensionlessArray, said: str, tell: ShareProgress) -> None:
         """Solve plates at scores; one that has no such mode is left out and counted."""
-        paths = [parameter.path for parameter in self.scores.parameters]
-        for number, (point, row) in enumerate(zip(points, self.scores.values(points), strict=True)):
+        for number, values in enumerate(self.scores.by_path(points)):
             tell(f"{said}: plate {number + 1} of {len(points)}", number / len(points))
             try:
-                display = with_calibrated(self.display, dict(zip(paths, row.tolist(), strict=True)))
-                solved = solved_answers(display.actuator, self.asked)
+                actuator = with_calibrated(self.display, values).actuator
+                solved = solved_answers(actuator, self.asked)
             except SqueezefilmError as error:
                 self.refused.append(str(error))
                 continue
@@ -116,7 +114,7 @@ class Solves:
             if np.any(lacking):
                 self.refused.append(f"it has no {self.asked[int(np.argmax(lacking))].said}")
                 continue
-            self.points.append(point)
+            self.points.append(points[number])
             self.solved.append(solved)
 
     def require_enough(self) -> None:

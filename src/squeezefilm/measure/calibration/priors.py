@@ -9,7 +9,7 @@ ones: stiffness, charge and permittivity.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, NamedTuple, cast
 
 import numpy as np
@@ -204,9 +204,11 @@ class NormalScores:
             -1, 2
         )
         self._middle, self._half = ends.mean(axis=1), np.diff(ends, axis=1)[:, 0] / 2
-        paths = [parameter.path for parameter in parameters]
+        self.paths = tuple(parameter.path for parameter in parameters)
         pair = [f"actuator.glue.{name}" for name in ("thickness", "young_modulus")]
-        self._glue = [paths.index(path) for path in pair] if set(pair) <= set(paths) else None
+        self._glue = (
+            [self.paths.index(path) for path in pair] if set(pair) <= set(self.paths) else None
+        )
 
     def values(self, scores: si.DimensionlessArray) -> si.FloatArray:
         """The values (in each parameter's unit) of scores, shape (points, parameters)."""
@@ -218,6 +220,11 @@ class NormalScores:
             for k, parameter in enumerate(self.parameters)
         ]
         return np.stack(columns, axis=1) if columns else np.zeros((len(scores), 0))
+
+    def by_path(self, scores: si.DimensionlessArray) -> Iterator[dict[str, float]]:
+        """The values of each row of scores, by the paths of the parameters."""
+        for row in self.values(scores).tolist():
+            yield dict(zip(self.paths, row, strict=True))
 
     def coordinates(self, scores: si.DimensionlessArray) -> si.DimensionlessArray:
         """The emulator's coordinates of scores, shape (points, parameters)."""

@@ -83,8 +83,7 @@ def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
     frequency, value = frequency[order][kept], value[order][kept]
     outside = reading.table.outside(frequency)
     reading.doubts += [] if outside is None else [outside]
-    said: Any = reading.description.said
-    in_series = (said.shunt or 0.0) if alone else 0.0
+    in_series = (reading.said.shunt or 0.0) if alone else 0.0
     if alone:
         value = with_phase(frequency, value)
         value = value / (1 - value * in_series)
@@ -93,7 +92,7 @@ def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
         value,
         reading.told(),
         _ceramic(reading),
-        said.compensated,
+        reading.said.compensated,
         phase_recorded=not alone,
         in_series=in_series,
     )
@@ -101,9 +100,8 @@ def _impedance(reading: Reading) -> kinds.ImpedanceSweep:
 
 def _size(reading: Reading, name: str, frequency: si.HertzArray) -> si.FloatArray:
     """The size of the admittance (S) where no phase was recorded, with a shunt that was told."""
-    said: Any = reading.description.said
     for key in ("correct", "bar", "disc", "open", "short"):
-        if getattr(said, key):
+        if getattr(reading.said, key):
             raise reading.description.error(
                 f"only the {words(name)} is named, and {key} asks for the phase too; record it, "
                 f"or leave {key} out to have a circuit fitted to the sizes",
@@ -167,24 +165,23 @@ def _gain(reading: Reading) -> si.FloatArray:
 
 def _fixture(reading: Reading, first: str, frequency: si.HertzArray) -> Fixture:
     """Quantities beside the pair, with a fact that says so."""
-    said: Any = reading.description.said
-    reference = said.reference or reading.table.reference
+    reference = reading.said.reference or reading.table.reference
     if first in _REFLECTED:
         where = "at the port" if first == "reflection" else "in series between the ports"
         reading.facts.append(("assumed", f"the device is {where}, of {reference:g} ohm"))
-    if first == "gain" and said.shunt is None:
+    if first == "gain" and reading.said.shunt is None:
         raise reading.description.error(
             "a gain makes an impedance with the resistor that it was taken over: the device "
             "between drive and resistor, the other channel across the resistor; write shunt = "
             '"100 ohm"',
             ["shunt"],
         )
-    return Fixture(2 * np.pi * frequency, reference, said.shunt or 1.0)
+    return Fixture(2 * np.pi * frequency, reference, reading.said.shunt or 1.0)
 
 
 def _in_band(reading: Reading, frequency: si.HertzArray) -> slice:
     """The rows of the band that is told, with a fact that says how many are left."""
-    band = getattr(reading.description.said, "band", None)
+    band = getattr(reading.said, "band", None)
     if band is None:
         return slice(None)
     first, last = (
@@ -200,22 +197,21 @@ def _in_band(reading: Reading, frequency: si.HertzArray) -> slice:
 
 def _ceramic(reading: Reading) -> CeramicBar | CeramicDisc | None:
     """The bare ceramic that was swept, with a fact that says so; None for what is none."""
-    said: Any = reading.description.said
-    if said.bar is not None and said.disc is not None:
+    if reading.said.bar is not None and reading.said.disc is not None:
         raise reading.description.error("a body is a bar or a disc; give one of them", ["disc"])
-    body: CeramicBar | CeramicDisc | None = said.bar or said.disc
+    body: CeramicBar | CeramicDisc | None = reading.said.bar or reading.said.disc
     if body is not None:
         *sides, density = dataclasses.astuple(body)
         shown = " × ".join(quantity(side, si.Unit("m")) for side in sides)
         weight = quantity(density, si.Unit("kg/m3"))
-        name = "bar" if said.bar else "disc"
+        name = "bar" if reading.said.bar else "disc"
         reading.facts.append(("body", f"a bare ceramic {name}, {shown}, {weight}"))
     return body
 
 
 def _corrected(reading: Reading, value: si.ComplexArray) -> si.ComplexArray:
     """A value whose phase was asked to be corrected, and a fact that says so."""
-    correct = getattr(reading.description.said, "correct", None)
+    correct = getattr(reading.said, "correct", None)
     if correct == "phase 180 deg":
         reading.facts.append(("corrected", "the phase by 180 deg, as the description asks"))
         return -value
@@ -245,21 +241,19 @@ def _response(reading: Reading) -> kinds.FrequencyResponse:
 
 def _place(reading: Reading) -> tuple[si.Metre, si.Metre] | None:
     """Place on the plate (x, y in m) a response was recorded, where that is told."""
-    said: Any = reading.description.said
-    if (said.x is None) != (said.y is None):
-        given = "y" if said.x is None else "x"
+    if (reading.said.x is None) != (reading.said.y is None):
+        given = "y" if reading.said.x is None else "x"
         raise reading.description.error("x and y go together; give both, or none", [given])
-    if said.x is None:
+    if reading.said.x is None:
         return None
-    shown = ", ".join(quantity(side, si.Unit("m")) for side in (said.x, said.y))
+    shown = ", ".join(quantity(side, si.Unit("m")) for side in (reading.said.x, reading.said.y))
     reading.facts.append(("place", f"x, y = {shown}"))
-    return said.x, said.y
+    return reading.said.x, reading.said.y
 
 
 def _line(reading: Reading) -> kinds.LineScan:
-    said: Any = reading.description.said
     position = reading.take("position")
-    motion = motion_of(reading, said.frequency, amplitude=True)
+    motion = motion_of(reading, reading.said.frequency, amplitude=True)
     order = np.argsort(position, kind="stable")
     same = np.flatnonzero(np.diff(position[order]) == 0)
     if same.size:
@@ -267,23 +261,24 @@ def _line(reading: Reading) -> kinds.LineScan:
         raise reading.refuse(
             "position", f"{both_rows(reading, first, second)} have one place", second
         )
-    given = None if said.voltage is None else reading.given_voltage(said.voltage)
-    reading.facts.append(("frequency", quantity(said.frequency, _HZ)))
-    return kinds.LineScan(position[order], motion[order], said.frequency, given, reading.told())
+    given = None if reading.said.voltage is None else reading.given_voltage(reading.said.voltage)
+    reading.facts.append(("frequency", quantity(reading.said.frequency, _HZ)))
+    return kinds.LineScan(
+        position[order], motion[order], reading.said.frequency, given, reading.told()
+    )
 
 
 def _grid(reading: Reading) -> kinds.GridScan:
-    said: Any = reading.description.said
     x, y = reading.take("x"), reading.take("y")
-    motion = motion_of(reading, said.frequency, amplitude=True)
+    motion = motion_of(reading, reading.said.frequency, amplitude=True)
     seen: dict[tuple[float, float], int] = {}
     for row, place in enumerate(zip(x.tolist(), y.tolist(), strict=True)):
         if place in seen:
             raise reading.refuse("x", f"{both_rows(reading, seen[place], row)} have one place", row)
         seen[place] = row
-    given = None if said.voltage is None else reading.given_voltage(said.voltage)
-    reading.facts.append(("frequency", quantity(said.frequency, _HZ)))
-    return kinds.GridScan(x, y, motion, said.frequency, given, reading.told())
+    given = None if reading.said.voltage is None else reading.given_voltage(reading.said.voltage)
+    reading.facts.append(("frequency", quantity(reading.said.frequency, _HZ)))
+    return kinds.GridScan(x, y, motion, reading.said.frequency, given, reading.told())
 
 
 def _ring_down(reading: Reading) -> kinds.RingDown:

@@ -19,16 +19,15 @@ from squeezefilm.measure.recordings.quantities_read import (
 
 def bench(reading: Reading) -> kinds.FrictionBench:
     """Strokes of a finger or probe. Raises `ConfigError` at its key or column."""
-    said: Any = reading.description.said
     time = reading.take("time")
     require_rising(reading, "time", time)
     normal, tangential = (reading.take(name) for name in ("normal_force", "tangential_force"))
     position = _position(reading, time, tangential)
     if reading.has("vibration_amplitude"):
         vibration = reading.take("vibration_amplitude", amplitude=True)
-    elif reading.has("voltage") and said.amplitude_per_volt is not None:
-        vibration = said.amplitude_per_volt * reading.take("voltage", amplitude=True)
-        shown = quantity(said.amplitude_per_volt, si.Unit("m/V"))
+    elif reading.has("voltage") and reading.said.amplitude_per_volt is not None:
+        vibration = reading.said.amplitude_per_volt * reading.take("voltage", amplitude=True)
+        shown = quantity(reading.said.amplitude_per_volt, si.Unit("m/V"))
         reading.facts.append(("vibration amplitude", f"the voltage times {shown}, as told"))
     else:
         raise reading.wanting(
@@ -43,8 +42,7 @@ def bench(reading: Reading) -> kinds.FrictionBench:
 def _position(reading: Reading, time: si.SecondArray, tangential: si.NewtonArray) -> si.MetreArray:
     """The recorded place, or that of a finger that slides at the told speed, the way that the
     tangential force has, averaged over some hundredths of a second."""
-    said: Any = reading.description.said
-    speed: float | None = said.speed
+    speed: float | None = reading.said.speed
     if (speed is None) != reading.has("position"):
         raise reading.wanting(
             "position", 'it is needed, or in its place the speed of the finger, speed = "50 mm/s"'
@@ -73,7 +71,6 @@ _FRICTIONS = get_args(kinds.FrictionQuantity)
 
 def curve(reading: Reading) -> kinds.FrictionCurve:
     """Friction over the vibration amplitude. Raises `ConfigError` at its key or column."""
-    said: Any = reading.description.said
     named = [name for name in _FRICTIONS if reading.has(name)]
     if len(named) != 1:
         raise reading.description.error(
@@ -94,8 +91,8 @@ def curve(reading: Reading) -> kinds.FrictionCurve:
             ["frequency"],
         )
     for name in ("finger", "surface", "moisture"):
-        if getattr(said, name):
-            reading.facts.append((name, getattr(said, name)))
+        if getattr(reading.said, name):
+            reading.facts.append((name, getattr(reading.said, name)))
     return kinds.FrictionCurve(
         amplitude[order],
         friction[order],
@@ -103,15 +100,15 @@ def curve(reading: Reading) -> kinds.FrictionCurve:
         quantity=named[0],
         told=reading.told(),
         display=_display(reading),
-        finger=said.finger,
-        reading_error=said.reading_error * float(np.max(np.abs(friction))),
+        finger=reading.said.finger,
+        reading_error=reading.said.reading_error * float(np.max(np.abs(friction))),
         **{name: value[order] if np.ndim(value) else value for name, value in conditions.items()},
     )
 
 
 def _condition(reading: Reading, name: str) -> Any:
     """A condition of a recording: a column's values (rows,), one value, or None."""
-    value = getattr(reading.description.said, name)
+    value = getattr(reading.said, name)
     if reading.has(name):
         if value is not None:
             raise reading.description.error(
@@ -147,20 +144,18 @@ def touches(reading: Reading) -> kinds.FingertipImpedances:
 
 def detection(reading: Reading) -> kinds.DetectionThresholds:
     """Published detection thresholds. Raises `ConfigError` at its key or column."""
-    said: Any = reading.description.said
     return kinds.DetectionThresholds(
         reading.take("spatial_period"),
         reading.take("friction_coefficient"),
         told=reading.told(),
-        people=said.people,
+        people=reading.said.people,
         **{name: _condition(reading, name) for name in _CONDITIONS[1:]},
     )
 
 
 def _display(reading: Reading) -> str:
     """The display that is named, the path of a file from where the description stands."""
-    said: Any = reading.description.said
     path = reading.description.path
-    if said.display.endswith(".toml") and path is not None:
-        return str(path.parent / said.display)
-    return str(said.display)
+    if reading.said.display.endswith(".toml") and path is not None:
+        return str(path.parent / reading.said.display)
+    return str(reading.said.display)

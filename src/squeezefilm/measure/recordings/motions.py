@@ -42,7 +42,7 @@ def motion_per_volt(
 
 def _voltage(reading: Reading) -> si.FloatArray | None:
     """The drive's voltage (V) in each row, from its column or told once for all."""
-    given = getattr(reading.description.said, "voltage", None)
+    given = getattr(reading.said, "voltage", None)
     if reading.has("voltage"):
         if given is not None:
             raise reading.description.error(

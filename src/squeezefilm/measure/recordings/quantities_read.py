@@ -110,6 +110,11 @@ class Reading:
     facts: list[tuple[str, str]] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
 
+    @property
+    def said(self) -> Any:
+        """The keys of the description, as those of its kind."""
+        return self.description.said
+
     def has(self, name: str) -> bool:
         """True where the description names a column for a quantity."""
         return getattr(self.columns, name, None) is not None

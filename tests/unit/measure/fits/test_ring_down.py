@@ -89,8 +89,7 @@ def test_the_first_guess_lies_between_the_lines_of_the_spectrum(between: float) 
 def test_the_chance_of_a_bend_is_that_of_two_numbers_more() -> None:
     """The F distribution of 2 and ν degrees of freedom in closed form: (after/before)^(ν/2)."""
     decay_of = _Decay(T, decay(noise=0.05) / A, A)
-    reach = np.array([decay_of.wide, 30.0 * decay_of.rate])
-    straight = fit_separable(decay_of.columns, decay_of.w, decay_of.start, reach=reach)
+    straight = fit_separable(decay_of.columns, decay_of.w, decay_of.start, reach=decay_of.reach)
     bent = _Bent.of(decay_of, straight)
     before, after = (np.sum(row**2) for row in (straight.residual, bent.fit.residual))
     assert after < before

@@ -89,9 +89,7 @@ def fit_ring_down(recording: RingDown) -> RingDownFit:
     if size == 0:
         raise InputError("the ring-down does not move; nothing was recorded")
     decay = _Decay(t, w / size, size)
-    fit = fit_separable(
-        decay.columns, decay.w, decay.start, reach=np.array([decay.wide, 30.0 * decay.rate])
-    )
+    fit = fit_separable(decay.columns, decay.w, decay.start, reach=decay.reach)
     blocks = _Blocks(t, float(fit.shape[0]))
     curved = _Bent.of(decay, fit)
     # A dependence on the amplitude that does not describe the decay stands for something else.
@@ -127,11 +125,6 @@ class _Decay:
     size: float
 
     @cached_property
-    def wide(self) -> si.Hertz:
-        """Distance that the frequency may be from where the spectrum has it."""
-        return 20.0 / float(self.t[-1])
-
-    @cached_property
     def start(self) -> si.FloatArray:
         f = _strongest_line(self.t, self.w)
         if f * self.t[-1] < _FEWEST_PERIODS:
@@ -142,8 +135,9 @@ class _Decay:
         return np.array([f, _rate(self.t, self.w, f)])
 
     @property
-    def rate(self) -> float:
-        return float(self.start[1])
+    def reach(self) -> si.FloatArray:
+        """Distance that frequency and rate may be from where spectrum and envelope have them."""
+        return np.array([20.0 / self.t[-1], 30.0 * self.start[1]])
 
     def columns(self, shape: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray]:
         """Cosine and sine of every decay, a constant and a slope; with their derivatives."""
@@ -218,7 +212,7 @@ def _with_second(decay: _Decay, fit: SeparableFit) -> SeparableFit:
     """The fit with a decay more, which starts at the strongest line of what is left."""
     f = _strongest_line(decay.t, fit.residual)
     start = np.concatenate([fit.shape, [f, fit.shape[1]]])
-    reach = np.array([decay.wide, 30.0 * decay.rate] * 2)
+    reach = np.tile(decay.reach, 2)
     pair = fit_separable(decay.columns, decay.w, start, reach=reach)
     swing = np.hypot(pair.weights[0:4:2], pair.weights[1:4:2])
     if swing[1] > swing[0]:
