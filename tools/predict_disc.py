@@ -26,7 +26,7 @@ import tomlkit
 
 from radial_mode import RadialPrediction, predict_radial_mode
 from squeezefilm import __version__
-from squeezefilm.measure.fits.ceramic.disc import DiscConstants, disc_constants
+from squeezefilm.measure.fits.ceramic.constants import DiscConstants, disc_constants
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
 from squeezefilm.physics.plate.ring.ceramic_disc import CeramicDisc

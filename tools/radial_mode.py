@@ -10,8 +10,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError
-from squeezefilm.measure.fits.ceramic.constants import compliances
-from squeezefilm.measure.fits.ceramic.disc import DiscConstants
+from squeezefilm.measure.fits.ceramic.constants import DiscConstants, compliances
 from squeezefilm.measure.fits.complex_fit import SweepPeaks, sweep_peaks
 from squeezefilm.measure.fits.estimate import Estimate
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep

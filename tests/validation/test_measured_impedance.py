@@ -14,8 +14,7 @@ import pytest
 from predict_disc import DISC, FILE, PREDICTED
 from radial_mode import predict_radial_mode
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.ceramic.constants import bar_constants
-from squeezefilm.measure.fits.ceramic.disc import disc_constants
+from squeezefilm.measure.fits.ceramic.constants import bar_constants, disc_constants
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.complex_fit import sweep_peaks
 from squeezefilm.measure.recordings.kinds import CeramicBar, ImpedanceSweep

@@ -9,8 +9,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import ReadBy, reads_text
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.measure.fits.ceramic.constants import bar_constants
-from squeezefilm.measure.fits.ceramic.disc import disc_constants
+from squeezefilm.measure.fits.ceramic.constants import bar_constants, disc_constants
 from squeezefilm.measure.fits.circuit.impedance import fit_impedance
 from squeezefilm.measure.fits.estimate import FitResult
 from squeezefilm.measure.fits.friction.friction_bench import fit_friction_bench

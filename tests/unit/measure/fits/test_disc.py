@@ -17,16 +17,14 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import VACUUM_PERMITTIVITY
 from squeezefilm.measure.fits.ceramic.constants import (
     PARAMETERS,
+    DiscConstants,
     _doubted,
     ceramic_prior,
     compliances,
     coupling_read,
-    permittivity_read,
-)
-from squeezefilm.measure.fits.ceramic.disc import (
-    DiscConstants,
     disc_constants,
     disc_curve,
+    permittivity_read,
 )
 from squeezefilm.measure.fits.complex_fit import SweepPeaks, sweep_peaks
 from squeezefilm.measure.fits.estimate import Adequacy
