@@ -47,8 +47,18 @@ class Proposal:
     to_confirm: str
 
 
-def proposed(table: RawTable) -> Proposal | None:
-    """The description that a table proposes; None where its columns' names say nothing.
+_FOR_INSTANCE = """
+kind = "impedance"
+[columns]
+frequency = { column = 1, unit = "Hz" }
+magnitude = { column = 2, unit = "ohm" }
+phase = { column = 3, unit = "deg" }
+"""
+
+
+def proposed(table: RawTable) -> Proposal:
+    """The description that a table proposes, filled in. Raises `ConfigError` where its columns'
+    names say nothing.
 
     A frequency with a pair that makes an impedance is one; times with one signal are proposed as a
     ring-down, with more as raw signals of which the first is the drive.
@@ -71,7 +81,9 @@ def proposed(table: RawTable) -> Proposal | None:
             )
             held = [held[0], ("voltage", *drive[1:]), ("displacement", *moved[0][1:])]
     else:
-        return None
+        known = ", ".join(f'"{known}"' for known in KINDS)
+        besides = f"(kinds: {known}; columns of the file: {table.columns_in_words})"
+        raise _undescribed(table.file, _FOR_INSTANCE, besides)
     lines = [
         f"kind = {_quoted(kind)}",
         f"name = {_quoted(table.file.stem)}",
@@ -290,9 +302,10 @@ def _found(path: Path, described: Path | None) -> tuple[Path, Description]:
         described = path.with_suffix(".toml")
     if described is not None:
         return path, load_description(described)
-    proposal = propose_description(path)
+    table = _table(path, Description("", Described()))
+    proposal = proposed(table)
     if proposal.to_confirm:
-        columns = _table(path, Description("", Described())).columns_in_words
+        columns = table.columns_in_words
         kept = f"`squeezefilm measure check {path.name} --write` writes this"
         raise _undescribed(
             path,
@@ -307,20 +320,7 @@ def propose_description(path: str | Path) -> Proposal:
 
     Raises `ConfigError` for a file that cannot be read, or of which neither says what it holds.
     """
-    table = _table(Path(path), Description("", Described()))
-    proposal = proposed(table)
-    if proposal is None:
-        lines = (
-            'kind = "impedance"',
-            "[columns]",
-            'frequency = { column = 1, unit = "Hz" }',
-            'magnitude = { column = 2, unit = "ohm" }',
-            'phase = { column = 3, unit = "deg" }',
-        )
-        kinds = ", ".join(f'"{known}"' for known in KINDS)
-        besides = f"(kinds: {kinds}; columns of the file: {table.columns_in_words})"
-        raise _undescribed(Path(path), "\n".join(lines), besides)
-    return proposal
+    return proposed(_table(Path(path), Description("", Described())))
 
 
 def write_description(path: str | Path) -> Path:

@@ -146,7 +146,6 @@ def test_each_part_does_its_own(tmp_path: Path) -> None:
     assert table.names[:4] == ("Frequency", "S11 real", "S11 imaginary", "S21 real")
     assert table.outside(f) is None
     proposal = proposed(table)
-    assert proposal is not None
     assert (proposal.kind, proposal.to_confirm) == ("impedance", "")
     t, a, b = _decay()
     assert read_wav(written(tmp_path, made.sound(t, a, b), "", "b.wav")).values.shape == (2000, 3)

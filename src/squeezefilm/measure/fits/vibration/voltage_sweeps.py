@@ -34,6 +34,7 @@ from squeezefilm.physics.plate.loaded_mode import FreePlate
 BackboneLaw = Literal["quadratic", "linear"]
 BACKBONE_LAWS: tuple[BackboneLaw, ...] = get_args(BackboneLaw)
 """Laws of the frequency over the amplitude: with its square (Duffing), or in proportion."""
+_POWERS: dict[BackboneLaw, int] = {"quadratic": 2, "linear": 1}
 
 _Flags = np.ndarray[tuple[int, ...], np.dtype[np.bool]]
 _FEWEST_POINTS = 30
@@ -102,8 +103,7 @@ class VoltageSweepsFit(FitResult):
                 "itself does; measure it without what it rubs on"
             )
         by = {"linear": "by_amplitude", "quadratic": "by_square"}[self.law]
-        power = 1 if self.law == "linear" else 2
-        bent = {by: self.backbone.value * share**power}
+        bent = {by: self.backbone.value * share ** _POWERS[self.law]}
         return FreePlate(**bent, loss_rise=max(0.0, rise.value) * share)
 
 
@@ -208,19 +208,14 @@ class _Duffing:
     law: BackboneLaw
     own: si.Hertz
 
-    @property
-    def power(self) -> int:
-        """Power of the amplitude in the backbone."""
-        return 2 if self.law == "quadratic" else 1
-
     def terms(self, at: si.FloatArray) -> tuple[si.ComplexArray, ...]:
         """D, a dD/da, x − RV and gV."""
         shift, loss, bend, rise = at[:4]
         g, R = at[4] + 1j * at[5], at[6] + 1j * at[7]
         points = self.points
         a = np.abs(points.u)
-        own = 1 + shift
-        back, bent = 1 + bend * a**self.power, self.power * bend * a**self.power
+        own, power = 1 + shift, _POWERS[self.law]
+        back, bent = 1 + bend * a**power, power * bend * a**power
         lossy = 1 + 1j * loss * (1 + rise * a)
         D = (own * back) ** 2 * lossy - (points.f / self.own) ** 2
         slope = own**2 * (2 * back * bent * lossy + back**2 * 1j * loss * rise * a)
@@ -248,7 +243,7 @@ def _told(
     recording: VoltageSweeps, duffing: _Duffing, fit: NonlinearFit, used: _Flags
 ) -> VoltageSweepsFit:
     """A law's fit to the points that were `used`, read off."""
-    points, own, power = duffing.points, duffing.own, duffing.power
+    points, own, power = duffing.points, duffing.own, _POWERS[duffing.law]
     step, _ = duffing.steps_to_curve(fit.numbers)
     count = int(used.sum())
     left = -(fit.residual[:count] + 1j * fit.residual[count:])
@@ -297,7 +292,9 @@ def _first_look(points: _Points, law: BackboneLaw) -> tuple[_Duffing, NonlinearF
     own, start[0] = float(start[0]), 0.0
     duffing = _Duffing(points, law, own)
     loss = float(start[1])
-    start[2] = _first_bend(points, own, duffing.power)
+    # The backbone by where the highest sweep has its peak.
+    peak = int(np.argmax(np.where(points.v == 1.0, np.abs(points.u), 0.0)))
+    start[2] = (points.f[peak] / own - 1) / np.abs(points.u[peak]) ** _POWERS[law]
     steps = np.array([loss, loss, loss, 1.0, loss, loss, loss, loss]) * 1e-5
 
     def equation(at: si.FloatArray) -> si.FloatArray:
@@ -333,13 +330,6 @@ def _fitted(
 
         fit = fit_nonlinear(residual, fit.numbers, steps)
     return fit, used
-
-
-def _first_bend(points: _Points, own: si.Hertz, power: int) -> float:
-    """The backbone by where the highest sweep has its peak."""
-    high = points.v == 1.0
-    at = int(np.argmax(np.where(high, np.abs(points.u), 0.0)))
-    return float((points.f[at] / own - 1) / np.abs(points.u[at]) ** power)
 
 
 def _critical(backbone: Estimate, loss: float, power: int) -> si.Metre | None:
