@@ -7,8 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from squeezefilm.measure.calibration.discrepancy import KINDS, scales_of
-from squeezefilm.measure.calibration.friction_likelihood import GRID, FrictionLikelihood, Touching
+from squeezefilm.measure.calibration.discrepancy import (
+    GRID,
+    KINDS,
+    FrictionLikelihood,
+    Touching,
+    scales_of,
+)
 from squeezefilm.measure.calibration.friction_posterior import (
     finger_mixture,
     friction_of_points,

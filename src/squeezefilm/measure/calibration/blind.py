@@ -23,8 +23,14 @@ from squeezefilm.core.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.core.progress import SayProgress, ShareProgress
 from squeezefilm.core.regular_file import read_json, read_regular_text
 from squeezefilm.core.results import stamp, to_json, write_whole
-from squeezefilm.measure.calibration.discrepancy import BELIEVED, KINDS, scales_of
-from squeezefilm.measure.calibration.friction_likelihood import GRID, Touching, touching
+from squeezefilm.measure.calibration.discrepancy import (
+    BELIEVED,
+    GRID,
+    KINDS,
+    Touching,
+    scales_of,
+    touching,
+)
 from squeezefilm.measure.calibration.friction_posterior import finger_mixture, friction_of_points
 from squeezefilm.measure.calibration.plate_fit import prior_scores
 from squeezefilm.measure.calibration.priors import (

@@ -19,7 +19,7 @@ from squeezefilm.measure.calibration.calibration import (
     Joint,
     compared,
 )
-from squeezefilm.measure.calibration.friction_likelihood import FrictionLikelihood, Touching
+from squeezefilm.measure.calibration.discrepancy import FrictionLikelihood, Touching
 from squeezefilm.measure.calibration.friction_posterior import (
     DRAWS,
     FEWEST,

@@ -15,8 +15,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.calibration_record import ComparedAnswer
 from squeezefilm.core.results import to_json
-from squeezefilm.measure.calibration.discrepancy import Misfit
-from squeezefilm.measure.calibration.friction_likelihood import touching
+from squeezefilm.measure.calibration.discrepancy import Misfit, touching
 from squeezefilm.measure.calibration.friction_posterior import FrictionDraws
 from squeezefilm.measure.calibration.identified import Identification, NextMeasurement
 from squeezefilm.measure.calibration.plate_fit import PlateFit, prior_scores

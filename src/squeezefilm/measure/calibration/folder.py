@@ -20,7 +20,7 @@ from squeezefilm.core.results import Result, to_json, write_whole
 from squeezefilm.measure.calibration.blind import Score, load_prediction, score
 from squeezefilm.measure.calibration.calibrate import calibrate
 from squeezefilm.measure.calibration.calibration import Calibration
-from squeezefilm.measure.calibration.friction_likelihood import touching
+from squeezefilm.measure.calibration.discrepancy import touching
 from squeezefilm.measure.calibration.solved_answers import (
     FRICTION,
     MODE_FREQUENCY,

@@ -22,10 +22,10 @@ from squeezefilm.core.errors import OutOfRangeError, SqueezefilmError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import ShareProgress, within
 from squeezefilm.core.results import to_json
-from squeezefilm.measure.calibration.discrepancy import Misfit
-from squeezefilm.measure.calibration.friction_likelihood import (
+from squeezefilm.measure.calibration.discrepancy import (
     GRID,
     FrictionLikelihood,
+    Misfit,
     Touching,
 )
 from squeezefilm.physics.chain.prediction import Prediction

@@ -10,8 +10,8 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.measure.calibration.discrepancy import BELIEVED
-from squeezefilm.measure.calibration.friction_likelihood import (
+from squeezefilm.measure.calibration.discrepancy import (
+    BELIEVED,
     GRID,
     FrictionLikelihood,
     Touching,
