@@ -189,9 +189,8 @@ def misfit_of(chi_square: float, names: list[str], off: si.FloatArray) -> Misfit
 
 GRID = np.geomspace(*FRICTION_SCALES, 7)
 """Scales of the discrepancy that are summed over."""
-_FORGOTTEN = (
-    0.7  # as a difference of logarithms: at twice the amplitude the error is mostly another
-)
+# As a difference of logarithms: at twice the amplitude the error is mostly another.
+_FORGOTTEN = 0.7
 
 
 class Touching(NamedTuple):
