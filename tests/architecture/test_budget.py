@@ -1,4 +1,4 @@
-"""A budget that only falls: lines and modules of each part.
+"""A budget that only falls: lines and modules of each part; and sizes that none may pass.
 
 `budget.toml` beside this file has what each part may have. Lower a number when a part became
 smaller; raising one needs a decision record that says what the growth bought. How much processor
@@ -7,6 +7,7 @@ time the tests take by folder is in `docs/development/test-costs.md`.
 
 from __future__ import annotations
 
+import ast
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
@@ -42,3 +43,29 @@ def test_no_part_is_larger_than_its_budget(part: str) -> None:
             f"{part} has {count} {what}, and {allowed} are its budget: make it smaller. Raising a "
             "line of tests/architecture/budget.toml needs a decision record"
         )
+
+
+def test_no_module_or_function_is_too_long_and_no_call_too_wide() -> None:
+    long: list[str] = []
+    wide: list[str] = []
+    functions = longer = unformatted = 0
+    for file in SOURCE.rglob("*.py"):
+        text = file.read_text("utf-8")
+        if text.count("\n") >= 400:
+            long.append(str(file.relative_to(SOURCE)))
+        unformatted += text.count("fmt: skip")
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                functions += 1
+                assert node.end_lineno is not None
+                longer += node.end_lineno - node.lineno >= 60
+                given = node.args.posonlyargs + node.args.args + node.args.kwonlyargs
+                if (
+                    len([argument for argument in given if argument.arg not in ("self", "cls")])
+                    > 10
+                ):
+                    wide.append(f"{file.name}: {node.name}")
+    assert not long, f"400 lines are too many for a module: split {', '.join(long)}"
+    assert not wide, f"more than 10 parameters: give a record in {', '.join(wide)}"
+    assert longer <= 0.006 * functions, f"{longer} of {functions} functions have over 60 lines"
+    assert unformatted < 20, f"{unformatted} lines are kept from the formatter"

@@ -37,7 +37,6 @@ from squeezefilm.physics.chain.touch import (
     touch,
 )
 from squeezefilm.physics.display import Display, NamedDisplay, Surface
-from squeezefilm.physics.film.gap import squeeze_number
 from squeezefilm.physics.film.validity import FilmValidity, film_validity
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.warming import Warming, warming_of_mode
@@ -308,8 +307,8 @@ def _felt(
         felt = held_touch(mode, law, drive.amplitude)
     else:
         felt = touch(mode, law, drive.amplitude)
-    gap, gas = law.gap(felt.amplitude), law.gas
-    validity = film_validity(gap, drive.frequency, gas, strict=strict)
+    gap = law.gap(felt.amplitude)
+    validity = film_validity(gap, drive.frequency, law.gas, strict=strict)
     load = law.load(felt.amplitude)
     friction, limits = law.at(felt.amplitude), None
     if law.kind.shares_load:
@@ -318,13 +317,6 @@ def _felt(
             tied = law.friction_in("one-gap", np.array([felt.amplitude]))
             limits = friction, float(tied[0])
     base = law.friction_coefficient
-    sigma = squeeze_number(
-        drive.frequency,
-        gap.contact_length,
-        gap.reference_thickness,
-        gas.viscosity,
-        gas.ambient_pressure,
-    )
     return Prediction(
         display=display.name,
         surface=law.surface,
@@ -338,7 +330,7 @@ def _felt(
         touch=felt,
         model=law.model,
         law=law,
-        squeeze_number=float(sigma),
+        squeeze_number=validity.squeeze_number,
         mean_pressure=1 + load.over_pressure,
         mean_pressure_error=load.error,
         relative_friction=friction,
