@@ -278,7 +278,9 @@ class LoopProcess:
     def silence(self) -> si.Second:
         """Time since the loop made its last tick (s); above some periods it hangs."""
         _, memory = self._running()
-        return self.time - int(memory.control[shared.BEAT]) * 1e-9
+        # Read before the time: a tick between the two would make the silence negative.
+        last_tick = int(memory.control[shared.BEAT]) * 1e-9
+        return self.time - last_tick
 
     def report(self) -> LoopReport:
         """Report of the loop up to now.
