@@ -60,6 +60,7 @@ ul.verdict li span {{ min-width: 0; }}
 table {{ border-collapse: collapse; width: 100%; font-size: .95rem; }}
 .subject th {{ color: var(--muted); font-weight: 400; padding-top: .9rem; }}
 caption {{ text-align: left; padding-bottom: .4rem; }}
+.heard {{ position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); }}
 th, td {{ text-align: left; vertical-align: top; padding: .32rem .8rem .32rem 0;
   border-bottom: 1px solid var(--grid); overflow-wrap: break-word; }}
 th {{ font-weight: 600; }}
@@ -142,7 +143,10 @@ def part(key: str, heading: str, text: str) -> str:
 
 
 def section(heading: str, body: str, kind: str = "") -> str:
-    """A section of a class; heading and body are HTML already."""
+    """A section of a class; heading and body are HTML already. A caption that repeats the heading
+    is for screen readers only."""
+    caption = f">{heading}</caption>"
+    body = body.replace(f"<caption{caption}", f'<caption class="heard"{caption}')
     attribute = f' class="{kind}"' if kind else ""
     return f"<section{attribute}>\n<h2>{heading}</h2>\n{body}\n</section>\n"
 
