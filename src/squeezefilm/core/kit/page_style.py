@@ -143,10 +143,7 @@ def part(key: str, heading: str, text: str) -> str:
 
 
 def section(heading: str, body: str, kind: str = "") -> str:
-    """A section of a class; heading and body are HTML already. A caption that repeats the heading
-    is for screen readers only."""
-    caption = f">{heading}</caption>"
-    body = body.replace(f"<caption{caption}", f'<caption class="heard"{caption}')
+    """A section of a class; heading and body are HTML already."""
     attribute = f' class="{kind}"' if kind else ""
     return f"<section{attribute}>\n<h2>{heading}</h2>\n{body}\n</section>\n"
 
@@ -230,11 +227,17 @@ def picture_sections(figures: Mapping[str, tuple[str, Figure]]) -> str:
 
 
 def html_table(
-    caption: str, head: Iterable[str], rows: Iterable[Sequence[str]], *, kinds: Iterable[str] = ()
+    caption: str,
+    head: Iterable[str],
+    rows: Iterable[Sequence[str]],
+    *,
+    kinds: Iterable[str] = (),
+    heard: bool = False,
 ) -> str:
     """A table of cells that are HTML already; the first cell of a row heads it.
 
-    `kinds` are the rows' classes.
+    `kinds` are the rows' classes; a caption that repeats the heading above is only `heard`, by
+    those who use a screen reader.
     """
     columns = "".join(f'<th scope="col">{cell}</th>' for cell in head)
     lines = "\n".join(
@@ -245,7 +248,7 @@ def html_table(
     )
     return (
         f'<div class="scroll" tabindex="0" role="region" aria-label="{caption}"><table>'
-        f"<caption>{caption}</caption><thead><tr>{columns}</tr></thead>\n"
+        f"<caption{heard * ' class=heard'}>{caption}</caption><thead><tr>{columns}</tr></thead>\n"
         f"<tbody>\n{lines}\n</tbody></table></div>"
     )
 

@@ -191,7 +191,7 @@ def _html(part: Part) -> str:
         elif isinstance(block, tuple):
             head, rows = block
             cells = [[_marked(cell) for cell in row] for row in rows]
-            parts.append(html_table(escape(part.heading), map(escape, head), cells))
+            parts.append(html_table(escape(part.heading), map(escape, head), cells, heard=True))
         else:
             parts.append(_framed(style.svg(block(), "drawn", part.heading)))
     return section(escape(part.heading), "".join(parts))

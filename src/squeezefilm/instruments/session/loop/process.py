@@ -17,7 +17,6 @@ import tempfile
 import time
 import warnings
 from dataclasses import dataclass
-from types import TracebackType
 from typing import IO, Self
 
 import numpy as np
@@ -206,12 +205,7 @@ class LoopProcess:
         self.start()
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.stop()
 
     def check(self) -> None:
