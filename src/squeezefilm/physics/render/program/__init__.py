@@ -1,1 +1,1 @@
-"""A texture as a program: lowering, the compiled interpreter, the renderer on top of it."""
+"""A texture as a program: lowering, the compiled tick, the renderer on top of it."""

@@ -1,5 +1,6 @@
 // The renderer's interpreter for a page: the same programs, operation by operation, as the compiled
-// one (squeezefilm.physics.render.program.interpreter). Programs and states are Float64Arrays laid out as
+// ones (squeezefilm.physics.render.interpret for a value, squeezefilm.physics.render.program.interpreter
+// for a tick). Programs and states are Float64Arrays laid out as
 // squeezefilm.physics.render.program.layout says; opcodes are explained in squeezefilm.physics.render.opcodes.
 // An ES module with no imports and no build step.
 
