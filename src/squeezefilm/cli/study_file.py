@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from squeezefilm.cli.app import AsJson, answer, working, written_to
+from squeezefilm.cli.app import AsJson, answer, print_json, working, written_to
 from squeezefilm.cli.study import Store, study
 
 
@@ -16,8 +16,10 @@ def status(store: Store, as_json: AsJson = False) -> None:
     from squeezefilm.study.report.terminal import show_status
 
     with StudyStore.open(store) as found:
-        summary = {"study": found.study["name"], "participants": found.participants()}
-        answer(as_json, summary, lambda _: show_status(found))
+        if as_json:
+            print_json({"study": found.study["name"], "participants": found.participants()})
+            return
+        show_status(found)
 
 
 @study.command()
@@ -139,5 +141,5 @@ def analyze(
             from squeezefilm.study.report.page import write_overview
 
             page = write_overview(analyses, out, step)
-    summary = {display: analysis.summary() for display, analysis in analyses.items()}
-    answer(as_json, summary, lambda _: show_analyses(analyses), page=page)
+    found = {name: each.summary() for name, each in analyses.items()} if as_json else analyses
+    answer(as_json, found, show_analyses, page=page)

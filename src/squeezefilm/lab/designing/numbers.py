@@ -75,8 +75,8 @@ TypedValue = Annotated[str, Field(max_length=LONGEST_VALUE)]
 
 
 class DesignPoint(BaseModel):
-    """Request about a display's text; `path` and `value` are an edit made on the way, so that a
-    slider asks once.
+    """A display's text at a working point; `path` and `value` are an edit made on the way, so that
+    a slider asks once.
 
     `voltage` and `force` are quantity texts, None for the display's own.
     """
@@ -89,7 +89,7 @@ class DesignPoint(BaseModel):
     value: TypedValue | None = None
 
     def edited(self) -> str:
-        """The text with the edit. Raises as `description.edited`."""
+        """The text with the edit. Raises as `form.edited`."""
         if self.path is None or self.value is None:
             return self.text
         return edited(self.text, self.path, self.value)

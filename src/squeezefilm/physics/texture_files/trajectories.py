@@ -58,10 +58,10 @@ def read_trajectory(path: str | Path) -> FingerPath:
             finite, times that do not rise, places too far or too far apart, each with its line.
     """
     table = table_from_csv(path)
-    first = 3 if text_of_file(path).startswith("#") else 2
 
     def wrong(message: str, row: int = -1, key: str | None = None) -> ConfigError:
         # The names of the columns stand in the line before the first row of numbers.
+        first = 3 if text_of_file(path).startswith("#") else 2
         return ConfigError(message, file=path, line=first + row, key=key)
 
     for name in table.columns:

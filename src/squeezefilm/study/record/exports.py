@@ -10,6 +10,7 @@ description and every column in `variableMeasured`.
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -30,6 +31,7 @@ from squeezefilm.study.record.tables import (
     SURFACES,
     Cell,
     Column,
+    SurfaceCells,
     csv_text,
     session_table,
     surface_cells,
@@ -274,12 +276,12 @@ def write_orders(plan: StudyPlan, folder: str | Path) -> list[Path]:
     name no stimulus; one whose answer is "same" or "no" presents the reference alone. Raises
     `InputError` where the folder cannot be written to.
     """
-    folder, written = Path(folder), []
+    folder, written, cells = Path(folder), [], functools.cache(surface_cells)
     columns = [column for column in ORDER_COLUMNS if column in (*trial_columns(plan.design), *_OWN)]
     if folder.exists() and not folder.is_dir():
         raise InputError(f"{folder} is a file; give a folder for the orders")
     for number, schedule in enumerate(plan.schedules):
-        every = (_row(plan, number, trial) for trial in schedule)
+        every = (_row(plan, number, trial, cells) for trial in schedule)
         rows = [{column.name: row[column.name] for column in columns} for row in every]
         for suffix, text in (
             ("csv", csv_text(rows, columns)),
@@ -291,7 +293,7 @@ def write_orders(plan: StudyPlan, folder: str | Path) -> list[Path]:
     return written
 
 
-def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
+def _row(plan: StudyPlan, number: int, trial: Trial, cells: SurfaceCells) -> dict[str, Cell]:
     row: dict[str, Cell] = {
         **trial.row(),
         "participant_number": number,
@@ -300,4 +302,4 @@ def _row(plan: StudyPlan, number: int, trial: Trial) -> dict[str, Cell]:
         "reference_first": trial.reference_first if trial.adaptive else None,
         "alternatives": "|".join(trial.alternatives),
     }
-    return row | surface_columns(plan.design, trial.stimuli, row, surface_cells)
+    return row | surface_columns(plan.design, trial.stimuli, row, cells)

@@ -147,14 +147,17 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
     return rows
 
 
+SurfaceCells = Callable[[Stimulus | Grating | None], dict[str, Cell]]
+
+
 def surface_columns(
     design: StudyDesign,
     names: Sequence[str],
     row: Mapping[str, Any],
-    cells: Callable[[Stimulus | Grating | None], dict[str, Cell]],
+    cells: SurfaceCells,
 ) -> dict[str, Cell]:
-    """Columns of all `SURFACES` of a trial that presented those of these names, by what `cells`
-    says of each (`surface_cells`)."""
+    """Columns of every place in `SURFACES`, for a trial that presented the surfaces `names`;
+    `cells` is `surface_cells`, or a cached form of it."""
     gratings = {}
     if row["phase"] == "familiarisation":
         gratings = {alternative.name: alternative for alternative in design.alternatives}

@@ -275,9 +275,6 @@ def show_missed(console: Console, model: str) -> None:
     bullets(console, [("–", text, "yellow") for text in missed_directions(model)])
 
 
-# amplifier; each a quantity, its value, a remark.
-
-
 def place_rows(p: Prediction, judged: JudgedArea | None) -> list[Row]:
     """Rows of the place meant and of friction over the active area: quantity, value, remark."""
     where = place_words(p.place)

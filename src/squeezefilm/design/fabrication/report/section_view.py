@@ -110,8 +110,8 @@ def section_view(
     right = max(ends) + shift
     for part in (base, *_stacks(met)):
         tooth = part.kind == "substrate" and part is not base
-        key = "" if tooth else _key_of_thickness(part, made.display.actuator)
-        said.append((part, key, tolerance_said(made.display, key) if key else ""))
+        key = "" if tooth else _key_of_thickness(part, sheet.display.actuator)
+        said.append((part, key, tolerance_said(sheet.display, key) if key else ""))
     room = VIEWS[2] + 4.0 - (right / sheet.unit + sheet.origin[0])
     fits = max(end for *_, end in _columns(said)) <= room
     for part, key, tolerance, away, _ in _columns(said if fits else [(*s[:2], "") for s in said]):

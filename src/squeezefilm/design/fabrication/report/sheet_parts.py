@@ -81,8 +81,7 @@ class Sheet:
     """A drawing of a `display` as it is composed: `scale` is paper over thing; places on paper are
     in millimetres from its lower left corner, and `origin` is where the thing's own (0, 0) lies
     there. Boxes that are `kept_free` (left, bottom, right, top in m) are not crossed by lines that
-    are `interrupted`.
-    The views end at `lowest` (mm), `noted` is what the notes say.
+    are `interrupted`. The views end at `lowest` (mm), `noted` is what the notes say.
     """
 
     display: Display
@@ -201,9 +200,9 @@ class Sheet:
         beside: bool = False,
     ) -> None:
         """A vertical dimension of two places of the thing at an x (m), its line so many millimetres
-        of paper `away`, to the right where that is positive; `key` as of `across`, a `suffix` in
-        place of its tolerance. Its number stands across the line on
-        the far side of it: `beside` it, or above its upper end where it is short."""
+        of paper `away`, to the right where that is positive; `key` is as in `across`, and a
+        `suffix` stands in place of its tolerance. Its number stands across the line on the far side
+        of it: `beside` it, or above its upper end where it is short."""
         size = NUMBER * self.unit
         at = x + away * self.unit
         suffix = tolerance_said(self.display, key) if suffix is None else suffix

@@ -35,8 +35,6 @@ _FEWEST_PERIODS = 5.0
 _BLOCKS = 64
 # Beyond what chance gives once in a thousand does the damping depend on the amplitude.
 _CHANCE = 1e-3
-# A decay is fitted until it is down to this share of its start, by the first look at it.
-_KEPT = 2e-3
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -159,7 +159,6 @@ def _folded(name: str) -> str:
     return " ".join(name.split()).casefold()
 
 
-# by their names: the table `instruments.toml`, read here.
 _HEAD_CHARACTERS = 4000
 _BESIDE_A_NAME = re.compile(r"^trace\s*\d*\s*:?\s*|^tr\d+\s+|[-_ ]data$|^measurement\s*:?\s*")
 

@@ -248,8 +248,7 @@ def solve_all(
 @dataclass(frozen=True)
 class _Work:
     """Films under way: the indices of their cells and times, their result rows (columns in
-    `uniform`), the iterations spent on each, and which met the
-    tolerance."""
+    `uniform`), the iterations spent on each, and which met the tolerance."""
 
     films: Films
     tolerance: float

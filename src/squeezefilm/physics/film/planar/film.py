@@ -290,10 +290,9 @@ def _solve_or_continue(
 class FilmPlanar(SolvedFilm):
     """The periodic state of a film in the plane.
 
-    `force_harmonics` (8,) begin with k = 1. `mean_pressure` is
-    the period's mean at the nodes `X`, `Y` of the finest grid, with their `area`, all (nodes,) =
-    rows × columns, of the quarter X ≥ 0, Y ≥ 0 of a symmetric film. `residual` is the last relative
-    change of the gas.
+    `force_harmonics` (8,) begin with k = 1. `mean_pressure` is the period's mean at the nodes `X`,
+    `Y` of the finest grid, with their `area`, all (nodes,) = rows × columns, of the quarter X ≥ 0,
+    Y ≥ 0 of a symmetric film. `residual` is the last relative change of the gas.
     """
 
     X: si.DimensionlessArray

@@ -47,8 +47,8 @@ def part(cls: type[_T]) -> type[_T]:
 
 
 class TexturePart:
-    """Part with a value wherever a finger is: a pattern or a texture. Made with a value outside its
-    range any of them raises `InputError`.
+    """Part with a value wherever a finger is: a pattern or a texture. Making one with a value
+    outside its range raises `InputError`.
 
     Called with the finger's place `x`, `y` (m), its velocity `v` along its path (m/s; negative on
     the way back) and the time `t` (s), which broadcast; returns values in the broadcast shape.
