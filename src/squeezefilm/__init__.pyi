@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from squeezefilm.design.plate.command import PlateAnalysis
     from squeezefilm.design.plate.modes import ModeList
     from squeezefilm.design.plate.ring import RingAnalysis
-    from squeezefilm.design.search.found import DesignSearch, Glimpse
+    from squeezefilm.design.search.found import DesignSearch
     from squeezefilm.design.search.requirements import NamedRequirements
     from squeezefilm.design.sweep.swept import Sweep
     from squeezefilm.instruments.bench.play import PlayResult
@@ -248,7 +248,7 @@ if TYPE_CHECKING:
         out: str | Path | None = ...,
         member: int = ...,
         progress: SayProgress | None = ...,
-        watch: Callable[[Glimpse], None] | None = ...,
+        watch: Callable[[DesignSearch], None] | None = ...,
     ) -> DesignSearch:
         """The plates that meet requirements and that none other beats, solved in three dimensions."""
     class Amplitude(_Amplitude):

@@ -8,7 +8,7 @@ import re
 import signal
 import time
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ from squeezefilm.core.interrupts import hear_interrupts
 from squeezefilm.core.progress import about
 from squeezefilm.design.search.candidate import Design, Evaluated
 from squeezefilm.design.search.criteria import CRITERIA, bounded, criterion_of
-from squeezefilm.design.search.found import DesignSearch, Glimpse
+from squeezefilm.design.search.found import DesignSearch
 from squeezefilm.design.search.reasons import corner_in_words, limit_in_words
 from squeezefilm.design.search.report.page import plate_file
 from squeezefilm.design.search.report.words import setting_words
@@ -74,21 +74,22 @@ def numbers(candidate: Evaluated) -> list[list[str]]:
     ]
 
 
-def glimpse(requirements: Requirements, seen: Glimpse) -> dict[str, Any]:
+def glimpse(seen: DesignSearch) -> dict[str, Any]:
     """Message of what a search has so far."""
+    every = max(1, -(-len(seen.screened_front) // MOST_POINTS))
+    screened_front = sorted(seen.screened_front.tolist())[::every]
+    return {"stage": seen.stage, "screened_front": screened_front, **_so_far(seen)}
+
+
+def _so_far(search: DesignSearch) -> dict[str, Any]:
+    """Counts, front and display to compare with, of a search that runs or has ended."""
+    asked = search.requirements
     return {
-        "stage": seen.stage,
-        "screened": seen.screened,
-        "solved": seen.solved,
-        "screened_front": _thinned(seen.screened_front),
-        "front": [plate(requirements, evaluated) for evaluated in seen.front],
-        "reference": reference(requirements, seen.reference),
+        "screened": len(search.screened),
+        "solved": search.plates_solved,
+        "front": [plate(asked, member.evaluated, member.made) for member in search.front],
+        "reference": reference(asked, search.reference),
     }
-
-
-def _thinned(points: Sequence[Sequence[float]]) -> list[list[float]]:
-    every = max(1, -(-len(points) // MOST_POINTS))
-    return [list(point) for point in sorted(map(tuple, points))[::every]]
 
 
 def reference(requirements: Requirements, candidate: Evaluated | None) -> dict[str, Any] | None:
@@ -107,13 +108,9 @@ def reference(requirements: Requirements, candidate: Evaluated | None) -> dict[s
 def result(search: DesignSearch) -> dict[str, Any]:
     """Message of what a search found, or of what it had when it was stopped: the front, the plate
     that it would build, what each limit costs, the empty corners, what it rests on."""
-    asked, chosen = search.requirements, search.chosen
     return {
-        "screened": len(search.screened),
-        "solved": search.plates_solved,
-        "front": [plate(asked, member.evaluated, member.made) for member in search.front],
-        "reference": reference(asked, search.reference),
-        "chosen": None if chosen is None else chosen.name,
+        **_so_far(search),
+        "chosen": search.chosen and search.chosen.name,
         "beats": [member.name for member in search.beats_reference],
         "plates_better": search.plates_better,
         "limits": [
@@ -122,7 +119,7 @@ def result(search: DesignSearch) -> dict[str, Any]:
         "corners": [corner_in_words(corner) for corner in search.corners[:_ALL_WORDS]],
         "hypervolume": search.hypervolume,
         "ranks": {criterion_of(key).said: value for key, value in search.ranks.items()},
-        "assumed": list(asked.assumed),
+        "assumed": list(search.requirements.assumed),
         "computed": search.computed,
         "kept": search.kept,
         "stopped": search.stopped,
@@ -155,12 +152,12 @@ class StagePace:
         self._every = screened, solved
         self._stage, self._began, self._first = "", 0.0, 0
 
-    def left(self, seen: Glimpse) -> str:
+    def left(self, seen: DesignSearch) -> str:
         """Words for how long it takes until all designs are screened, or as many are solved as may
         be; "" while nobody knows."""
-        screens = seen.stage.startswith("screening")
-        every, done = self._every[not screens], seen.screened if screens else seen.solved
-        now = time.monotonic()
+        solves, now = not seen.stage.startswith("screening"), time.monotonic()
+        done = seen.plates_solved if solves else len(seen.screened)
+        every = self._every[solves]
         if seen.stage != self._stage:
             self._stage, self._began, self._first = seen.stage, now, done
         if done <= self._first or done >= every:
@@ -239,7 +236,7 @@ def _found(
         with stop.held():
             tell({"type": "search says", "text": words})
 
-    def watch(seen: Glimpse) -> None:
+    def watch(seen: DesignSearch) -> None:
         nonlocal last
         now, left = time.monotonic(), pace.left(seen)
         every = TELL_EVERY * (1 + len(seen.front) / _SLOWER)
@@ -247,7 +244,7 @@ def _found(
             return
         last = seen.stage, now
         with stop.held():
-            tell({"type": "search found", "left": left, **glimpse(requirements, seen)})
+            tell({"type": "search found", "left": left, **glimpse(seen)})
 
     search, stopped = search_until_stopped(
         SearchRequest(requirements, out=out, progress=say, watch=watch, **how)

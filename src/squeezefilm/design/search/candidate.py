@@ -7,7 +7,6 @@ import hashlib
 import json
 import math
 import time
-import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
@@ -16,7 +15,6 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
-from squeezefilm.core.kept.store import in_passing
 from squeezefilm.design.search.criteria import (
     Breach,
     breaches,
@@ -27,6 +25,7 @@ from squeezefilm.design.search.criteria import (
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.sources import plate_sources, shared_sources
 from squeezefilm.design.search.space import VOLTAGE, Setting
+from squeezefilm.design.sweep.tasks import NoAnswer, tried
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.beam_modes import timoshenko_frequency
@@ -152,21 +151,22 @@ def sourced_display_of(requirements: Requirements, design: Design) -> Display:
 def evaluate(requirements: Requirements, design: Design, level: Level) -> Evaluated:
     """Evaluate a design, by the screening theory or solved. What is refused is an answer, too."""
     began = time.perf_counter()
-    try:
-        with in_passing(), warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            if level == "solved":
-                answer = _solved(requirements, sourced_display_of(requirements, design), design)
-            else:
-                numbers = screened(requirements, display_of(requirements, design), design)
-                answer = Evaluated(design, level, numbers, breaches(numbers, requirements.limits))
-    except SqueezefilmError as error:
-        answer = Evaluated(design, level, {}, reason=str(error))
-    except Exception as error:
-        # One design of thousands: a fault of ours is told, and the others are not lost.
-        reason = f"not foreseen: {type(error).__name__}: {error}"
-        answer = Evaluated(design, level, {}, reason=reason, lasting=False)
+
+    def asked() -> Evaluated:
+        if level == "solved":
+            return _solved(requirements, sourced_display_of(requirements, design), design)
+        numbers = screened(requirements, display_of(requirements, design), design)
+        return Evaluated(design, level, numbers, breaches(numbers, requirements.limits))
+
+    answer = tried(asked)
+    if isinstance(answer, NoAnswer):
+        answer = not_evaluated(design, level, answer)
     return replace(answer, seconds=time.perf_counter() - began)
+
+
+def not_evaluated(design: Design, level: Level, why: NoAnswer) -> Evaluated:
+    """Entry of a design of which nothing is known."""
+    return Evaluated(design, level, {}, reason=why.reason, lasting=why.lasting)
 
 
 def _solved(

@@ -15,10 +15,15 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.design.search.candidate import Design, Evaluated, plates_of, sourced_display_of
 from squeezefilm.design.search.criteria import CRITERIA
-from squeezefilm.design.search.reasons import EmptyCorner, LimitReason
+from squeezefilm.design.search.reasons import (
+    EmptyCorner,
+    LimitReason,
+    empty_corners,
+    limit_reasons,
+)
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.tolerance import Made
-from squeezefilm.design.search.worth_solving import Correction, Seen, objectives_of, worst_corner
+from squeezefilm.design.search.worth_solving import Correction, objectives_of, worst_corner
 from squeezefilm.design.sweep.tradeoffs import dominates, front_of, hypervolume, knee_of
 from squeezefilm.physics.display import Display
 
@@ -60,7 +65,7 @@ class DesignSearch(Result):
     `front` are the feasible solved designs that none other beats, the best in the first objective
     first; one plate may stand there at several voltages. `reference` is the display of
     `compare_with`, judged by the same questions. `corrections` are by shape what solved plates
-    taught the screening. `stopped` says that not all was done.
+    taught the screening. `stopped` says that not all was done, `stage` in words what is done now.
     """
 
     requirements: Requirements
@@ -69,15 +74,32 @@ class DesignSearch(Result):
     solved: tuple[Evaluated, ...]
     front: tuple[FrontMember, ...]
     reference: Evaluated | None
-    limits: tuple[LimitReason, ...]
-    corners: tuple[EmptyCorner, ...]
     corrections: tuple[Correction | None, ...]
     computed: int
     kept: int
     seconds: si.Second
     stopped: bool
     provenance: Mapping[str, Any]
+    stage: str = ""
     _shown: ClassVar[str] = "requirements.name chosen_name hypervolume seconds"
+
+    @functools.cached_property
+    def limits(self) -> tuple[LimitReason, ...]:
+        """Effect of every limit on the screened designs, see `limit_reasons`."""
+        return limit_reasons(self.requirements, self.screened)
+
+    @functools.cached_property
+    def corners(self) -> tuple[EmptyCorner, ...]:
+        """Parts of the space without a feasible design, see `empty_corners`."""
+        return empty_corners(self.requirements, self.screened)
+
+    @functools.cached_property
+    def screened_front(self) -> si.FloatArray:
+        """The objectives (SI) of the feasible screened designs that none other beats, shape
+        (designs, objectives)."""
+        feasible = [candidate for candidate in self.screened if candidate.is_feasible]
+        rows = objectives_of(self.requirements, feasible)
+        return np.asarray(rows[front_of(rows)])
 
     @functools.cached_property
     def objectives(self) -> si.FloatArray:
@@ -235,35 +257,6 @@ class DesignSearch(Result):
 
     def _table(self) -> Any:
         return [_row(self.requirements, member) for member in self.front]
-
-
-@dataclass(frozen=True)
-class Glimpse:
-    """State of a running search for whoever watches: the stage in words, how many designs are
-    screened and how many plates solved, the objectives (SI) of the feasible screened designs that
-    none other beats, the front of the solved ones, and the display to compare with."""
-
-    stage: str
-    screened: int
-    solved: int
-    screened_front: tuple[tuple[float, ...], ...]
-    front: tuple[Evaluated, ...]
-    reference: Evaluated | None
-
-
-def glimpse_of(
-    requirements: Requirements,
-    stage: str,
-    seen: Seen,
-    front: tuple[Evaluated, ...],
-    reference: Evaluated | None,
-) -> Glimpse:
-    """The glimpse of a stage (in words) that whoever watches is shown of what was seen."""
-    feasible = [candidate for candidate in seen["screened"].values() if candidate.is_feasible]
-    rows = objectives_of(requirements, feasible)
-    screened = tuple(tuple(rows[k].tolist()) for k in front_of(rows))
-    counts = len(seen["screened"]), len(plates_of(seen["solved"]))
-    return Glimpse(stage, *counts, screened, front, reference)
 
 
 def _plates(designs: Iterable[Evaluated]) -> int:

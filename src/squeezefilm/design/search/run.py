@@ -24,17 +24,17 @@ from squeezefilm.design.search.candidate import (
     at_other_voltages,
     design_of,
     evaluate_all,
+    not_evaluated,
     plates_of,
     reference_of,
 )
 from squeezefilm.design.search.evolution import POPULATION, Proposals
-from squeezefilm.design.search.found import DesignSearch, FrontMember, Glimpse, glimpse_of, unbeaten
-from squeezefilm.design.search.reasons import empty_corners, limit_reasons
+from squeezefilm.design.search.found import DesignSearch, FrontMember, unbeaten
 from squeezefilm.design.search.requirements import NamedRequirements
 from squeezefilm.design.search.space import Space
 from squeezefilm.design.search.store import DesignStore
 from squeezefilm.design.search.tolerance import Made, made_of
-from squeezefilm.design.sweep.tasks import Lost, Workers
+from squeezefilm.design.sweep.tasks import NoAnswer, Workers
 from squeezefilm.design.sweep.workers import workers
 
 # Screened designs to a task: one takes some ten milliseconds.
@@ -63,7 +63,7 @@ class SearchRequest:
     out: str | Path | None = None
     member: int = 0
     progress: SayProgress | None = None
-    watch: Callable[[Glimpse], None] | None = None
+    watch: Callable[[DesignSearch], None] | None = None
 
 
 @reads_text
@@ -313,7 +313,7 @@ class SearchRun:
             self._made.update((design, made) for design, made in kept if made is not None)
             tasks = {o.design: (self.requirements, o) for o in front if o.design not in self._made}
             for done, (design, made) in enumerate(pool.answers(made_of, tasks)):
-                if not isinstance(made, Lost):
+                if not isinstance(made, NoAnswer):
                     self._made[design] = made
                     self._store.add_made(design, made)
                 self._tell(f"plates made with the tolerances: {done + 1} of {len(tasks)} drawings")
@@ -337,12 +337,8 @@ class SearchRun:
         tasks = {number: (self.requirements, part, level) for number, part in enumerate(parts)}
         try:
             for number, answers in pool.answers(evaluate_all, tasks):
-                if isinstance(answers, Lost):
-                    why = answers.reason
-                    answers = [
-                        Evaluated(design, level, {}, reason=why, lasting=False)
-                        for design in parts[number]
-                    ]
+                if isinstance(answers, NoAnswer):
+                    answers = [not_evaluated(design, level, answers) for design in parts[number]]
                 self._store.add(answers)
                 evaluated.update((answer.design, answer) for answer in answers)
                 self._show_meanwhile(level, evaluated)
@@ -367,32 +363,28 @@ class SearchRun:
     def _show(self, seen: choice.Seen | None = None) -> None:
         """Show what was seen, if anybody watches."""
         if self._asked.watch is not None:
-            seen = seen or self._seen
-            front = tuple(self._front(seen))
-            self._asked.watch(
-                glimpse_of(self.requirements, self._stage, seen, front, self._reference)
-            )
+            self._asked.watch(self.result(seen))
 
-    def result(self) -> DesignSearch:
-        """Result until now."""
-        requirements, screened = self.requirements, tuple(self._seen["screened"].values())
+    def result(self, seen: choice.Seen | None = None) -> DesignSearch:
+        """Result until now, of all that was seen or of a part of it."""
+        seen, requirements = seen or self._seen, self.requirements
+        screened, solved = tuple(seen["screened"].values()), tuple(seen["solved"].values())
         return DesignSearch(
             requirements=requirements,
             seed=self._asked.seed,
             screened=screened,
-            solved=tuple(self._seen["solved"].values()),
+            solved=solved,
             front=tuple(
                 FrontMember(evaluated, self._made.get(evaluated.design))
-                for evaluated in self._front()
+                for evaluated in self._front(seen)
             ),
             reference=self._reference,
-            limits=limit_reasons(requirements, screened),
-            corners=empty_corners(requirements, screened),
             corrections=tuple(self._corrections),
             computed=self._store.computed,
-            kept=len(screened) + len(self._seen["solved"]) - self._store.computed,
+            kept=len(screened) + len(solved) - self._store.computed,
             seconds=time.monotonic() - self._began,
             stopped=not self._done,
             provenance=stamp(requirements.base, self._asked.seed)
             | {"requirements_sha256": config_hash(requirements)},
+            stage=self._stage,
         )

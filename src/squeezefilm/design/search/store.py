@@ -59,14 +59,13 @@ class DesignStore:
     def __init__(self, requirements: Requirements, folder: Path | None, member: int = 0) -> None:
         self._requirements, self._member = requirements, member
         self._hashes = {level: asked_hash(requirements, level) for level in get_args(Level)}
-        self._lines = None if folder is None else Lines(folder / FILE)
+        self._lines = Lines(folder and folder / FILE)
         self._known: dict[tuple[Design, Level], Evaluated] = {}
         self._made: dict[Design, Made] = {}
         self._made_hash = _made_hash(requirements)
         self.computed = 0
         self._members: dict[tuple[Design, Level], int] = {}
-        if self._lines is not None:
-            self._lines.read(self._take)
+        self._lines.read(self._take)
 
     def _take(self, read: Any) -> None:
         if "kept" in read:
@@ -77,8 +76,7 @@ class DesignStore:
 
     def of_others(self, shape: int, level: Level) -> list[Evaluated]:
         """Results of other hosts that search in the same folder, of a shape at a level."""
-        if self._lines is not None:
-            self._lines.read(self._take)
+        self._lines.read(self._take)
         return [
             self._known[design, at]
             for (design, at), member in self._members.items()
@@ -101,7 +99,7 @@ class DesignStore:
             self.computed += 1
             if candidate.lasting:
                 lines.append(self._line(candidate))
-        self._append(lines)
+        self._lines.append(lines)
 
     def made(self, design: Design) -> Made | None:
         """Result of making a design's drawing; None where it was not drawn."""
@@ -111,7 +109,7 @@ class DesignStore:
         """Keep what is made of a design's drawing."""
         self._made[design] = made
         head = {"asked": self._made_hash, "shape": design.shape, "values": design.settings}
-        self._append([head | to_json(made)])
+        self._lines.append([head | to_json(made)])
 
     def _take_made(self, read: Mapping[str, Any]) -> None:
         if read["asked"] != self._made_hash:
@@ -123,10 +121,6 @@ class DesignStore:
         self._made[design] = Made(
             read["draws"], read["kept"], read["broken"], intervals, read["effects"], read["failed"]
         )
-
-    def _append(self, lines: list[dict[str, Any]]) -> None:
-        if self._lines is not None:
-            self._lines.append(lines)
 
     def _line(self, candidate: Evaluated) -> dict[str, Any]:
         return {

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Annotated
@@ -12,8 +11,6 @@ import numpy as np
 from scipy.stats import norm, qmc
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import SqueezefilmError
-from squeezefilm.core.kept.store import in_passing
 from squeezefilm.design.search.candidate import (
     Design,
     Evaluated,
@@ -23,6 +20,7 @@ from squeezefilm.design.search.candidate import (
 from squeezefilm.design.search.criteria import breaches, criterion_of
 from squeezefilm.design.search.requirements import Requirements, Tolerances, toleranced
 from squeezefilm.design.search.worth_solving import CORRECTED
+from squeezefilm.design.sweep.tasks import NoAnswer, tried
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.physics.plausibility.checks import checked_before
@@ -119,16 +117,15 @@ def _numbers(
 ) -> dict[str, float]:
     """The screened criteria of a design as made, so many standard deviations off; empty where it
     cannot be."""
-    try:
-        with checked_before(), in_passing(), warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            display = as_made(requirements, design, deviations)
-            return screened(requirements, display, design)
-    except SqueezefilmError:
+    with checked_before():
+        numbers = tried(
+            lambda: screened(requirements, as_made(requirements, design, deviations), design)
+        )
+    if isinstance(numbers, NoAnswer):
+        if not numbers.lasting:
+            log.error("plate %s as made: %s", design.address, numbers.reason)
         return {}
-    except Exception:  # a fault of ours in one of thousands does not end a search
-        log.exception("plate %s as made", design.address)
-        return {}
+    return numbers
 
 
 @si.checked_numbers

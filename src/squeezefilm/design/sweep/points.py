@@ -12,19 +12,18 @@ import re
 import time
 import warnings
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from squeezefilm.core.errors import ConfigError, InputError, SqueezefilmError, SqueezefilmWarning
+from squeezefilm.core.errors import ConfigError, InputError, SqueezefilmWarning
 from squeezefilm.core.hard_limits import LINES_BYTES
 from squeezefilm.core.kept.computed_by import computed_by
-from squeezefilm.core.kept.store import in_passing
 from squeezefilm.core.regular_file import parsed_json, read_regular, require_regular
 from squeezefilm.core.results import config_hash, to_json
 from squeezefilm.design.sweep.answers import OPTIONS, VERBS, numbers_of
-from squeezefilm.design.sweep.tasks import Lost, Workers
+from squeezefilm.design.sweep.tasks import NoAnswer, tried
 from squeezefilm.physics.display import Display
 
 SET_ASIDE = ".damaged"
@@ -53,10 +52,11 @@ def _values_of(line: bytes) -> Any:
 class Lines:
     """A file with a JSON object on each line; several programs may append to one.
 
-    Raises `InputError` where the file cannot be read or written, and for what is no regular file.
+    Without a file nothing is kept. Raises `InputError` where the file cannot be read or written,
+    and for what is no regular file.
     """
 
-    def __init__(self, file: Path) -> None:
+    def __init__(self, file: Path | None) -> None:
         self._file = file
 
     def read(self, take: Callable[[Any], None]) -> None:
@@ -66,6 +66,8 @@ class Lines:
         and so is the half of a line that a program left which was killed. A damaged line is
         blanked, and kept in a file beside this one; a `SqueezefilmWarning` names it.
         """
+        if self._file is None:
+            return
         try:
             self._file.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -93,19 +95,20 @@ class Lines:
                 if values is not None:
                     take(values)
         if damaged:
-            self._set_aside(data, damaged)
+            self._set_aside(self._file, data, damaged)
 
-    def _set_aside(self, data: bytes, damaged: list[tuple[int, int, bytes]]) -> None:
+    @staticmethod
+    def _set_aside(at: Path, data: bytes, damaged: list[tuple[int, int, bytes]]) -> None:
         """Keep damaged lines beside the file, and put blanks in their place.
 
         Other programs append meanwhile: nothing of the file is moved, nor its end touched.
         """
-        place = self._file.with_name(self._file.name + SET_ASIDE)
+        place = at.with_name(at.name + SET_ASIDE)
         try:
             require_regular(place, "a file of damaged lines")
             with place.open("ab") as beside:
                 beside.write(b"".join(line + b"\n" for _, _, line in damaged))
-            with self._file.open("rb+") as file:
+            with at.open("rb+") as file:
                 for _, begin, line in damaged:
                     start = data.index(line, begin)
                     file.seek(start)
@@ -116,7 +119,7 @@ class Lines:
         numbers = [str(number) for number, _, _ in damaged]
         which = ", ".join(numbers[:5]) + (f" and {len(numbers) - 5} more" if numbers[5:] else "")
         warnings.warn(
-            f"{self._file}: damaged lines ({which}) are {kept}; what they held is computed again",
+            f"{at}: damaged lines ({which}) are {kept}; what they held is computed again",
             SqueezefilmWarning,
             stacklevel=2,
         )
@@ -125,7 +128,7 @@ class Lines:
         """Add a line for each value, all in one write, so that lines of several programs do not
         mix; a line that was cut off before ends first, and swallows none of these."""
         lines = [_checked_line(value) for value in values]
-        if not lines:
+        if self._file is None or not lines:
             return
         try:
             with self._file.open("ab") as file:
@@ -166,42 +169,21 @@ def answer_of(point: Point) -> Answer:
     """The answer to one point, in this process. What is refused or fails is an answer, too."""
     began = time.perf_counter()
     verb = VERBS[point.verb]
-    try:
-        # A sweep keeps its answers, and not the plates.
-        with in_passing(), warnings.catch_warnings():
-            # Verbs collect those that are of the answer.
-            warnings.simplefilter("ignore")
-            display = verb.display(point.display, point.options)
-            said = verb.answer(display, verb.settings(point.options), point.samples)
-    except SqueezefilmError as error:
-        return Answer({}, reason=str(error), seconds=time.perf_counter() - began)
-    except Exception as error:
-        # One point out of many: the others must not be lost by a fault of ours, which is told.
-        reason = f"not foreseen: {type(error).__name__}: {error}"
-        return Answer({}, reason=reason, seconds=time.perf_counter() - began, lasting=False)
+
+    def asked() -> dict[str, Any]:
+        display = verb.display(point.display, point.options)
+        return verb.answer(display, verb.settings(point.options), point.samples)
+
+    said = tried(asked)
+    seconds = time.perf_counter() - began
+    if isinstance(said, NoAnswer):
+        return Answer({}, reason=said.reason, seconds=seconds, lasting=said.lasting)
     return Answer(
         dict(numbers_of(said)),
         tuple(said.get("warnings", ())),
-        seconds=time.perf_counter() - began,
+        seconds=seconds,
         modes=said if "motions" in said else None,
     )
-
-
-def answered(
-    points: Sequence[Point], pool: Workers, *, answer: Callable[[Point], Answer] = answer_of
-) -> Iterator[tuple[int, Answer]]:
-    """Each point's number and its answer, as they come from those who answer.
-
-    Points of equal plates are answered one after the other: a sweep over voltage, force or finger
-    solves a plate once. A point that processes died of has that as its answer. Raises as
-    `Workers.answers`.
-    """
-    plates = {number: point.display.actuator for number, point in enumerate(points)}
-    tasks = {number: (point,) for number, point in enumerate(points)}
-    for number, outcome in pool.answers(answer, tasks, plates):
-        if isinstance(outcome, Lost):
-            outcome = Answer({}, reason=outcome.reason, lasting=False)
-        yield number, outcome
 
 
 FILE = "answers.jsonl"
@@ -254,13 +236,22 @@ class KeptAnswers:
     """
 
     def __init__(self, folder: Path | None) -> None:
-        self._lines = None if folder is None else Lines(folder / FILE)
+        self._lines = Lines(folder and folder / FILE)
         self._answers: dict[str, Answer] = {}
-        if self._lines is not None:
-            self._lines.read(self._take)
+        self._lines.read(self._take)
 
     def _take(self, read: Any) -> None:
-        self._answers[read["address"]] = _answer(read)
+        numbers = {
+            str(key): math.nan if value is None else float(value)
+            for key, value in read["numbers"].items()
+        }
+        self._answers[read["address"]] = Answer(
+            numbers,
+            tuple(map(str, read["warnings"])),
+            str(read["reason"]),
+            float(read["seconds"]),
+            modes=read["modes"],
+        )
 
     def __len__(self) -> int:
         return len(self._answers)
@@ -272,7 +263,7 @@ class KeptAnswers:
     def add(self, at: str, point: Point, answer: Answer) -> None:
         """Keep an answer; what might be another one another time is kept in memory only."""
         self._answers[at] = answer
-        if self._lines is None or not answer.lasting:
+        if not answer.lasting:
             return
         kept = {
             "address": at,
@@ -284,17 +275,3 @@ class KeptAnswers:
             "modes": answer.modes,
         }
         self._lines.append([kept])
-
-
-def _answer(read: dict[str, Any]) -> Answer:
-    numbers = {
-        str(key): math.nan if value is None else float(value)
-        for key, value in read["numbers"].items()
-    }
-    return Answer(
-        numbers,
-        tuple(map(str, read["warnings"])),
-        str(read["reason"]),
-        float(read["seconds"]),
-        modes=read["modes"],
-    )

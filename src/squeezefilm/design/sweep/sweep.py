@@ -23,8 +23,9 @@ from squeezefilm.core.results import config_hash, stamp
 from squeezefilm.design.sweep.answers import FOLLOWED, OPTIONS, VERBS, AskedNumber, asked_for
 from squeezefilm.design.sweep.axes import DISPLAY, Axis, axes_of
 from squeezefilm.design.sweep.followed import FollowedMode, followed_modes
-from squeezefilm.design.sweep.points import Answer, KeptAnswers, Point, address, answered
+from squeezefilm.design.sweep.points import Answer, KeptAnswers, Point, address, answer_of
 from squeezefilm.design.sweep.swept import NOT_YET, Sweep, SweptColumn, counted
+from squeezefilm.design.sweep.tasks import NoAnswer
 from squeezefilm.design.sweep.workers import workers
 from squeezefilm.physics.display import Display, NamedDisplay, load_display
 from squeezefilm.physics.uncertainty.parameters import value_at, with_values
@@ -227,7 +228,7 @@ class SweepRun:
         """Ask what is not known yet. What came is kept where this is interrupted."""
         described: dict[Any, Any] = {}
         waiting: dict[str, list[tuple[int, str]]] = {}
-        points: list[Point] = []
+        points: dict[str, Point] = {}
         for number, (questions, _) in enumerate(self.plan.points):
             for verb, point in questions.items():
                 at = address(point, described)
@@ -239,17 +240,20 @@ class SweepRun:
                     waiting[at].append((number, verb))
                 else:
                     waiting[at] = [(number, verb)]
-                    points.append(point)
-        addresses = list(waiting)
+                    points[at] = point
         began = time.monotonic()
         self._say(0, len(points), began)
         if not points:
             return
         jobs = min(self._asked.jobs, len(points))
+        # Equal plates follow each other: one over voltage, force or finger is solved once.
+        plates = {at: point.display.actuator for at, point in points.items()}
+        tasks = {at: (point,) for at, point in points.items()}
         with workers(jobs, self._asked.scheduler, self._tell) as pool:
-            for number, answer in answered(points, pool):
-                at = addresses[number]
-                self._kept.add(at, points[number], answer)
+            for at, answer in pool.answers(answer_of, tasks, plates):
+                if isinstance(answer, NoAnswer):
+                    answer = Answer({}, reason=answer.reason, lasting=answer.lasting)
+                self._kept.add(at, points[at], answer)
                 self._found.update(dict.fromkeys(waiting[at], answer))
                 self._computed += 1
                 self._say(self._computed, len(points), began)

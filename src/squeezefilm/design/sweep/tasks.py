@@ -10,23 +10,42 @@ from __future__ import annotations
 
 import collections
 import itertools
+import warnings
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from squeezefilm.core.blas_threads import one_blas_thread
+from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.kept.store import in_passing
 
 K = TypeVar("K", bound=Hashable)
 A = TypeVar("A")
 
 
 @dataclass(frozen=True)
-class Lost:
-    """Entry in place of an answer: whoever computed it died, and so did who tried it again."""
+class NoAnswer:
+    """Entry in place of an answer, and why there is none: unless said, since whoever computed it
+    died, and so did who tried it again. `lasting` is one that would be the same another time."""
 
     reason: str = (
         "the process that computed it ended without an answer, as one does that runs out of memory"
     )
+    lasting: bool = False
+
+
+def tried(work: Callable[[], A]) -> A | NoAnswer:
+    """What a task's work returns, or why it does not: one of thousands must not lose the others by
+    what it is refused, nor by a fault of ours, which is told. Its warnings are said by its answer,
+    and what it solves is kept in passing only."""
+    try:
+        with in_passing(), warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return work()
+    except SqueezefilmError as error:
+        return NoAnswer(str(error), lasting=True)
+    except Exception as error:
+        return NoAnswer(f"not foreseen: {type(error).__name__}: {error}")
 
 
 class Workers:
@@ -37,13 +56,13 @@ class Workers:
         function: Callable[..., A],
         tasks: Mapping[K, tuple[Any, ...]],
         alike: Mapping[K, Hashable] | None = None,
-    ) -> Iterator[tuple[K, A | Lost]]:
+    ) -> Iterator[tuple[K, A | NoAnswer]]:
         """Each task's key and what `function` returns of its arguments, as they come.
 
         `function` is one of a module; it, its arguments and what it returns can be pickled. Tasks
-        that are `alike` (equal values; those that need the same plate solved) follow each other
-        at one worker where that costs no time. A task whose worker died is tried again, at last
-        alone, since what it needs may be all there is; `Lost` stands for one that nobody survived.
+        that are `alike` (equal values; those that need the same plate solved) follow each other at
+        one worker where that costs no time. A task whose worker died is tried again, at last alone,
+        since what it needs may be all there is; `NoAnswer` stands for one that nobody survived.
         What the function raises is raised here and ends the asking, so that a refusal which is an
         answer has to be returned. It may be called again, one asking after the other; workers stay
         as they are, with what they have loaded and solved. Where the iteration is closed early,
@@ -52,7 +71,7 @@ class Workers:
         """
         alone: list[K] = []
         for key, answer in self._asked(function, tasks, grouped(tasks, alike)):
-            if isinstance(answer, Lost):
+            if isinstance(answer, NoAnswer):
                 alone.append(key)
             else:
                 yield key, answer
@@ -64,8 +83,8 @@ class Workers:
         function: Callable[..., A],
         tasks: Mapping[K, tuple[Any, ...]],
         groups: Sequence[Sequence[K]],
-    ) -> Iterator[tuple[K, A | Lost]]:
-        """Answers to groups of tasks; `Lost` for one whose worker died."""
+    ) -> Iterator[tuple[K, A | NoAnswer]]:
+        """Answers to groups of tasks; `NoAnswer` for one whose worker died."""
         raise NotImplementedError
 
 
@@ -78,7 +97,7 @@ class ThisProcess(Workers):
         function: Callable[..., A],
         tasks: Mapping[K, tuple[Any, ...]],
         groups: Sequence[Sequence[K]],
-    ) -> Iterator[tuple[K, A | Lost]]:
+    ) -> Iterator[tuple[K, A | NoAnswer]]:
         for key in itertools.chain.from_iterable(groups):
             yield key, computed(function, tasks[key])
 

@@ -27,7 +27,7 @@ from squeezefilm.core.progress import SayProgress
 from squeezefilm.design.sweep.tasks import (
     A,
     K,
-    Lost,
+    NoAnswer,
     Shares,
     ThisProcess,
     Workers,
@@ -81,7 +81,7 @@ class Cluster(Workers):
         function: Callable[..., A],
         tasks: Mapping[K, tuple[Any, ...]],
         groups: Sequence[Sequence[K]],
-    ) -> Iterator[tuple[K, A | Lost]]:
+    ) -> Iterator[tuple[K, A | NoAnswer]]:
         self._require_workers()
         keys: dict[Any, K] = {}
         for group in groups:
@@ -135,7 +135,7 @@ class Cluster(Workers):
             return result
         error = future.exception()
         if isinstance(error, self._dask.KilledWorker):
-            return Lost()
+            return NoAnswer()
         if isinstance(error, ModuleNotFoundError):
             raise WorkersError(
                 f"a worker of {self._address} lacks {error.name}; install squeezefilm "
@@ -203,7 +203,7 @@ class Processes(Workers):
         function: Callable[..., A],
         tasks: Mapping[K, tuple[Any, ...]],
         groups: Sequence[Sequence[K]],
-    ) -> Iterator[tuple[K, A | Lost]]:
+    ) -> Iterator[tuple[K, A | NoAnswer]]:
         shares = Shares(groups)
         running: dict[Future[A], tuple[int, K]] = {}
 
@@ -227,7 +227,7 @@ class Processes(Workers):
                 done, _ = wait(running, return_when=FIRST_COMPLETED)
                 for future in done:
                     process, key = running.pop(future)
-                    answer: A | Lost = Lost()
+                    answer: A | NoAnswer = NoAnswer()
                     try:
                         answer = future.result()
                     except BrokenProcessPool:

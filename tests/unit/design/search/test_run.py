@@ -17,11 +17,11 @@ from squeezefilm.core.errors import ConfigError, InputError, WorkersError
 from squeezefilm.core.results import config_hash
 from squeezefilm.design.search import candidate
 from squeezefilm.design.search.candidate import Design, Evaluated, Level
-from squeezefilm.design.search.found import DesignSearch, Glimpse
+from squeezefilm.design.search.found import DesignSearch
 from squeezefilm.design.search.reasons import limit_in_words, margins
 from squeezefilm.design.search.requirements import Requirements
 from squeezefilm.design.search.tolerance import Made
-from squeezefilm.design.sweep.tasks import Lost
+from squeezefilm.design.sweep.tasks import NoAnswer
 
 FEW = {"screened": 40, "solved": 6}
 
@@ -181,7 +181,7 @@ class _Deadly:
         self, function: Callable[..., Any], tasks: dict[Any, Any], alike: object = None
     ) -> Iterator[tuple[Any, Any]]:
         for number, (key, arguments) in enumerate(tasks.items()):
-            yield key, Lost() if number % 8 == 0 else function(*arguments)
+            yield key, NoAnswer() if number % 8 == 0 else function(*arguments)
 
 
 @pytest.mark.usefixtures("by_formula")
@@ -191,7 +191,7 @@ def test_designs_that_a_process_died_of_are_asked_again_another_time(
     with monkeypatch.context() as dying:
         dying.setattr(run, "workers", lambda **_: contextlib.nullcontext(_Deadly()))
         lost = _search(tmp_path, **FEW)
-    assert any(one.reason == Lost().reason for one in lost.screened)
+    assert any(one.reason == NoAnswer().reason for one in lost.screened)
     again = _search(tmp_path, **FEW)
     assert again.computed > 0
     assert not any(one.reason for one in again.screened)
@@ -271,11 +271,12 @@ def test_what_comes_to_the_front_for_a_plate_of_a_low_yield_is_asked_for_its_own
 
 @pytest.mark.usefixtures("by_formula")
 def test_whoever_watches_sees_the_front_grow() -> None:
-    seen: list[Glimpse] = []
+    seen: list[DesignSearch] = []
     found = run.search_designs(requirements(), **FEW, watch=seen.append)
-    assert seen[-1].solved == found.plates_solved
-    assert seen[0].screened_front
-    assert list(seen[-1].front) == [one.evaluated for one in found.front]
+    assert seen[-1].plates_solved == found.plates_solved
+    assert len(seen[0].screened_front)
+    assert seen[0].stage.startswith("screening")
+    assert [one.name for one in seen[-1].front] == [one.name for one in found.front]
 
 
 def test_the_reasons_name_the_limits_and_what_they_cost(whole: DesignSearch) -> None:

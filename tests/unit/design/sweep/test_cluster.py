@@ -11,7 +11,7 @@ import squeezefilm as sf
 from squeezefilm.core.errors import WorkersError
 from squeezefilm.design.sweep import workers as clusters
 from squeezefilm.design.sweep.sweep import SweepRequest, sweep_until_stopped
-from squeezefilm.design.sweep.tasks import Lost
+from squeezefilm.design.sweep.tasks import NoAnswer
 from squeezefilm.design.sweep.workers import workers
 
 pytestmark = pytest.mark.slow
@@ -150,7 +150,7 @@ def test_a_task_that_workers_die_of_is_lost_and_no_other(
         cluster.start_workers(2, nanny=True)
         with workers(scheduler=cluster.address) as pool:
             found = dict(pool.answers(deadly, {k: (tmp_path, k) for k in range(10, 16)}))
-    assert found == {k: k * k for k in range(10, 16) if k != 13} | {13: Lost()}
+    assert found == {k: k * k for k in range(10, 16) if k != 13} | {13: NoAnswer()}
     # Twice beside others, and twice alone.
     assert lines(tmp_path, "begun")[13] == 4
 

@@ -12,7 +12,7 @@ import pytest
 from squeezefilm import __version__
 from squeezefilm.core.errors import WorkersError
 from squeezefilm.design.sweep import workers as clusters
-from squeezefilm.design.sweep.tasks import Lost
+from squeezefilm.design.sweep.tasks import NoAnswer
 from squeezefilm.design.sweep.workers import Cluster
 
 AT = "tcp://here:1"
@@ -169,7 +169,7 @@ def test_a_task_that_workers_die_of_is_tried_once_more_and_lost(
     pool, told = cluster(client, monkeypatch)
     with pool:
         assert list(pool.answers(deadly, {k: (k,) for k in range(3)})) == [
-            (0, 0), (2, -2), (1, Lost()),
+            (0, 0), (2, -2), (1, NoAnswer()),
         ]  # fmt: skip
     assert len(client.futures) == 4
     assert told == [f"scheduler at {AT}"]

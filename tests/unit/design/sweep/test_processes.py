@@ -8,7 +8,7 @@ import pytest
 from tests.children import children_left
 from tests.counted_tasks import counted, deadly, lines, refused, whose
 
-from squeezefilm.design.sweep.tasks import Lost
+from squeezefilm.design.sweep.tasks import NoAnswer
 from squeezefilm.design.sweep.workers import Processes
 
 pytestmark = pytest.mark.slow
@@ -46,7 +46,7 @@ def test_those_that_are_alike_are_answered_by_one_process() -> None:
 def test_one_that_dies_costs_its_own_task_which_is_tried_once_more(tmp_path: Path) -> None:
     with Processes(2) as pool:
         found = dict(pool.answers(deadly, {k: (tmp_path, k) for k in range(8, 20)}))
-    assert found == {k: k * k for k in range(8, 20) if k != 13} | {13: Lost()}
+    assert found == {k: k * k for k in range(8, 20) if k != 13} | {13: NoAnswer()}
     assert lines(tmp_path, "begun") == {k: 2 if k == 13 else 1 for k in range(8, 20)}
 
 
@@ -61,7 +61,7 @@ def test_one_that_dies_while_it_has_nothing_to_do_is_replaced() -> None:
         time.sleep(0.5)  # the pool's thread notices it; where it has not yet, a task is tried again
         found = dict(pool.answers(whose, {k: (k,) for k in range(4)}))
     assert set(found) == set(range(4))
-    assert Lost() not in found.values()
+    assert NoAnswer() not in found.values()
 
 
 def test_what_a_task_raises_is_raised_and_no_process_is_left() -> None:

@@ -2,6 +2,7 @@
 
 import dataclasses
 import functools
+import os
 import re
 from pathlib import Path
 from typing import Any
@@ -15,7 +16,7 @@ from squeezefilm.core.results import config_hash
 from squeezefilm.design.sweep import sweep as sweeps
 from squeezefilm.design.sweep.answers import FOLLOWED, AskedNumber
 from squeezefilm.design.sweep.followed import FollowedMode
-from squeezefilm.design.sweep.points import Answer, answered
+from squeezefilm.design.sweep.points import Answer, KeptAnswers, Point, answer_of
 from squeezefilm.design.sweep.sweep import SweepRequest, SweepRun, sweep, sweep_until_stopped
 from squeezefilm.design.sweep.swept import NOT_YET, counted
 from squeezefilm.physics.plate.solid import working
@@ -107,15 +108,14 @@ def test_what_is_kept_is_not_computed_again_and_more_is_asked_for_nothing(tmp_pa
 def test_a_sweep_that_is_stopped_keeps_what_it_has_and_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def stopped(points: Any, pool: Any) -> Any:
-        for number, answer in answered(points, pool):
-            if number == 2:
-                raise KeyboardInterrupt
-            yield number, answer
+    def stopped(point: Point) -> Answer:
+        if point.options["voltage"] == 100.0:
+            raise KeyboardInterrupt
+        return answer_of(point)
 
     asked = SweepRequest(sf.load_display(STATOR), vary=VOLTS, ask="relative_friction", out=tmp_path)
     with monkeypatch.context() as patched:
-        patched.setattr(sweeps, "answered", stopped)
+        patched.setattr(sweeps, "answer_of", stopped)
         half, why = sweep_until_stopped(asked)
         assert why == "stopped"
         with pytest.raises(KeyboardInterrupt):
@@ -125,6 +125,42 @@ def test_a_sweep_that_is_stopped_keeps_what_it_has_and_goes_on(
     whole, why = sweep_until_stopped(asked)
     assert why == ""
     assert (whole.missing, whole.computed, whole.kept) == (0, 1, 2)
+
+
+def volts(point: Point) -> Answer:
+    """Answers without physics, and dies of 13 V."""
+    if point.options["voltage"] == 13:
+        os._exit(1)
+    return Answer({"voltage_V": point.options["voltage"]})
+
+
+def test_points_of_one_plate_follow_each_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    order: list[tuple[float, float]] = []
+
+    def noted(point: Point) -> Answer:
+        order.append((point.display.actuator.radial_width, point.options["voltage"]))  # type: ignore[union-attr]
+        return volts(point)
+
+    monkeypatch.setattr(sweeps, "answer_of", noted)
+    vary = {"voltage": [1.0, 2.0], "actuator.radial_width": ["9 mm", "8 mm"]}
+    found = sweep(STATOR, vary=vary, ask="voltage")
+    assert order == [(9e-3, 1.0), (9e-3, 2.0), (8e-3, 1.0), (8e-3, 2.0)]
+    assert found.column("voltage").tolist() == [1.0, 1.0, 2.0, 2.0]
+
+
+@pytest.mark.slow
+def test_a_point_that_processes_die_of_has_a_reason_and_is_asked_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sweeps, "answer_of", volts)
+    vary = {"voltage": [float(k) for k in range(8, 20)]}
+    found = sweep(STATOR, vary=vary, ask="voltage", jobs=2, out=tmp_path)
+    for volt, reason, value in zip(
+        vary["voltage"], found.reasons, found.column("voltage"), strict=True
+    ):
+        assert ("ended without an answer" in reason) == (volt == 13)
+        assert value == volt or volt == 13
+    assert len(KeptAnswers(tmp_path)) == 11
 
 
 def test_progress_says_how_many_are_done_and_how_long_it_takes() -> None:
@@ -173,7 +209,7 @@ def test_a_file_gives_the_points(tmp_path: Path) -> None:
 def test_what_cannot_be_asked_is_refused_before_anything_is_computed(
     request_: dict[str, Any], message: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(sweeps, "answered", lambda *_, **__: pytest.fail("computed"))
+    monkeypatch.setattr(sweeps, "answer_of", lambda _: pytest.fail("computed"))
     with pytest.raises(InputError, match=message):
         sweep(STATOR, **request_)
 
@@ -200,10 +236,7 @@ def test_texts_that_differ_in_numbers_are_told_once() -> None:
 
 
 def test_an_answer_that_lacks_a_number_has_none(monkeypatch: pytest.MonkeyPatch) -> None:
-    def nothing(points: Any, _: Any) -> Any:
-        yield from ((number, Answer({})) for number in range(len(points)))
-
-    monkeypatch.setattr(sweeps, "answered", nothing)
+    monkeypatch.setattr(sweeps, "answer_of", lambda _: Answer({}))
     found = sweep(STATOR, vary=VOLTS, ask="relative_friction")
     assert np.isnan(found.column("relative_friction")).all()
 

@@ -12,7 +12,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.sweep import workers as pools
-from squeezefilm.design.sweep.tasks import Lost, ThisProcess
+from squeezefilm.design.sweep.tasks import NoAnswer, ThisProcess
 from squeezefilm.design.sweep.workers import Processes, workers
 
 
@@ -95,7 +95,7 @@ def test_a_task_that_every_process_dies_of_is_lost_and_no_other(executors: list[
 
     with workers(jobs=2) as pool:
         found = dict(pool.answers(deadly, {k: (k,) for k in range(6)}))
-    assert found == {k: k * k for k in range(6) if k != 3} | {3: Lost()}
+    assert found == {k: k * k for k in range(6) if k != 3} | {3: NoAnswer()}
     # Beside others, and once more alone; each time another process takes the place of the dead.
     assert (tried.pop(3), set(tried.values())) == (2, {1})
     assert len(executors) == 4

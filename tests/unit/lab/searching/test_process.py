@@ -14,7 +14,6 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.search import run
-from squeezefilm.design.search.found import Glimpse
 from squeezefilm.design.search.run import SearchRequest
 from squeezefilm.lab import own_process
 from squeezefilm.lab import search_process as process
@@ -51,6 +50,9 @@ def searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Search
     # This process is no worker: it keeps its memory and its signals.
     monkeypatch.setattr(process, "prepare", lambda: None)
     monkeypatch.setattr(shown, "result", lambda found: {"found": found.of})
+    monkeypatch.setattr(
+        shown, "glimpse", lambda seen: {"stage": seen.stage, "screened": len(seen.screened)}
+    )
 
     def search_of(how: Callable[[SearchRequest], Any]) -> list[dict[str, Any]]:
         monkeypatch.setattr(run, "search_until_stopped", how)
@@ -62,8 +64,10 @@ def searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Search
     signal.signal(signal.SIGINT, before)
 
 
-def glimpse(stage: str, screened: int = 0, solved: int = 0) -> Glimpse:
-    return Glimpse(stage, screened, solved, (), (), None)
+def glimpse(stage: str, screened: int = 0, solved: int = 0, front: int = 0) -> Any:
+    return SimpleNamespace(
+        stage=stage, screened=(None,) * screened, plates_solved=solved, front=(None,) * front
+    )
 
 
 def test_a_search_is_made_as_it_was_asked_for_and_its_result_told(
@@ -115,13 +119,12 @@ def test_what_is_seen_is_told_a_few_times_a_second_and_each_stage_at_once(
 def test_a_long_front_is_told_less_often(
     searched: Searched, clock: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(shown, "glimpse", lambda _, seen: {"solved": seen.solved})
-    many: Any = (None,) * 300
+    monkeypatch.setattr(shown, "glimpse", lambda seen: {"solved": seen.plates_solved})
 
     def how(one: SearchRequest) -> Any:
         assert one.watch is not None
         for solved in range(9):
-            one.watch(Glimpse("solving", 0, solved, (), many, None))
+            one.watch(glimpse("solving", 0, solved, 300))
             clock.now += 0.5
         return SimpleNamespace(of=""), ""
 

@@ -4,18 +4,13 @@ from __future__ import annotations
 
 import itertools
 import json
-from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
-from squeezefilm.design.search.found import DesignSearch, FrontMember, Glimpse
-from squeezefilm.design.search.reasons import (
-    EmptyCorner,
-    corner_in_words,
-    empty_corners,
-    limit_reasons,
-)
+from squeezefilm.design.search.found import DesignSearch, FrontMember
+from squeezefilm.design.search.reasons import EmptyCorner, corner_in_words
 from squeezefilm.design.search.tolerance import Made
 from squeezefilm.lab import search_process as shown
 from squeezefilm.lab.wire import as_text
@@ -48,10 +43,9 @@ def test_a_plate_has_what_is_drawn_in_si_and_what_is_read_in_words() -> None:
 
 
 def test_a_glimpse_has_both_fronts_and_the_reference() -> None:
-    seen = Glimpse("solving", 40, 3, ((0.2, 1e-3), (0.1, 2e-3)), (FIRST, SECOND), REFERENCE)
-    found = shown.glimpse(ASKED, seen)
-    assert (found["stage"], found["screened"], found["solved"]) == ("solving", 40, 3)
-    assert found["screened_front"] == [[0.1, 2e-3], [0.2, 1e-3]]
+    found = shown.glimpse(search(stage="solving"))
+    assert (found["stage"], found["screened"], found["solved"]) == ("solving", 32, 2)
+    assert found["screened_front"] == [[0.3, 0.4e-3], [0.4, 0.3e-3]]
     assert [one["name"] for one in found["front"]] == [
         one.design.address for one in (FIRST, SECOND)
     ]
@@ -59,12 +53,14 @@ def test_a_glimpse_has_both_fronts_and_the_reference() -> None:
     assert found["reference"]["objectives"] == [0.5, 0.35e-3]
     assert found["reference"]["breaks"] == ["squeeze number is 9, at least 10 is wanted"]
     assert found["reference"]["reason"] == ""
-    assert shown.glimpse(ASKED, Glimpse("s", 0, 0, (), (), None))["reference"] is None
+    empty = shown.glimpse(search(screened=(), solved=(), front=(), reference=None))
+    assert (empty["reference"], empty["screened_front"]) == (None, [])
 
 
 def test_a_long_front_is_thinned_evenly() -> None:
-    points = tuple((float(k), -float(k)) for k in range(5000))
-    found = shown.glimpse(ASKED, Glimpse("s", 0, 0, points, (), None))["screened_front"]
+    many = search()
+    vars(many)["screened_front"] = np.array([(float(k), -float(k)) for k in range(5000)])
+    found = shown.glimpse(many)["screened_front"]
     assert len(found) <= shown.MOST_POINTS
     assert len(found) > shown.MOST_POINTS / 2
     steps = {b[0] - a[0] for a, b in itertools.pairwise(found)}
@@ -79,9 +75,8 @@ def search(**changes: Any) -> DesignSearch:
     given: dict[str, Any] = {
         "requirements": ASKED, "seed": 1, "screened": screened, "solved": (FIRST, SECOND),
         "front": (FrontMember(FIRST), FrontMember(SECOND, Made(64, 0.5, {}, {}, {}))),
-        "reference": REFERENCE, "limits": limit_reasons(ASKED, screened),
-        "corners": empty_corners(ASKED, screened), "corrections": (None,), "computed": 30,
-        "kept": 4, "seconds": 1.0, "stopped": False, "provenance": {}, **changes,
+        "reference": REFERENCE, "corrections": (None,), "computed": 30, "kept": 4,
+        "seconds": 1.0, "stopped": False, "provenance": {}, **changes,
     }  # fmt: skip
     return DesignSearch(**given)
 
@@ -137,6 +132,6 @@ def test_an_empty_corner_is_a_sentence(corner: EmptyCorner, says: str) -> None:
 
 
 def test_thickness_is_called_as_elsewhere() -> None:
-    one = SimpleNamespace(**{**vars(search()), "ranks": {"thickness": 0.9}, "chosen": None})
-    one.beats_reference, one.hypervolume, one.plates_solved, one.plates_better = (), 0.0, 0, 0
-    assert shown.result(one)["ranks"] == {"thickness with ceramics": 0.9}  # type: ignore[arg-type]
+    found = search()
+    vars(found)["ranks"] = {"thickness": 0.9}
+    assert shown.result(found)["ranks"] == {"thickness with ceramics": 0.9}

@@ -14,7 +14,6 @@ from squeezefilm.core.results import stamp
 from squeezefilm.design.search.candidate import Design, Evaluated, Level, design_of
 from squeezefilm.design.search.criteria import breaches
 from squeezefilm.design.search.found import DesignSearch, FrontMember
-from squeezefilm.design.search.reasons import empty_corners, limit_reasons
 from squeezefilm.design.search.requirements import Requirements, load_requirements
 from squeezefilm.design.search.shapes import EdgeStrips
 from squeezefilm.design.search.tolerance import Made
@@ -62,8 +61,6 @@ def made_search(
         solved=tuple(after),
         front=_front(requirements, after),
         reference=None if stopped else _reference(requirements),
-        limits=limit_reasons(requirements, before),
-        corners=empty_corners(requirements, before),
         corrections=tuple(
             learned(space, seen, [one for one in after if one.design.shape == number])
             for number, space in enumerate(requirements.spaces)
