@@ -11,15 +11,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.formats.drawing import (
-    Dimension,
-    Drawing,
-    Item,
-    Layer,
-    Text,
-    dxf_text,
-    rectangle,
-)
+from squeezefilm.core.formats.drawing import Drawing, Layer, dxf_text
 from squeezefilm.core.hard_limits import HardLimit, require_within
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
@@ -191,28 +183,22 @@ def board_rows(
 
 def drawing_of(found: tuple[Board, ...]) -> Drawing:
     """The boards one above the other, with a ridge's and a period's dimension on each."""
-    items: list[Item] = []
-    y = 0.0
+    drawing, y = Drawing(_LAYERS, corner=(-_MARGIN, -_MARGIN)), 0.0
     for board in found:
         grating = board.grating
-        items.append(rectangle("BOARD", 0.0, y, grating.length, grating.width))
-        items += [
-            rectangle("RIDGES", float(begin), y, float(end - begin), grating.width)
-            for begin, end in zip(board.begin, board.end, strict=True)
-        ]
+        drawing.rectangle("BOARD", 0.0, y, grating.length, grating.width)
+        for begin, end in zip(board.begin.tolist(), board.end.tolist(), strict=True):
+            drawing.rectangle("RIDGES", begin, y, end - begin, grating.width)
         top = y + grating.width
-        items += [
-            _along(0.0, board.ridge_width, top),
-            _along(board.ridge_width, grating.period, top + 3e-3),
-            _along(0.0, grating.length, top + 6e-3),
-            Text(f"{grating.name}: ridges {1e6 * grating.ridge_height:g} um high", 0.0, y - 4e-3),
-        ]
+        for start, end, side in (
+            (0.0, board.ridge_width, top),
+            (board.ridge_width, grating.period, top + 3e-3),
+            (0.0, grating.length, top + 6e-3),
+        ):
+            at = side + 4e-3
+            drawing.dimension((start, side), (end, side), at, ((start + end) / 2, at + 1.5e-3))
+        said = f"{grating.name}: ridges {1e6 * grating.ridge_height:g} um high"
+        drawing.text(said, 0.0, y - 4e-3)
         y += grating.width + 1.5 * _GAP + 6e-3
-    paper = max(board.grating.length for board in found) + 2 * _MARGIN, y + _MARGIN
-    return Drawing(_LAYERS, items, paper=paper, corner=(-_MARGIN, -_MARGIN))
-
-
-def _along(start: si.Metre, end: si.Metre, y: si.Metre) -> Dimension:
-    """A dimension along the stroke, its line 4 mm above a height (m)."""
-    at = y + 4e-3
-    return Dimension(start, y, end, y, at, (start + end) / 2, at + 1.5e-3)
+    drawing.paper = max(board.grating.length for board in found) + 2 * _MARGIN, y + _MARGIN
+    return drawing

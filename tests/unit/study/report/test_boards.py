@@ -10,7 +10,7 @@ import pytest
 from ezdxf.filemanagement import readfile
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.formats.drawing import MILLIMETRES, Dimension, Polyline, Text
+from squeezefilm.core.formats.drawing import MILLIMETRES
 from squeezefilm.physics.perception.stimuli import Grating
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.report.boards import board_of, boards, drawing_of, write_boards
@@ -70,9 +70,8 @@ def test_the_same_boards_are_the_same_file(folder: Path, tmp_path: Path) -> None
 
 def test_all_boards_lie_on_the_paper() -> None:
     drawing = drawing_of(boards(DESIGN))
-    points = np.array(
-        [point for item in drawing.items if isinstance(item, Polyline) for point in item.points]
-    )
+    outlines = drawing.document.modelspace().query("LWPOLYLINE")
+    points = 1e-3 * np.array([point for one in outlines for point in one.get_points("xy")])
     assert np.all(points >= drawing.corner)
     assert np.all(points <= np.add(drawing.corner, drawing.paper))
 
@@ -100,20 +99,22 @@ def test_each_board_is_drawn_above_the_one_before_with_three_dimensions() -> Non
     other = board_of(Grating("b", 8e-3, "groove width", length=0.05, width=0.01))
     drawing = drawing_of((made, other))
     assert drawing.layers.keys() == {"BOARD", "RIDGES"}
-    boards_drawn = [item for item in drawing.items if getattr(item, "layer", "") == "BOARD"]
-    lower = [item.points[0] for item in boards_drawn if isinstance(item, Polyline)]
+    space = drawing.document.modelspace()
+    lower = [board.get_points("xy")[0] for board in space.query('LWPOLYLINE[layer=="BOARD"]')]
     # Three dimensions of 3 mm each, one's own 4 mm, a text below: they have room between boards.
     (_, first), (_, second) = lower
     assert first == 0.0
-    dimensions = [item for item in drawing.items if isinstance(item, Dimension)]
-    assert [one.measured for one in dimensions] == pytest.approx(
-        [2e-3, 2e-3, 20e-3, 8e-3, 8e-3, 50e-3]
-    )
-    assert [one.x_from for one in dimensions] == pytest.approx([0, 2e-3, 0, 0, 8e-3, 0], abs=1e-12)
-    highest = max(one.at for one in dimensions[:3])
-    texts = [item for item in drawing.items if isinstance(item, Text)]
-    assert [one.text for one in texts] == ["a: ridges 50 um high", "b: ridges 70 um high"]
-    assert 30e-3 < highest < texts[1].y < second
-    assert texts[0].y < first
-    assert [one.at - one.y_from for one in dimensions[:3]] == pytest.approx([4e-3] * 3)
-    assert all(one.text_x == (one.x_from + one.x_to) / 2 for one in dimensions)
+    dimensions = space.query("DIMENSION")
+    assert [one.get_measurement() for one in dimensions] == pytest.approx([2, 2, 20, 8, 8, 50])
+    starts = [one.dxf.defpoint2 for one in dimensions]
+    assert [start.x for start in starts] == pytest.approx([0, 2, 0, 0, 8, 0], abs=1e-9)
+    highest = max(one.dxf.defpoint.y for one in dimensions[:3])
+    texts = space.query("TEXT")
+    assert [one.dxf.text for one in texts] == ["a: ridges 50 um high", "b: ridges 70 um high"]
+    lower_text, upper_text = (one.get_placement()[1].y for one in texts)
+    assert 30 < highest < upper_text < second
+    assert lower_text < first
+    above = [one.dxf.defpoint.y - one.dxf.defpoint2.y for one in dimensions[:3]]
+    assert above == pytest.approx([4] * 3)
+    middles = [(one.dxf.defpoint2.x + one.dxf.defpoint3.x) / 2 for one in dimensions]
+    assert [one.dxf.text_midpoint.x for one in dimensions] == pytest.approx(middles)

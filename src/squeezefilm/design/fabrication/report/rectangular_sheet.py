@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.formats.drawing import Arc, Drawing, Polyline, millimetres, rectangle
+from squeezefilm.core.formats.drawing import Drawing, millimetres
 from squeezefilm.design.fabrication.report.section_view import Cut, best_cut, section_view
 from squeezefilm.design.fabrication.report.sheet_parts import (
     LETTER,
@@ -52,45 +52,46 @@ def rectangular_sheet(made: Fabrication, common: Sequence[str]) -> Drawing:
 
 
 def _plan(sheet: Sheet, made: Fabrication, plate: RectangularPlate, face: str, sign: float) -> None:
-    def placed(layer: str, x: float, y: float, length: float, width: float) -> Polyline:
-        return rectangle(layer, x, y if sign > 0 else -y - width, length, width)
+    def place(layer: str, x: float, y: float, length: float, width: float) -> None:
+        sheet.rectangle(layer, x, y if sign > 0 else -y - width, length, width)
 
-    sheet.add(placed("BODY", 0.0, 0.0, plate.length, plate.width))
-    sheet.add(placed("OUTLINE", 0.0, 0.0, plate.length, plate.width))
+    place("BODY", 0.0, 0.0, plate.length, plate.width)
+    place("OUTLINE", 0.0, 0.0, plate.length, plate.width)
     for electrode in made.electrodes:
         shape = electrode.footprint
         assert isinstance(shape, Rectangle)
         at = (shape.x, shape.y, shape.length, shape.width)
         if electrode.face != face:
-            sheet.add(placed("CERAMICS_OTHER_FACE", *at))
+            place("CERAMICS_OTHER_FACE", *at)
             continue
         layer = "CERAMICS_B" if electrode.connection == ANTIPHASE else "CERAMICS"
         if plate.glue is not None:
-            sheet.add(placed("GLUE", *at))
-        sheet.add(placed(layer, *at), placed("ELECTRODES", *at))
+            place("GLUE", *at)
+        place(layer, *at)
+        place("ELECTRODES", *at)
         _label(sheet, electrode, shape, sign)
     for held in plate.supports:
-        sheet.add(placed("SUPPORTS", held.x, held.y, held.length, held.width))
+        place("SUPPORTS", held.x, held.y, held.length, held.width)
     over = 3.0 * sheet.unit
     for at_ in made.nodal.positions:
         if made.nodal.axis == "x":
-            ends = (at_, -over), (at_, plate.width + over)
+            ends = (at_, -sign * over), (at_, sign * (plate.width + over))
         else:
-            ends = (-over, at_), (plate.length + over, at_)
-        sheet.interrupted(Polyline("NODAL_LINES", tuple((x, sign * y) for x, y in ends)))
+            ends = (-over, sign * at_), (plate.length + over, sign * at_)
+        sheet.interrupted("NODAL_LINES", ends)
 
 
 def poling_mark(sheet: Sheet, x: si.Metre, y: si.Metre, towards_viewer: bool) -> None:
     """A circle with a dot (the arrow's tip, towards the viewer) or with a cross (its feathers)."""
     r = 1.1 * sheet.unit
     sheet.kept_free.append((x - 1.4 * r, y - 1.4 * r, x + 1.4 * r, y + 1.4 * r))
-    sheet.add(Arc("POLING", x, y, r))
+    sheet.arc("POLING", x, y, r)
     if towards_viewer:
-        sheet.add(Arc("POLING", x, y, 0.25 * r))
+        sheet.arc("POLING", x, y, 0.25 * r)
         return
     d = r * math.sqrt(0.5)
-    sheet.add(Polyline("POLING", ((x - d, y - d), (x + d, y + d))))
-    sheet.add(Polyline("POLING", ((x - d, y + d), (x + d, y - d))))
+    sheet.line("POLING", ((x - d, y - d), (x + d, y + d)))
+    sheet.line("POLING", ((x - d, y + d), (x + d, y - d)))
 
 
 def _label(sheet: Sheet, electrode: Electrode, shape: Rectangle, sign: float) -> None:
@@ -126,9 +127,9 @@ def _cut_marks(sheet: Sheet, plate: RectangularPlate, cut: Cut, sign: float) -> 
             y = sign * cut.at
             line = ((end + way * 0.5 * u, y), (end + way * reach * u, y))
             place = (end + way * (reach - 1.5) * u, y + 2.2 * u)
-        sheet.add(Polyline("CENTRE_LINES", line))
+        sheet.line("CENTRE_LINES", line)
         paper = (place[0] / u + sheet.origin[0], place[1] / u + sheet.origin[1])
-        sheet.write("A", *paper, NUMBER, "middle")
+        sheet.write("A", *paper, NUMBER, "center")
 
 
 def _dimensions(sheet: Sheet, plate: RectangularPlate, sign: float) -> bool:

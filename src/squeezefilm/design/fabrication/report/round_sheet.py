@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from squeezefilm.core.formats.drawing import Arc, Drawing, Polyline, millimetres
+from squeezefilm.core.formats.drawing import Drawing, millimetres
 from squeezefilm.design.fabrication.report.rectangular_sheet import poling_mark
 from squeezefilm.design.fabrication.report.section_view import section_view
 from squeezefilm.design.fabrication.report.sheet_parts import (
@@ -73,50 +73,52 @@ def _polar(radius: float, angle: float) -> tuple[float, float]:
 
 def _plan(sheet: Sheet, made: Fabrication, body: Sector) -> None:
     ceramic, actuator = _ring(made.parts, "ceramic"), made.display.actuator
-    sheet.add(Arc("BODY", 0.0, 0.0, body.outer_radius), Arc("OUTLINE", 0.0, 0.0, body.outer_radius))
+    for layer in ("BODY", "OUTLINE"):
+        sheet.arc(layer, 0.0, 0.0, body.outer_radius)
     if any(part.kind == "glue" for part in made.parts):
-        sheet.add(Arc("GLUE", 0.0, 0.0, ceramic.outer_radius))
-    sheet.add(Arc("CERAMICS", 0.0, 0.0, ceramic.outer_radius))
+        sheet.arc("GLUE", 0.0, 0.0, ceramic.outer_radius)
+    sheet.arc("CERAMICS", 0.0, 0.0, ceramic.outer_radius)
     if ceramic.inner_radius > body.inner_radius + 1e-9:
-        sheet.add(Arc("BODY", 0.0, 0.0, ceramic.inner_radius))
+        sheet.arc("BODY", 0.0, 0.0, ceramic.inner_radius)
     if body.inner_radius > 0:
-        sheet.add(Arc("HOLES", 0.0, 0.0, body.inner_radius))
+        sheet.arc("HOLES", 0.0, 0.0, body.inner_radius)
     for electrode in made.electrodes:
         shape = electrode.footprint
         assert isinstance(shape, Sector)
         _electrode(sheet, electrode, shape)
     if isinstance(actuator, AnnularStator):
-        sheet.interrupted(Arc("CENTRE_LINES", 0.0, 0.0, actuator.mean_diameter / 2))
+        sheet.interrupted("CENTRE_LINES", actuator.mean_diameter / 2)
         # The teeth are on the other face: their walls, beyond the rim.
         over = body.outer_radius + 2.0 * sheet.unit
         for ends in teeth_of(actuator):
             for angle in ends:
                 line = _polar(body.outer_radius, angle), _polar(over, angle)
-                sheet.add(Polyline("CERAMICS_OTHER_FACE", line))
+                sheet.line("CERAMICS_OTHER_FACE", line)
     for radius in made.nodal.radii:
-        sheet.interrupted(Arc("NODAL_LINES", 0.0, 0.0, radius))
+        sheet.interrupted("NODAL_LINES", radius)
     for angle in made.nodal.angles:
-        ends_ = body.inner_radius, body.outer_radius + 3.0 * sheet.unit
-        sheet.interrupted(Polyline("NODAL_LINES", tuple(_polar(radius, angle) for radius in ends_)))
+        beyond = body.outer_radius + 3.0 * sheet.unit
+        ray = _polar(body.inner_radius, angle), _polar(beyond, angle)
+        sheet.interrupted("NODAL_LINES", ray)
     if body.inner_radius == 0:
         r = body.outer_radius + 4.0 * sheet.unit
-        sheet.add(Polyline("CENTRE_LINES", ((0.0, -r), (0.0, r))))
+        sheet.line("CENTRE_LINES", ((0.0, -r), (0.0, r)))
 
 
 def _electrode(sheet: Sheet, electrode: Electrode, shape: Sector) -> None:
     u = sheet.unit
     if shape.is_whole:
-        sheet.add(Arc("ELECTRODES", 0.0, 0.0, shape.outer_radius))
+        sheet.arc("ELECTRODES", 0.0, 0.0, shape.outer_radius)
         if shape.inner_radius > 0:
-            sheet.add(Arc("ELECTRODES", 0.0, 0.0, shape.inner_radius))
+            sheet.arc("ELECTRODES", 0.0, 0.0, shape.inner_radius)
     else:
         ends = (-shape.end, -shape.start)
         for radius in (shape.outer_radius, shape.inner_radius):
             if radius > 0:
-                sheet.add(Arc("ELECTRODES", 0.0, 0.0, radius, *ends))
+                sheet.arc("ELECTRODES", 0.0, 0.0, radius, *ends)
         for angle in (shape.start, shape.end):
-            wall = tuple(_polar(r, angle) for r in (shape.inner_radius, shape.outer_radius))
-            sheet.add(Polyline("ELECTRODES", wall))
+            wall = _polar(shape.inner_radius, angle), _polar(shape.outer_radius, angle)
+            sheet.line("ELECTRODES", wall)
     middle = (shape.inner_radius + shape.outer_radius) / 2
     angle = (shape.start + shape.end) / 2
     if shape.is_whole:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.formats.drawing import millimetres, rectangle
+from squeezefilm.core.formats.drawing import millimetres
 from squeezefilm.design.fabrication.report.sheet_parts import (
     LETTER,
     NUMBER,
@@ -105,7 +105,7 @@ def section_view(
         layer = "CERAMICS_B" if other else _LAYERS[part.kind]
         for start, end in widths:
             thick = stretch * part.thickness
-            sheet.add(rectangle(layer, start + shift, height(part.bottom), end - start, thick))
+            sheet.rectangle(layer, start + shift, height(part.bottom), end - start, thick)
     base, said = met[0][0], []
     right = max(ends) + shift
     for part in (base, *_stacks(met)):
@@ -129,8 +129,8 @@ def section_view(
     bottom = top - 1e3 * (high - low) * sheet.scale * stretch
     label = "Section A–A" if isinstance(base.footprint, Rectangle) else "Section through the middle"
     larger = f"; heights drawn {stretch} times larger" if stretch > 1 else ""
-    sheet.write(f"{label}{larger}", middle, bottom - 6.0, SMALL, "middle")
-    sheet.lowest = bottom - 12.0
+    sheet.write(f"{label}{larger}", middle, bottom - 6.0, SMALL, "center")
+    sheet.end_views(bottom - 12.0)
     stated = [
         f"{part.kind} {millimetres(part.thickness)}{tolerance}"
         for part, _, tolerance in said

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,17 +11,12 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.distributions import Normal
 from squeezefilm.core.formats.drawing import (
-    Arc,
-    Dimension,
+    Align,
     Drawing,
-    Item,
     Layer,
-    Ordinate,
-    Polyline,
-    Text,
+    Place,
     arrows_outside,
     millimetres,
-    rectangle,
 )
 from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.results import stamp
@@ -76,34 +70,30 @@ def scale_for(width: si.Metre, height: si.Metre, room: tuple[float, float]) -> s
     return min(room[0] / (1e3 * width), room[1] / (1e3 * height))
 
 
-@dataclass
-class Sheet:
+class Sheet(Drawing):
     """A drawing of a `display` as it is composed: `scale` is paper over thing; places on paper are
     in millimetres from its lower left corner, and `origin` is where the thing's own (0, 0) lies
     there. Boxes that are `kept_free` (left, bottom, right, top in m) are not crossed by lines that
-    are `interrupted`. The views end at `lowest` (mm), `noted` is what the notes say.
+    are `interrupted`. `end_views` says where the views end.
     """
 
-    display: Display
-    scale: float
-    origin: tuple[float, float]
-    items: list[Item] = field(default_factory=list)
-    kept_free: list[tuple[float, float, float, float]] = field(default_factory=list)
-    noted: list[str] = field(default_factory=list)
-    lowest: float = VIEWS[1]
-
-    @property
-    def unit(self) -> si.Metre:
+    def __init__(self, display: Display, scale: float, origin: tuple[float, float]) -> None:
+        self.display, self.origin = display, origin
+        self.unit: si.Metre = 1e-3 / scale
         """Length of the thing that a millimetre of paper stands for (m)."""
-        return 1e-3 / self.scale
+        self.kept_free: list[tuple[float, float, float, float]] = []
+        paper = (1e-3 * PAPER[0], 1e-3 * PAPER[1])
+        super().__init__(LAYERS, scale, paper, self.at(0.0, 0.0))
+        self.end_views(VIEWS[1])
 
-    def at(self, x: float, y: float) -> tuple[float, float]:
+    def end_views(self, lowest: float) -> None:
+        """Let the views end at a height on paper (mm)."""
+        left, _, right, top = VIEWS
+        self.views = 1e-3 * (left - 4.0), 1e-3 * lowest, 1e-3 * (right + 4.0), 1e-3 * (top + 4.0)
+
+    def at(self, x: float, y: float) -> Place:
         """A place on paper (mm) as one of the thing (m)."""
         return (x - self.origin[0]) * self.unit, (y - self.origin[1]) * self.unit
-
-    def add(self, *items: Item) -> None:
-        """Add more items over those that are there."""
-        self.items += items
 
     def write(
         self,
@@ -111,12 +101,10 @@ class Sheet:
         x: float,
         y: float,
         height: float = SMALL,
-        align: str = "left",
-        angle: float = 0.0,
+        align: Align = "left",
     ) -> None:
         """A text at a place on paper (mm), capitals so high (mm)."""
-        place, size = self.at(x, y), height * self.unit
-        self.add(Text(printable(text), *place, size, align, angle))  # type: ignore[arg-type] # an alignment
+        self.text(printable(text), *self.at(x, y), height * self.unit, align)
 
     def label(self, text: str, x: si.Metre, y: si.Metre, angle: float = 0.0) -> None:
         """A text about a place of the thing (m), which lines then leave free."""
@@ -124,38 +112,38 @@ class Sheet:
         along, across = len(text) * LETTER * size / 2, 0.8 * size
         wide, high = (across, along) if angle else (along, across)
         self.kept_free.append((x - wide, y - high, x + wide, y + high))
-        self.add(Text(printable(text), x, y, size, "middle", angle))
+        self.text(printable(text), x, y, size, "center", angle)
 
-    def interrupted(self, line: Polyline | Arc) -> None:
-        """A straight line or an arc, left out where labels are."""
+    def interrupted(self, layer: str, shape: tuple[Place, Place] | float) -> None:
+        """A straight line between two places, or a circle of a radius about the origin (m), left
+        out where labels are."""
         shares = np.linspace(0.0, 1.0, _PIECES + 1)
-        if isinstance(line, Arc):
-            angles = line.start + shares * (line.end - line.start)
-            x, y = line.x + line.radius * np.cos(angles), line.y + line.radius * np.sin(angles)
+        angles = 2 * np.pi * shares
+        if isinstance(shape, float):
+            x, y = shape * np.cos(angles), shape * np.sin(angles)
         else:
-            x, y = (np.interp(shares, (0.0, 1.0), ends) for ends in zip(*line.points, strict=True))
+            x, y = (np.interp(shares, (0.0, 1.0), ends) for ends in zip(*shape, strict=True))
         free = np.ones(shares.size, dtype=bool)
         for left, bottom, right, top in self.kept_free:
             free &= ~((left <= x) & (x <= right) & (bottom <= y) & (y <= top))
         # Where what is free begins, and behind its last place.
         edges = np.flatnonzero(np.diff(free, prepend=False, append=False)).reshape(-1, 2)
         for first, last in (edges - (0, 1)).tolist():
-            if free.all():
-                self.add(line)
-            elif last > first and isinstance(line, Arc):
-                self.add(replace(line, start=float(angles[first]), end=float(angles[last])))
-            elif last > first:
-                ends = (float(x[first]), float(y[first])), (float(x[last]), float(y[last]))
-                self.add(Polyline(line.layer, ends))
+            if last == first:
+                continue
+            if isinstance(shape, float):
+                self.arc(layer, 0.0, 0.0, shape, float(angles[first]), float(angles[last]))
+            else:
+                self.line(layer, tuple((float(x[k]), float(y[k])) for k in (first, last)))
 
     def box(self, layer: str, left: float, bottom: float, right: float, top: float) -> None:
         """A rectangle on paper (mm)."""
         (x, y), (x_to, y_to) = self.at(left, bottom), self.at(right, top)
-        self.add(rectangle(layer, x, y, x_to - x, y_to - y))
+        self.rectangle(layer, x, y, x_to - x, y_to - y)
 
     def rule(self, x: float, y: float, x_to: float, y_to: float, layer: str = "FRAME") -> None:
         """A straight line on paper (mm)."""
-        self.add(Polyline(layer, (self.at(x, y), self.at(x_to, y_to))))
+        self.line(layer, (self.at(x, y), self.at(x_to, y_to)))
 
     def across(
         self,
@@ -179,13 +167,8 @@ class Sheet:
         if width > extent:
             beyond = 2.6 * size if arrows_outside(extent, size) else 0.8 * size
             text_x, text_y = max(x_from, x_to) + width / 2 + beyond, at
-        ends = (x_from, y, x_to, y if y_to is None else y_to)
-        self.add(
-            Dimension(
-                *ends, at, text_x, text_y, size,
-                prefix=prefix, suffix=suffix, value_of=key,
-            )
-        )  # fmt: skip
+        ends, number = ((x_from, y), (x_to, y if y_to is None else y_to)), (text_x, text_y)
+        self.dimension(*ends, at, number, size, prefix=prefix, suffix=suffix, value_of=key)
 
     def upright(
         self,
@@ -207,16 +190,16 @@ class Sheet:
         at = x + away * self.unit
         suffix = tolerance_said(self.display, key) if suffix is None else suffix
         said = f"{millimetres(abs(y_to - y_from) / stretch)}{suffix}"
-        half = len(said) * LETTER * size / 2
-        text_x = at + (half + 0.6 * size) * (1 if away > 0 else -1)
+        half = len(said) * size / 2
+        # ezdxf takes letters to be as wide as high: at `half` and nearer it interrupts the line.
+        beyond = max(half * LETTER + 0.6 * size, 1.01 * half)
+        text_x = at + beyond * (1 if away > 0 else -1)
         text_y = (y_from + y_to) / 2
         if not beside and arrows_outside(abs(y_to - y_from), size):
             text_y = max(y_from, y_to) + 1.6 * size
-        self.add(
-            Dimension(
-                x, y_from, x, y_to, at, text_x, text_y, size, upright=True,
-                stretch=stretch, suffix=suffix, value_of=key,
-            )
+        self.dimension(
+            (x, y_from), (x, y_to), at, (text_x, text_y), size,
+            upright=True, stretch=stretch, suffix=suffix, value_of=key,
         )  # fmt: skip
 
     def ordinates(
@@ -238,23 +221,8 @@ class Sheet:
             last = coordinate
             end = edge + away * self.unit
             x, y = (edge, drawn) if upright else (drawn, edge)
-            self.add(Ordinate(x, y, end, size, upright, key))
+            self.ordinate(x, y, end, size, upright=upright, value_of=key)
         return whole
-
-    def drawing(self) -> Drawing:
-        """Drawing that was composed."""
-        paper = (1e-3 * PAPER[0], 1e-3 * PAPER[1])
-        left, _, right, top = VIEWS
-        views = tuple(1e-3 * edge for edge in (left - 4.0, self.lowest, right + 4.0, top + 4.0))
-        return Drawing(
-            LAYERS,
-            tuple(self.items),
-            self.scale,
-            paper,
-            self.at(0.0, 0.0),
-            (views[0], views[1], views[2], views[3]),
-            tuple(self.noted),
-        )
 
 
 def table(
@@ -290,7 +258,7 @@ def notes(sheet: Sheet, texts: Iterable[str], top: float) -> float:
     letters = int((right - left - 6) / (LETTER * SMALL))
     y, step = top - 2.0, 3.5
     for number, text in enumerate(texts, 1):
-        sheet.noted.append(text)
+        sheet.notes.append(text)
         for at, line in enumerate(textwrap.wrap(printable(text), letters)):
             if at == 0:
                 sheet.write(f"{number}", left + 0.8, y)
@@ -328,12 +296,8 @@ def title_block(sheet: Sheet, title: str, name: str, rows: Sequence[tuple[str, s
     return top
 
 
-def finished(
-    sheet: Sheet,
-    made: Fabrication,
-    texts: Iterable[str],
-) -> Drawing:
-    """The drawing of a sheet that has its views: with title block, table of electrodes, notes."""
+def finished(sheet: Sheet, made: Fabrication, texts: Iterable[str]) -> Sheet:
+    """A sheet that has its views, with title block, table of electrodes and notes."""
     origin, scale = stamp(made.display), sheet.scale
     materials = {part.kind: part.material for part in reversed(made.parts)}
     glue = next((millimetres(part.thickness) for part in made.parts if part.kind == "glue"), None)
@@ -355,7 +319,7 @@ def finished(
     )
     y = table(sheet, *layout_rows(made), VIEWS[3], block + 110.0)
     notes(sheet, texts, y - 3.0)
-    return sheet.drawing()
+    return sheet
 
 
 def tolerance_said(display: Display, path: str) -> str:

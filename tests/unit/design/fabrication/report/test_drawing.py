@@ -17,15 +17,7 @@ from hypothesis import strategies as st
 import squeezefilm as sf
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.distributions import Normal, Uniform
-from squeezefilm.core.formats.drawing import (
-    APPLICATION,
-    Dimension,
-    Drawing,
-    Ordinate,
-    Polyline,
-    Text,
-    dxf_text,
-)
+from squeezefilm.core.formats.drawing import APPLICATION, Drawing, dxf_text
 from squeezefilm.core.kit.sheet import sheet_figure
 from squeezefilm.design.fabrication.fabricate import Fabrication
 from squeezefilm.design.fabrication.report import sheet_parts
@@ -49,6 +41,27 @@ Preset = Callable[[str], Fabrication]
 WithBody = Callable[..., Fabrication]
 
 
+ORDINATE = 6
+"""The kind of a dimension in a DXF that shows a distance from the origin."""
+
+
+def entities(drawing: Drawing, kind: str, layer: str = "*") -> list[Any]:
+    """The entities of a kind on a layer, on all without one."""
+    where = "" if layer == "*" else f'[layer=="{layer}"]'
+    return list(drawing.document.modelspace().query(f"{kind}{where}"))
+
+
+def number_of(dimension: Any) -> Any:
+    """The text of a dimension, as it stands on the paper."""
+    (text,) = (part for part in dimension.virtual_entities() if part.dxftype() == "MTEXT")
+    return text
+
+
+def words_of(drawing: Drawing) -> list[str]:
+    """All that is written beside the dimensions."""
+    return [text.dxf.text for text in entities(drawing, "TEXT")]
+
+
 def shown(drawing: Drawing) -> dict[str, list[float]]:
     """What the dimensions of a DXF show (mm), by the key of the value that they are of."""
     found = read(io.StringIO(dxf_text(drawing)))
@@ -59,7 +72,7 @@ def shown(drawing: Drawing) -> dict[str, list[float]]:
             continue
         key = one.get_xdata(APPLICATION)[0].value
         measured: Any = one.get_measurement()
-        if one.dimtype == 6:
+        if one.dimtype == ORDINATE:
             along_x = bool(one.dxf.dimtype & 64)
             measured = abs(measured.x if along_x else measured.y)
         values.setdefault(key, []).append(measured * one.override().get("dimlfac"))
@@ -76,25 +89,29 @@ def require_those_of_the_description(made: Fabrication, drawing: Drawing) -> dic
 
 
 def require_apart(drawing: Drawing) -> None:
-    """No text lies on another or off the paper, by the room that letters take."""
+    """No text lies on another or off the paper, by the room that letters take (mm)."""
     boxes = []
-    for one in drawing.items:
-        if isinstance(one, Text):
-            half, size = 0.72 * len(one.text) * one.height / 2, one.height
-            middle = {"left": one.x + half, "middle": one.x, "right": one.x - half}[one.align]
-            wide, high = (size / 2, half) if one.angle else (half, size / 2)
-            if one.angle:
-                middle = one.x
-            boxes.append((one.text, middle - wide, one.y - high, middle + wide, one.y + high))
-        elif isinstance(one, Dimension):
-            half = 0.72 * len(one.said) * one.height / 2
-            box = (one.text_x - half, one.text_y - one.height / 2)
-            boxes.append((one.said, *box, one.text_x + half, one.text_y + one.height / 2))
-    (x, y), scale = drawing.corner, drawing.scale
-    ends = x + drawing.paper[0] / scale, y + drawing.paper[1] / scale
-    for text, left, bottom, right, top in boxes:
-        assert x < left < right < ends[0], text
-        assert y < bottom < top < ends[1], text
+    for text in entities(drawing, "TEXT"):
+        align, (x, y, _), _ = text.get_placement()
+        half, size = 0.72 * len(text.dxf.text) * text.dxf.height / 2, text.dxf.height
+        turned = text.dxf.rotation != 0
+        middle = x + half * (0 if turned else {"L": 1, "C": 0, "R": -1}[align.name[7]])
+        wide, high = (size / 2, half) if turned else (half, size / 2)
+        boxes.append((text.dxf.text, middle - wide, y - high, middle + wide, y + high))
+    for dimension in entities(drawing, "DIMENSION"):
+        if dimension.dimtype != ORDINATE:
+            text = number_of(dimension)
+            (x, y, _), high = text.dxf.insert, text.dxf.char_height / 2
+            half = 0.72 * len(text.text) * high
+            boxes.append((text.text, x - half, y - high, x + half, y + high))
+    x, y = (1e3 * place for place in drawing.corner)
+    ends = [
+        start + 1e3 * extent / drawing.scale
+        for start, extent in zip((x, y), drawing.paper, strict=True)
+    ]
+    for said, left, bottom, right, top in boxes:
+        assert x < left < right < ends[0], said
+        assert y < bottom < top < ends[1], said
     for a, b in itertools.combinations(boxes, 2):
         apart = a[3] <= b[1] or b[3] <= a[1] or a[4] <= b[2] or b[4] <= a[2]
         assert apart, (a[0], b[0])
@@ -192,16 +209,14 @@ def test_eleven_strips_on_a_thin_plate_are_legible(
     thin = dataclasses.replace(plate, length=0.12, width=0.02, thickness=0.5e-3, patches=strips)
     drawing = rectangular_sheet(with_body(base, thin), ("A is driven with +V, B with −V.",))
     require_apart(drawing)
-    starts = [one.said for one in drawing.items if isinstance(one, Ordinate) and not one.upright]
+    ordinates = [one for one in entities(drawing, "DIMENSION") if one.dimtype == ORDINATE]
+    starts = [number_of(one).text for one in ordinates if one.dxf.dimtype & 64]
     assert starts == [f"{1 + 10.75 * k:g}" for k in range(11)]
-    labels = {one.text for one in drawing.items if isinstance(one, Text)}
-    assert {"1 A", "2 B", "11 A"} <= labels
+    assert {"1 A", "2 B", "11 A"} <= set(words_of(drawing))
     # Seen from below y runs down the sheet; from above, up.
-    (outline,) = (
-        one for one in drawing.items if isinstance(one, Polyline) and one.layer == "OUTLINE"
-    )
-    ys = [y for _, y in outline.points]
-    assert (min(ys), max(ys)) == pytest.approx((-0.02, 0.0) if face == "bottom" else (0.0, 0.02))
+    (outline,) = entities(drawing, "LWPOLYLINE", "OUTLINE")
+    ys = [y for _, y in outline.get_points("xy")]
+    assert (min(ys), max(ys)) == pytest.approx((-20.0, 0.0) if face == "bottom" else (0.0, 20.0))
 
 
 def test_a_small_disc_and_a_ring_of_sectors_are_legible(
@@ -222,7 +237,7 @@ def test_a_small_disc_and_a_ring_of_sectors_are_legible(
         drawing = drawing_sheet(made)
         require_apart(drawing)
         assert len(require_those_of_the_description(made, drawing)) == keys
-        words = [item.text for item in drawing.items if isinstance(item, Text)]
+        words = words_of(drawing)
         for name, kind in (("Substrate", "substrate"), ("Ceramic", "ceramic")):
             materials = {part.material for part in made.parts if part.kind == kind}
             assert words[words.index(name) + 1] in materials
@@ -232,17 +247,18 @@ def test_nodal_lines_leave_labels_free(preset: Preset) -> None:
     # Through the middle of the first ceramic, where its number stands.
     nodal = NodalLines("x", (5.5e-3, 41.5e-3))
     drawing = drawing_sheet(dataclasses.replace(preset("biet2008-plate"), nodal=nodal))
-    labels = [one for one in drawing.items if isinstance(one, Text) and one.align == "middle"]
-    lines = [
-        one.points
-        for one in drawing.items
-        if isinstance(one, Polyline) and one.layer == "NODAL_LINES"
+    labels = [
+        text
+        for text in entities(drawing, "TEXT")
+        if text.get_placement()[0].name == "MIDDLE_CENTER"
     ]
+    lines = [line.get_points("xy") for line in entities(drawing, "LWPOLYLINE", "NODAL_LINES")]
     assert len(lines) > 2  # they are interrupted
     for text, ((x, low), (_, high)) in itertools.product(labels, lines):
-        half = 0.72 * len(text.text) * text.height / 2
-        crossed = abs(x - text.x) < half and min(low, high) < text.y < max(low, high)
-        assert not crossed, text.text
+        half = 0.72 * len(text.dxf.text) * text.dxf.height / 2
+        _, place, _ = text.get_placement()
+        crossed = abs(x - place.x) < half and min(low, high) < place.y < max(low, high)
+        assert not crossed, text.dxf.text
 
 
 def test_tolerances_of_the_description_stand_behind_their_numbers(
@@ -256,7 +272,10 @@ def test_tolerances_of_the_description_stand_behind_their_numbers(
     }
     made = with_body(base, base.display.actuator, provenance=stated)
     drawing = drawing_sheet(made)
-    said = {one.value_of: one.said for one in drawing.items if isinstance(one, Dimension)}
+    said = {
+        one.get_xdata(APPLICATION)[0].value: number_of(one).text
+        for one in entities(drawing, "DIMENSION")
+    }
     assert said["actuator.length"] == "83 ±0.1"
     assert said["actuator.thickness"] == "2 (1.9 to 2.2)"
     assert said["actuator.width"] == "49"
@@ -293,7 +312,7 @@ def test_a_table_that_is_too_long_says_what_is_left_out() -> None:
     sheet = Sheet(sf.load_display("biet2008-plate"), 1.0, (0.0, 0.0))
     rows = [(f"{k}", "x" * 500) for k in range(200)]
     assert table(sheet, ("No.", "Long"), rows, 280.0, 180.0) > 150.0
-    texts = [one.text for one in sheet.items if isinstance(one, Text)]
+    texts = words_of(sheet)
     assert any("more: electrodes.csv" in one for one in texts)
     longest = max(len(one) for one in texts)
     assert longest * LETTER * 2.0 < PAPER[0]

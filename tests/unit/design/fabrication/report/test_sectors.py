@@ -8,60 +8,58 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.core.formats.drawing import Arc, Polyline
+from squeezefilm import load_display
 from squeezefilm.design.fabrication.report.round_sheet import LETTER, NUMBER, _electrode
+from squeezefilm.design.fabrication.report.sheet_parts import Sheet
 from squeezefilm.physics.plate.parts import Sector
 
 UNIT = 1e-3
-"""A millimetre of paper is one of the plate's."""
 NAME = SimpleNamespace(name="S1", connection="A", poling=1)
 LONG = len("S1 A") * LETTER * NUMBER + 1.0
 
 
-class Sheet:
-    """A sheet that keeps what is drawn and written."""
+class Kept(Sheet):
+    """A sheet that keeps what is labelled."""
 
     def __init__(self) -> None:
-        self.unit = UNIT
-        self.items: list[Any] = []
+        # A millimetre of paper is one of the plate's.
+        super().__init__(load_display("winfield2007-tpad"), 1.0, (0.0, 0.0))
         self.labels: list[tuple[str, float, float]] = []
-        self.kept_free: list[Any] = []
 
-    def add(self, item: Any) -> None:
-        """Keep it."""
-        self.items.append(item)
-
-    def label(self, text: str, x: float, y: float) -> None:
+    def label(self, text: str, x: float, y: float, angle: float = 0.0) -> None:
         """Keep it."""
         self.labels.append((text, x, y))
 
+    def on(self, layer: str) -> list[Any]:
+        """What lies on a layer, lengths in millimetres."""
+        return list(self.document.modelspace().query(f'*[layer=="{layer}"]'))
 
-def drawn(inner: float, outer: float, start: float = 0.0, end: float = 2 * math.pi) -> Sheet:
-    sheet: Any = Sheet()
+
+def drawn(inner: float, outer: float, start: float = 0.0, end: float = 2 * math.pi) -> Kept:
+    sheet = Kept()
     electrode: Any = NAME
     _electrode(sheet, electrode, Sector(inner * UNIT, outer * UNIT, start, end))
-    return sheet  # type: ignore[no-any-return]
+    return sheet
 
 
-def mark(sheet: Sheet) -> tuple[float, float]:
-    circle = next(item for item in sheet.items if item.layer == "POLING")
-    return circle.x / UNIT, circle.y / UNIT
+def mark(sheet: Kept) -> tuple[float, float]:
+    x, y, _ = sheet.on("POLING")[0].dxf.center
+    return x, y
 
 
 def test_a_sector_has_its_arcs_and_walls() -> None:
     sheet = drawn(20, 40, 0.3, 0.9)
-    arcs = [item for item in sheet.items if isinstance(item, Arc) and item.layer == "ELECTRODES"]
+    kinds = [item.dxftype() for item in sheet.on("ELECTRODES")]
+    assert kinds == ["ARC", "ARC", "LWPOLYLINE", "LWPOLYLINE"]
+    *arcs, first, second = sheet.on("ELECTRODES")
     # Seen from below angles run the other way.
-    assert [(arc.radius, arc.start, arc.end) for arc in arcs] == [
-        (pytest.approx(r * UNIT), -0.9, -0.3) for r in (40, 20)
-    ]
-    walls = [item for item in sheet.items if isinstance(item, Polyline)][:2]
+    ends = [(arc.dxf.radius, arc.dxf.start_angle, arc.dxf.end_angle) for arc in arcs]
+    assert ends == [pytest.approx((r, math.degrees(-0.9), math.degrees(-0.3))) for r in (40, 20)]
+    walls = [wall.get_points("xy") for wall in (first, second)]
     for wall, angle in zip(walls, (0.3, 0.9), strict=True):
-        for (x, y), r in zip(wall.points, (20, 40), strict=True):
-            assert (x, y) == pytest.approx(
-                (r * UNIT * math.cos(angle), -r * UNIT * math.sin(angle))
-            )
-    assert len([arc for arc in drawn(0, 40, 0.3, 0.9).items if arc.layer == "ELECTRODES"]) == 3
+        for (x, y), r in zip(wall, (20, 40), strict=True):
+            assert (x, y) == pytest.approx((r * math.cos(angle), -r * math.sin(angle)))
+    assert len(drawn(0, 40, 0.3, 0.9).on("ELECTRODES")) == 3
 
 
 def test_a_name_stands_above_the_mark_where_both_have_room() -> None:
@@ -97,11 +95,9 @@ def test_where_there_is_no_room_the_mark_stands_alone(
 
 def test_a_whole_electrode_is_named_beside_the_nodal_circle() -> None:
     sheet = drawn(0, 40)
-    circles = [item for item in sheet.items if item.layer == "ELECTRODES"]
-    assert [circle.radius for circle in circles] == [pytest.approx(40 * UNIT)]
+    assert [circle.dxf.radius for circle in sheet.on("ELECTRODES")] == pytest.approx([40])
     ring = drawn(20, 60)
-    circles = [item for item in ring.items if item.layer == "ELECTRODES"]
-    assert [circle.radius / UNIT for circle in circles] == pytest.approx([60, 20])
+    assert [circle.dxf.radius for circle in ring.on("ELECTRODES")] == pytest.approx([60, 20])
     ((_, x, y),) = ring.labels
     half = 40 / math.sqrt(2)
     assert (x / UNIT, y / UNIT) == pytest.approx((half, half + 2.2))
