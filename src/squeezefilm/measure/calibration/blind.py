@@ -18,7 +18,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
-from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import DESCRIPTION_BYTES
 from squeezefilm.core.progress import SayProgress, ShareProgress
 from squeezefilm.core.regular_file import read_json, read_regular_text
@@ -266,20 +266,14 @@ def load_prediction(path: str | Path) -> BlindPrediction:
 
     Raises `InputError` for a file that is none, or whose content is not what its SHA-256 says.
     """
+    from pydantic import TypeAdapter
+
+    content = read_json(path, DESCRIPTION_BYTES, "a prediction")
     try:
-        content = read_json(path, DESCRIPTION_BYTES, "a prediction")
         if content["kind"] != KIND:
             raise ValueError
-        prediction = BlindPrediction(
-            str(content["display"]),
-            str(content["how"]),
-            tuple(_read(row) for row in content["predictions"]),
-            dict(content["stamp"]),
-            str(content["sha256"]),
-        )
-    except ConfigError:
-        raise
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        prediction = TypeAdapter(BlindPrediction).validate_python(content)
+    except (ValueError, KeyError, TypeError) as error:
         raise InputError(
             f"{path} is no prediction of squeezefilm; write one with measure predict"
         ) from error
@@ -290,18 +284,6 @@ def load_prediction(path: str | Path) -> BlindPrediction:
             "a prediction counts as it was made"
         )
     return prediction
-
-
-def _read(row: dict[str, Any]) -> Predicted:
-    low, high = row["interval"]
-    return Predicted(
-        str(row["answer"]),
-        {str(key): float(value) for key, value in row["conditions"].items()},
-        float(row["median"]),
-        (float(low), float(high)),
-        float(row["standard_deviation"]),
-        float(row["level"]),
-    )
 
 
 def score(path: str | Path, observations: Sequence[Observation]) -> tuple[Score, ...]:
