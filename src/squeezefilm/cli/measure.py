@@ -3,17 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from squeezefilm.cli.app import AsJson, answer, app, to_be_solved, working, written_to
 from squeezefilm.core.errors import InputError
-
-if TYPE_CHECKING:
-    from squeezefilm.core.progress import SayProgress
-    from squeezefilm.measure.fits.estimate import FitResult
-    from squeezefilm.measure.recordings.read import RecordingCheck
 
 measure = typer.Typer(
     name="measure",
@@ -92,34 +87,27 @@ def fit(
 ) -> None:
     """Fit what goes with the kind of a recording: numbers with intervals, and whether the fit is
     adequate. Exit code 1 if it is not."""
-    from squeezefilm.measure.fits.by_kind import response_fit
+    from squeezefilm.measure.fits.by_kind import fit_recording, response_fit
     from squeezefilm.measure.recordings.read import check_recording
     from squeezefilm.measure.report.page import fit_summary, show_fit, write_fit
+    from squeezefilm.physics.display import load_display
 
     with working(as_json) as step:
         checked = check_recording(file, described)
         step(f"fit of {checked.file.name}")
-        fitted = _fitted(checked, display, step)
+        plate = None if display is None else load_display(display)
+        try:
+            fitted = fit_recording(checked.recording, plate, progress=step)
+        except InputError:
+            for doubt in checked.doubts:
+                typer.echo(f"doubtful: {doubt}", err=True)
+            raise
         response = response_fit(fitted)
         written = None if out is None else write_fit(checked, fitted, out, response)
     summary = fit_summary(checked, fitted, response)
     answer(as_json, summary, lambda _: show_fit(checked, fitted, response), page=written)
     if not fitted.adequacy.adequate:
         raise typer.Exit(1)
-
-
-def _fitted(found: RecordingCheck, display: str | None, step: SayProgress) -> FitResult:
-    """The fit of what was read; where it is refused, what is doubtful of the recording is said."""
-    from squeezefilm.measure.fits.by_kind import fit_recording
-    from squeezefilm.physics.display import load_display
-
-    plate = None if display is None else load_display(display)
-    try:
-        return fit_recording(found.recording, plate, progress=step)
-    except InputError:
-        for doubt in found.doubts:
-            typer.echo(f"doubtful: {doubt}", err=True)
-        raise
 
 
 Target = Annotated[str, typer.Argument(metavar="PRESET|FILE", help="The display.")]

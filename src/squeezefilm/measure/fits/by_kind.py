@@ -115,12 +115,6 @@ def _grid(scan: kinds.GridScan, display: Display | None, _: object) -> FitResult
     return fit_grid_scan(scan, shapes_at(modes, scan.x, scan.y, driven))
 
 
-def _curve(
-    curve: kinds.FrictionCurve, display: Display | None, progress: SayProgress | None
-) -> FitResult:
-    return compare_friction_curve(curve, progress, None if curve.display else display)
-
-
 FITS: Mapping[type, Callable[[Any, Display | None, SayProgress | None], FitResult]] = {
     kinds.ImpedanceSweep: _swept,
     kinds.FrequencyResponse: lambda response, *_: fit_frequency_response(response),
@@ -130,7 +124,9 @@ FITS: Mapping[type, Callable[[Any, Display | None, SayProgress | None], FitResul
     kinds.VoltageSweeps: lambda sweeps, *_: fit_voltage_sweeps(sweeps),
     kinds.RawSignals: lambda signals, *_: fit_raw_signals(signals),
     kinds.FrictionBench: lambda bench, *_: fit_friction_bench(bench),
-    kinds.FrictionCurve: _curve,
+    kinds.FrictionCurve: lambda curve, display, progress: compare_friction_curve(
+        curve, progress, None if curve.display else display
+    ),
 }
 """The fit of each kind of recording, which is given the display where one was named, and whom to
 tell how far it is."""
