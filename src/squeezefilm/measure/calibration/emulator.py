@@ -9,7 +9,6 @@ Gaussian Processes for Machine Learning (2006), sections 2.7, 4.2 and 5.4.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -75,10 +74,6 @@ def emulator_of(
     return replace(unjudged, errors=np.sqrt(np.mean(off**2, axis=0)))
 
 
-def _logarithms(ends: tuple[float, float]) -> tuple[float, float]:
-    return math.log(ends[0]), math.log(ends[1])
-
-
 def _with_one(x: si.FloatArray) -> si.FloatArray:
     return np.column_stack([np.ones(len(x)), x])
 
@@ -95,7 +90,7 @@ def _fitted(
 ) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
     """Trend, lengths and weights of one answer, by the most likely lengths and nugget."""
     from scipy.linalg import cho_factor, cho_solve
-    from scipy.optimize import minimize
+    from scipy.optimize import Bounds, minimize
 
     count, d = x.shape
     trend = _with_one(x)
@@ -119,7 +114,7 @@ def _fitted(
         return at(logs)[0]
 
     start: si.FloatArray = np.append(np.full(d, np.log(_USUAL_LENGTH)), np.log(1e-5))
-    bounds = [_logarithms(_LENGTHS)] * d + [_logarithms(_NUGGETS)]
+    bounds = Bounds(*np.log([_LENGTHS] * d + [_NUGGETS]).T)
     best = minimize(cost, start, method="L-BFGS-B", bounds=bounds)
     _, line, weights = at(best.x)
     return line, np.exp(best.x[:d]), weights

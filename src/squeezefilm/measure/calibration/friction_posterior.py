@@ -222,7 +222,7 @@ def friction_posterior(
     from what was kept.
     """
     from scipy.special import logsumexp, ndtr
-    from scipy.stats import qmc
+    from scipy.stats import multivariate_normal, norm, qmc
 
     tell = progress or (lambda _, __: None)
     random = np.random.default_rng(seed)
@@ -252,18 +252,10 @@ def friction_posterior(
         scores = normal_scores(points)
         parts = [np.full(len(points), np.log(draws / len(points)))]
         for gaussian in rounds:
-            own = np.log(1 - _DEFENSIVE) + _log_ratio(scores, *gaussian)
+            # Its density over that of independent standard scores.
+            ratio = multivariate_normal(*gaussian).logpdf(scores) - norm.logpdf(scores).sum(axis=1)
+            own = np.log(1 - _DEFENSIVE) + ratio
             logs = np.logaddexp(np.log(_DEFENSIVE), own)
             parts.append(np.log(more_draws / len(points)) + logs)
         posterior = weighted(mixture, likelihood, points, curves, logsumexp(parts, axis=0))
     return posterior
-
-
-def _log_ratio(
-    scores: si.FloatArray, centre: si.FloatArray, covariance: si.FloatArray
-) -> si.FloatArray:
-    """The logarithm of a Gaussian's density over that of independent standard scores."""
-    off = scores - centre
-    squares = np.sum(off * np.linalg.solve(covariance, off.T).T, axis=1)
-    _, determinant = np.linalg.slogdet(covariance)
-    return np.asarray(-(squares + determinant) / 2 + np.sum(scores**2, axis=1) / 2)
