@@ -89,9 +89,14 @@ def write_calibration(calibrated: FolderCalibration, folder: Path) -> Path:
     calibration = calibrated.calibration
     summary = calibrated.summary() | {"stamp": stamp(calibration.described, calibration.seed)}
     figures = drawn_figures(FIGURES, calibrated)
+    judged = [
+        f"{'Friction' if misfit.worst.startswith('relative friction') else 'The plate'}: "
+        f"{misfit.sentence}"
+        for misfit in calibration.misfits
+    ]
     body = section(
         "What was measured is explained" if calibration.fits else "The model does NOT explain it",
-        bullets([*calibration.doubts, *_misfits(calibration)]),
+        bullets([*calibration.doubts, *judged]),
     )
     body += picture_sections(figures)
     body += section("Every measured number", _compared(calibration.compared))
@@ -128,15 +133,6 @@ def write_calibration(calibrated: FolderCalibration, folder: Path) -> Path:
     }
     write_folder(folder, files)
     return folder / PAGE
-
-
-def _misfits(calibration: Calibration) -> list[str]:
-    """The judgements, each with what it is of."""
-    of_friction = [misfit.worst.startswith("relative friction") for misfit in calibration.misfits]
-    return [
-        f"{'Friction' if friction else 'The plate'}: {misfit.sentence}"
-        for misfit, friction in zip(calibration.misfits, of_friction, strict=True)
-    ]
 
 
 def value_rows(calibrated: FolderCalibration) -> list[tuple[str, ...]]:

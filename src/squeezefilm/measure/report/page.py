@@ -192,7 +192,7 @@ def write_checks(checked: FolderCheck, folder: Path) -> Path:
         figures = {name: (check.recording.told.name, recording_figure(check))}
         files |= picture_files(figures)
         body += picture_sections(figures)
-        body += section("How it was read", _facts(check)) + _doubts(check)
+        body += _as_read(check)
     files["check.html"] = page(
         "Recordings checked",
         "What was read",
@@ -226,7 +226,7 @@ def write_fit(
         rows = [] if part is None else estimate_rows(part)
         if rows:
             body += section(title, text_table("What was fitted", HEAD, rows))
-    body += picture_sections(figures) + section("How it was read", _facts(check)) + _doubts(check)
+    body += picture_sections(figures) + _as_read(check)
     title = _text(name)
     files["fit.html"] = page(
         f"{title}: a fit", title, escape(check.kind), body, stamped(summary["stamp"], _READ)
@@ -259,12 +259,10 @@ def _numbers(fit: FitResult) -> dict[str, Any]:
     return numbers
 
 
-def _facts(check: RecordingCheck) -> str:
-    return text_table("How the recording was taken", ("what", "how"), check.facts)
-
-
-def _doubts(check: RecordingCheck) -> str:
-    return section("What is doubtful", bullets(check.doubts, "Nothing doubtful was found."))
+def _as_read(check: RecordingCheck) -> str:
+    facts = text_table("How the recording was taken", ("what", "how"), check.facts)
+    doubts = bullets(check.doubts, "Nothing doubtful was found.")
+    return section("How it was read", facts) + section("What is doubtful", doubts)
 
 
 def _text(words: str) -> str:
