@@ -17,7 +17,6 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -177,17 +176,12 @@ def parquet_of_columns(columns: Mapping[str, Sequence[Any]], metadata: Mapping[s
     Raises:
         InputError: where pyarrow is not installed.
     """
-    arrow, parquet = _arrow()
-    arrays = [arrow.array(column) for column in columns.values()]
+    with optional("study", "Parquet (not CSV)"):
+        import pyarrow
+        from pyarrow import parquet
+    arrays = [pyarrow.array(column) for column in columns.values()]
     note = json.dumps(dict(metadata), allow_nan=False).encode()
-    held = arrow.table(arrays, names=list(columns)).replace_schema_metadata({_KEY: note})
+    held = pyarrow.table(arrays, names=list(columns)).replace_schema_metadata({_KEY: note})
     stream = io.BytesIO()
     parquet.write_table(held, stream)
     return stream.getvalue()
-
-
-def _arrow() -> tuple[ModuleType, ModuleType]:
-    with optional("study", "Parquet (not CSV)"):
-        import pyarrow
-        import pyarrow.parquet
-    return pyarrow, pyarrow.parquet

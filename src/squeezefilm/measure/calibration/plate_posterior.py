@@ -183,10 +183,7 @@ class PlateProblem:
         discrepancy `_FURTHEST` from the usual, which proposals of the sampler reach."""
         usual = np.all(np.abs(points[:, -len(KINDS) :]) < _FURTHEST, axis=1)
         densities = np.full(len(points), -np.inf)
-        densities[usual] = self._log_posterior(points[usual])
-        return densities
-
-    def _log_posterior(self, points: si.DimensionlessArray) -> si.DimensionlessArray:
+        points = points[usual]
         scores, scales = points[:, : -len(KINDS)], scales_of(points[:, -len(KINDS) :])
         prior = -np.sum(points**2, axis=1) / 2
         logs = self.answers(scores)
@@ -195,7 +192,8 @@ class PlateProblem:
         covariance = moved @ self.errors(scales) @ moved.transpose(0, 2, 1)
         covariance += self.reading_covariance
         squares = (off * np.linalg.solve(covariance, off)).sum(axis=(1, 2))
-        return np.asarray(prior - (squares + np.linalg.slogdet(covariance)[1]) / 2)
+        densities[usual] = prior - (squares + np.linalg.slogdet(covariance)[1]) / 2
+        return densities
 
 
 @dataclass(frozen=True, eq=False)

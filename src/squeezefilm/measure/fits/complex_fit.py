@@ -154,16 +154,6 @@ def _stacked(values: si.Array) -> si.FloatArray:
     return np.concatenate([values.real, values.imag], axis=-1)
 
 
-def _prior_scale(
-    model: Model, parameters: si.FloatArray, data: si.Array, weight: si.FloatArray
-) -> float:
-    """Weight of a prior of one standard deviation beside residuals of which the noise is not yet
-    known: their spread, times the root of their correlation time."""
-    residual = (data - model(parameters)[0]) * weight
-    spread = float(np.sqrt(np.mean(_stacked(residual) ** 2)))
-    return spread * float(np.sqrt(correlation_time(residual)))
-
-
 def _minimum(
     model: Model,
     start: si.FloatArray,
@@ -171,7 +161,11 @@ def _minimum(
     weight: si.FloatArray,
     prior: Prior,
 ) -> si.FloatArray:
-    scale, known = _prior_scale(model, start, data, weight), np.isfinite(prior.spread)
+    # A standard deviation of the prior weighs as much as noise that is not known yet: the spread of
+    # what is left, times the root of its correlation time.
+    left = (data - model(start)[0]) * weight
+    scale = np.sqrt(np.mean(_stacked(left) ** 2)) * np.sqrt(correlation_time(left))
+    known = np.isfinite(prior.spread)
 
     def residual(p: si.FloatArray) -> si.FloatArray:
         rows = _stacked((model(p)[0] - data) * weight)

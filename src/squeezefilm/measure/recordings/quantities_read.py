@@ -22,7 +22,7 @@ from squeezefilm.core.hard_limits import (
 )
 from squeezefilm.measure.recordings.described import CONVENTIONS, MOST_VOLTAGE, Column, Given
 from squeezefilm.measure.recordings.description import Description
-from squeezefilm.measure.recordings.files.raw_table import RawTable
+from squeezefilm.measure.recordings.files.raw_table import RawTable, parted
 from squeezefilm.measure.recordings.kinds import Told
 
 _SCALE = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(\S.*?)\s*")
@@ -216,7 +216,9 @@ class Reading:
         wanted = self._column(name).column
         place = self.table.index(wanted)
         if place is None:
-            near = si.did_you_mean(str(wanted), self.table.known_names)
+            names = self.table.names
+            # Their units may be left out.
+            near = si.did_you_mean(str(wanted), (*(parted(name)[0] for name in names), *names))
             raise self.description.error(
                 f"the file has no column {wanted!r}.{near} It has {self.table.columns_in_words}",
                 ["columns", name, "column"],

@@ -211,6 +211,15 @@ def _told(sweep: ImpedanceSweep, fit: ComplexFit, layout: Layout) -> ImpedanceFi
     what = f"The circuit of {layout.branches} branches"
     if layout.branches == 1:
         what = f"The circuit of one branch{' that softens' if layout.softening else ''}"
+    g, h = layout.soft, layout.soft + 1
+    softening = (
+        Softening(
+            frequency_fall=fit.estimate(lambda p: 1 - 1 / math.sqrt(1 + float(p[g])), "1"),
+            loss_rise=fit.estimate(lambda p: 1 / (1 - float(p[h])) - 1, "1"),
+        )
+        if layout.softening
+        else None
+    )
     return ImpedanceFit(
         static_capacitance=fit.estimate(lambda p: math.exp(p[0]), "F"),
         loss_tangent=fit.estimate(lambda p: float(p[1]), "1"),
@@ -219,21 +228,13 @@ def _told(sweep: ImpedanceSweep, fit: ComplexFit, layout: Layout) -> ImpedanceFi
         coupling_loss=(
             fit.estimate(lambda p: float(p[layout.loss]), "1") if layout.coupling_loss else None
         ),
-        softening=_softening(fit, layout) if layout.softening else None,
+        softening=softening,
         drift=complex(p[-2], p[-1]) if layout.drift else None,
         adequacy=sweep_adequacy(fit, sweep.frequency, what),
         layout=layout,
         fit=fit,
         frequency=sweep.frequency,
         motion=sweep_motion(sweep, p),
-    )
-
-
-def _softening(fit: ComplexFit, layout: Layout) -> Softening:
-    g, h = layout.soft, layout.soft + 1
-    return Softening(
-        frequency_fall=fit.estimate(lambda p: 1 - 1 / math.sqrt(1 + float(p[g])), "1"),
-        loss_rise=fit.estimate(lambda p: 1 / (1 - float(p[h])) - 1, "1"),
     )
 
 

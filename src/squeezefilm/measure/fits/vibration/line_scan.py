@@ -217,7 +217,7 @@ def _told(
     size = float(np.max(np.abs(w)))
     dense = np.linspace(x[0], x[-1], 1 + _DENSE * int(np.ceil(fit.shape[0] * line.length / np.pi)))
     wave = np.abs(line.wave(dense, fit.shape, fit.weights))
-    nodes = _minima(dense, wave)
+    nodes = dense[1:-1][(wave[1:-1] < wave[:-2]) & (wave[1:-1] <= wave[2:])]
     lobe = _best_antinode(dense, wave, nodes)
 
     def there(shape: si.FloatArray, weights: si.Array) -> complex:
@@ -306,12 +306,6 @@ def _ratio(fit: SeparableFit) -> Estimate:
     value = 1 / abs(inverted.value) if inverted.value else float("inf")
     ends = 1 / largest, 1 / smallest if smallest else float("inf")
     return Estimate(value, inverted.standard_error * value**2, ends, "1")
-
-
-def _minima(x: si.MetreArray, size: si.FloatArray) -> si.MetreArray:
-    """Places where the size is least between its neighbours, on a dense row."""
-    inside = (size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:])
-    return np.asarray(x[1:-1][inside])
 
 
 def _best_antinode(x: si.MetreArray, size: si.FloatArray, nodes: si.MetreArray) -> float:

@@ -116,12 +116,6 @@ class RawTable:
         return unit if is_unit(unit) else None
 
     @property
-    def known_names(self) -> list[str]:
-        """Names by which columns may be called: their names, whole and without a unit."""
-        bare = [parted(name)[0] for name in self.names]
-        return [name for name in (*bare, *self.names) if name]
-
-    @property
     def columns_in_words(self) -> str:
         """The columns by number and name, for messages."""
         shown = (f"{k} '{name}'" if name else f"{k}" for k, name in enumerate(self.names, 1))
