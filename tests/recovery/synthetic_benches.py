@@ -160,7 +160,7 @@ def plate_bench(
     problem = plates.posed(plates.observed(answers, random, misread=misread))
     posterior = sampled_posterior(problem, seed=seed, steps=steps)
     made = predictive(problem, posterior, seed=seed)
-    drawn = np.stack([made.of(one) for one in BLIND], axis=1)
+    drawn = np.stack([made[one] for one in BLIND], axis=1)
     true = np.array([answers[problem.asked.index(one)] for one in BLIND])
     low, middle, high = np.quantile(drawn, [0.05, 0.5, 0.95], axis=0)
     return PlateBench(

@@ -12,8 +12,6 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.calibration.blind import Predicted, _scored, predict_measurement
-from squeezefilm.measure.calibration.plate_posterior import Predictive
-from squeezefilm.measure.calibration.solved_answers import Asked
 from squeezefilm.measure.fits.ceramic.constants import compliances
 from squeezefilm.measure.fits.circuit.branches import poles
 from squeezefilm.measure.fits.estimate import Estimate, Observation, guarded_fit
@@ -166,9 +164,3 @@ def test_a_line_of_few_places_holds_no_wave() -> None:
     line_of: Any = SimpleNamespace(length=80e-3, count=2)
     with pytest.raises(InputError, match="too coarse for any wave along it"):
         _wave_number(line_of, np.array([0.0, 80e-3]), np.ones(2))
-
-
-def test_an_answer_that_was_not_computed_is_named_with_those_that_were() -> None:
-    quality, lines = Asked("quality_factor"), Asked("mode_frequency", (7, 0))
-    made = Predictive((quality, lines), np.array([[60.0, 3e4], [70.0, 4e4]]))
-    assert made.of(lines).tolist() == [3e4, 4e4]

@@ -193,14 +193,15 @@ def _joint(
     felt = np.full((count, 2), np.nan)
     free = np.full(count, p.held_amplitude)
     modes: list[WorkingMode] = [p.mode] * count
-    rows = np.zeros(count, dtype=int)
+    rows, answers = np.zeros(count, dtype=int), {}
     if plate is not None:
         rows = random.integers(len(plate.posterior.scores), size=count)
-        answers = [plate.predictive.of(answer)[rows] for answer in WORKING]
-        free = answers[1] * (volts or 0.0) if volts is not None else free
+        answers = {asked: draws[rows] for asked, draws in plate.predictive.items()}
+        _, per_volt, quality = (answers[asked] for asked in WORKING)
+        free = free if volts is None else per_volt * volts
         modes = [
             dataclasses.replace(p.mode, amplitude_per_volt=float(a), quality_factor=float(q))
-            for _, a, q in zip(*answers, strict=True)
+            for a, q in zip(per_volt, quality, strict=True)
         ]
     for number, draw in enumerate(finger.mixture.draws(finger.points)):
         if number % _TOLD == 0:
@@ -219,8 +220,7 @@ def _joint(
         np.zeros((count, 0)) if plate is None else plate.posterior.scores[rows],
         finger.mixture.paths,
         normal_scores(finger.points),
-        () if plate is None else plate.predictive.asked,
-        np.zeros((count, 0)) if plate is None else plate.predictive.values[rows],
+        answers,
         free,
         amplitude,
         friction,
@@ -367,9 +367,9 @@ def _next(
     it."""
     done = {observation.answer for observation in observations}
     drawn = {
-        one.name: joint.answers[:, k]
-        for k, one in enumerate(joint.asked)
-        if one.name not in done or one.name == MODE_FREQUENCY
+        asked.name: draws
+        for asked, draws in joint.answers.items()
+        if asked.name not in done or asked.name == MODE_FREQUENCY
     }
     drawn |= {parameter.path: values for parameter, values, _ in _of_finger(finger, joint)}
     options = candidates(drawn)

@@ -7,6 +7,7 @@ observed comes out near what was observed, and a model that is wrong would look 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -60,16 +61,15 @@ class FrictionInterval:
 @dataclass(frozen=True, eq=False)
 class Joint:
     """Draws of everything at once, in scores: `plate` (draws, parameters), `finger` (draws, inputs
-    of the mixture: `finger_paths`), with the bench's own answers (draws, asked; SI), and at the
-    display's voltage the free amplitude, the one with the finger on and µ′/µ (draws,), of which
-    `law_error` (draws,) is what the laws themselves are taken to be off by."""
+    of the mixture: `finger_paths`), with the bench's own answers (SI), and at the display's voltage
+    the free amplitude, the one with the finger on and µ′/µ, of which `law_error` is what the laws
+    themselves are taken to be off by, all (draws,)."""
 
     plate_paths: tuple[str, ...]
     plate: si.DimensionlessArray
     finger_paths: tuple[str, ...]
     finger: si.DimensionlessArray
-    asked: tuple[Asked, ...]
-    answers: si.FloatArray
+    answers: Mapping[Asked, si.FloatArray]
     amplitude: si.MetreArray
     felt_amplitude: si.MetreArray
     friction: si.DimensionlessArray

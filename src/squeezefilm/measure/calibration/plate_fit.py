@@ -16,7 +16,6 @@ from squeezefilm.measure.calibration.emulator import HELD_OUT, emulator_of, leas
 from squeezefilm.measure.calibration.plate_posterior import (
     PlatePosterior,
     PlateProblem,
-    Predictive,
     predictive,
     sampled_posterior,
 )
@@ -47,7 +46,7 @@ class PlateFit:
 
     problem: PlateProblem
     posterior: PlatePosterior
-    predictive: Predictive
+    predictive: Mapping[Asked, si.FloatArray]
     solves: int
 
     @property

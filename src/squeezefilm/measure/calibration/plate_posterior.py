@@ -289,21 +289,11 @@ def _around(problem: PlateProblem, best: si.DimensionlessArray) -> si.FloatArray
     return np.asarray(np.linalg.inv(np.eye(best.size) + slopes @ slopes.T))
 
 
-@dataclass(frozen=True, eq=False)
-class Predictive:
-    """Draws of the true answers of the bench itself: the emulator's at draws of the posterior, with
-    what the model may be off by, shape (draws, asked), in SI units."""
-
-    asked: tuple[Asked, ...]
-    values: si.FloatArray
-
-    def of(self, asked: Asked) -> si.FloatArray:
-        """The draws of one answer, shape (draws,)."""
-        return np.asarray(self.values[:, self.asked.index(asked)])
-
-
-def predictive(problem: PlateProblem, posterior: PlatePosterior, *, seed: int) -> Predictive:
-    """Draws of every answer of the emulator.
+def predictive(
+    problem: PlateProblem, posterior: PlatePosterior, *, seed: int
+) -> dict[Asked, si.FloatArray]:
+    """Draws of the true answers of the bench itself (SI, (draws,)): the emulator's at draws of the
+    posterior, with what the model may be off by.
 
     The discrepancy of an answer that was observed is what the observation left of it; of another
     one it is what its kind's scale allows, less what observed answers of its kind say of it.
@@ -328,4 +318,4 @@ def predictive(problem: PlateProblem, posterior: PlatePosterior, *, seed: int) -
     hair = 1e-9 * np.einsum("daa->da", prior)
     root = np.linalg.cholesky(wide + hair[:, :, None] * np.eye(len(problem.asked)))
     error = middle + np.einsum("dab,db->da", root, random.normal(size=answers.shape))
-    return Predictive(problem.asked, np.exp(problem.bound(answers + error)))
+    return dict(zip(problem.asked, np.exp(problem.bound(answers + error)).T, strict=True))

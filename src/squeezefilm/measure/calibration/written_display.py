@@ -108,11 +108,12 @@ def actuator_digest(display: Display) -> str:
 
 def _answers(joint: Joint) -> tuple[CalibratedAnswer, ...]:
     """Draws of the plate's answers, spread evenly over all that there are."""
-    rows = np.linspace(0, len(joint.answers) - 1, min(_ROWS, len(joint.answers))).astype(int)
+    count = joint.friction.size
+    rows = np.linspace(0, count - 1, min(_ROWS, count)).astype(int)
     return tuple(
-        CalibratedAnswer(asked.said, tuple(float(f"{value:.7g}") for value in column))
-        for asked, column in zip(joint.asked, joint.answers[rows].T, strict=True)
-        if np.all(np.isfinite(column))
+        CalibratedAnswer(asked.said, tuple(float(f"{value:.7g}") for value in draws[rows]))
+        for asked, draws in joint.answers.items()
+        if np.all(np.isfinite(draws[rows]))
     )
 
 

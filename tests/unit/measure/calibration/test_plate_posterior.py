@@ -85,10 +85,10 @@ def test_a_right_model_is_narrow_and_a_combination_is_named() -> None:
     assert [{name for name, _ in one.parts} for one in found.combinations] == [{"a", "b"}]
     assert "Only together" in found.sentences[-1]
     made = predictive(posed, posterior, seed=1)
-    frequency = made.of(Asked("resonance_frequency"))
+    frequency = made[Asked("resonance_frequency")]
     assert frequency.std() < 4e-4
     # The other answer of the same sum is known too, but for what its model may be off by.
-    assert abs(np.log(np.median(made.of(Asked("mass")))) - SLOPES[1] @ [1.0, -0.5]) < 2e-3
+    assert abs(np.log(np.median(made[Asked("mass")])) - SLOPES[1] @ [1.0, -0.5]) < 2e-3
 
 
 @pytest.mark.slow
@@ -101,7 +101,7 @@ def test_a_contradiction_is_a_misfit_and_widens() -> None:
     # Of what was observed, and so of what was not.
     assert np.all(np.median(wide.scales, axis=0) > 1.1 * np.median(narrow.scales, axis=0))
     spread = [
-        np.std(predictive(problem(*seen_), one, seed=1).of(Asked("amplitude_per_volt")))
+        np.std(predictive(problem(*seen_), one, seed=1)[Asked("amplitude_per_volt")])
         for seen_, one in ((right, narrow), (wrong, wide))
     ]
     assert spread[1] > spread[0]
@@ -158,7 +158,7 @@ def test_what_was_not_observed_is_as_uncertain_as_the_model_is_believed_to_be() 
     sharp = [seen(name, (0.5, 0.2), 1e-4) for name in ("resonance_frequency", "mass")]
     posed = problem(*sharp)
     made = predictive(posed, sampled_posterior(posed, seed=3, steps=300), seed=3)
-    spread = np.std(np.log(made.of(Asked("amplitude_per_volt"))))
+    spread = np.std(np.log(made[Asked("amplitude_per_volt")]))
     assert spread > BELIEVED["amplitude_per_volt"]
 
 
@@ -169,7 +169,7 @@ def test_predicted_errors_are_those_of_a_conditioned_normal() -> None:
     fixed = PlatePosterior(
         np.zeros((draws, 2)), np.tile(scales, (draws, 1)), np.zeros(2), misfit_of(0, [], scales), 1
     )
-    logs = np.log(predictive(posed, fixed, seed=1).values)
+    logs = np.log(np.column_stack(list(predictive(posed, fixed, seed=1).values())))
     prior = np.tensordot(scales**2, posed.discrepancies, 1) + posed.model_covariance
     precision = np.linalg.inv(prior)
     variances = posed.noise**2 + [
@@ -251,7 +251,7 @@ def test_of_resonance_parallel_resonance_and_coupling_two_tell_the_third(
         if k != left_out
     ]
     posed = resonances(*seen_)
-    values = predictive(posed, fixed(scale), seed=1).values
+    values = np.column_stack(list(predictive(posed, fixed(scale), seed=1).values()))
     np.testing.assert_allclose(values[:, 2] ** 2, 1 - (values[:, 0] / values[:, 1]) ** 2)
     # By the law of errors of k² = 1 − (fs/fp)², from what each recording may misread.
     slope = 0.252**2 / (1 - 0.252**2)
@@ -295,7 +295,7 @@ def test_an_error_that_all_readings_share_is_not_averaged_away() -> None:
     ):
         posed = resonances(*seen_, readings=readings)
         # Of a model that is believed of little, so that only the readings tell.
-        logs = np.log(predictive(posed, fixed(20.0), seed=1).of(RESONANCES[0]))
+        logs = np.log(predictive(posed, fixed(20.0), seed=1)[RESONANCES[0]])
         assert logs.std() == pytest.approx(expected, rel=0.1)
 
 

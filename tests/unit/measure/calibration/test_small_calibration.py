@@ -229,7 +229,7 @@ def test_the_file_keeps_what_was_learnt_and_how_it_goes_together(found: Calibrat
     assert display.calibration is not None
     assert display.calibration.compared == found.compared
     kept = {answer.said: answer.draws for answer in display.calibration.answers}
-    assert set(kept) == {asked.said for asked in found.joint.asked}
+    assert set(kept) == {asked.said for asked in found.joint.answers}
     np.testing.assert_allclose(kept["mass"], drawn(found, "mass"), rtol=1e-6)
     joint = display.joint
     assert joint is not None
@@ -253,7 +253,7 @@ ASKED = (
 
 
 def drawn(found: Calibration, answer: str) -> np.ndarray[Any, Any]:
-    return found.joint.answers[:, found.joint.asked.index(Asked(answer))]
+    return found.joint.answers[Asked(answer)]
 
 
 def ends(draws: np.ndarray[Any, Any]) -> list[float]:
