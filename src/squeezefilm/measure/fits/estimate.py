@@ -56,6 +56,7 @@ class Adequacy:
     sentence: str
 
 
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class FitResult(Result):
     """A fit's result: its `Estimate`s and whether it is adequate are what a person looks for."""
 

@@ -8,7 +8,7 @@ places, times and frequencies of the points may not.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -82,6 +82,12 @@ class _Rows:
             if "Array" in str(of) or isinstance(values, np.ndarray)
         }
         si.require_alike(**series)
+
+
+def finite(*columns: si.Array) -> tuple[Any, ...]:
+    """Columns (points,) of a recording without the points where one of them is not finite."""
+    known = np.all([np.isfinite(column) for column in columns], axis=0)
+    return tuple(np.asarray(column)[known] for column in columns)
 
 
 @si.checked_numbers

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.measure.fits.circuit import choice, impedance
+from squeezefilm.measure.fits.estimate import Adequacy
 
 F = np.linspace(28e3, 32e3, 401)
 
@@ -55,14 +56,14 @@ class Fit:
     """A fit of a layout with its sentence."""
 
     layout: Any
-    adequacy: impedance.Adequacy
+    adequacy: Adequacy
 
 
 def test_corrections_that_a_sweep_does_not_tell_apart_are_named() -> None:
     def layout(*has: str) -> Any:
         return SimpleNamespace(**{name: name in has for name in impedance.CORRECTIONS})
 
-    adequacy = impedance.Adequacy(True, 0.01, 0.01, "", "It fits.")
+    adequacy = Adequacy(True, 0.01, 0.01, "", "It fits.")
     told: Any = Fit(layout("leads"), adequacy)
     found = impedance._alike(told, layout("coupling_loss"))
     said = found.adequacy.sentence

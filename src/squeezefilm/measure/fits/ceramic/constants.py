@@ -143,7 +143,6 @@ class CeramicConstants(FitResult):
     frequency: si.HertzArray
     model: si.ComplexArray
     residual: si.ComplexArray
-    adequacy: Adequacy
     fit: ComplexFit
 
 

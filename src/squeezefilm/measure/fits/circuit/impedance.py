@@ -20,7 +20,6 @@ from squeezefilm.measure.fits.circuit.choice import (
 )
 from squeezefilm.measure.fits.complex_fit import ComplexFit, require_passive, sweep_adequacy
 from squeezefilm.measure.fits.estimate import (
-    Adequacy,
     Estimate,
     FitResult,
     Observation,
@@ -79,7 +78,6 @@ class ImpedanceFit(FitResult):
     coupling_loss: Estimate | None
     softening: Softening | None
     drift: complex | None
-    adequacy: Adequacy
     layout: Layout
     fit: ComplexFit
     frequency: si.HertzArray

@@ -27,7 +27,7 @@ from squeezefilm.measure.fits.estimate import (
 )
 from squeezefilm.measure.fits.least_squares import SeparableFit, linear_fit
 from squeezefilm.measure.recordings.assembled_friction import smoothed
-from squeezefilm.measure.recordings.kinds import FrictionBench
+from squeezefilm.measure.recordings.kinds import FrictionBench, finite
 
 _FEWEST_POINTS = 100
 # Of what is usual in the recording: slower is turning around, lighter is lifting off.
@@ -73,7 +73,13 @@ def sliding_strokes(recording: FrictionBench) -> Strokes:
     part. The coefficient is the mean tangential over the mean normal force, so that noise on the
     normal force does not bias it. Raises `InputError` for a recording without two such strokes.
     """
-    t, normal, tangential, position, amplitude = _finite(recording)
+    t, normal, tangential, position, amplitude = finite(
+        recording.time,
+        recording.normal_force,
+        recording.tangential_force,
+        recording.position,
+        recording.vibration_amplitude,
+    )
     if t.size < _FEWEST_POINTS or np.any(np.diff(t) <= 0):
         raise InputError(
             f"the friction bench has {t.size} usable points; at least {_FEWEST_POINTS} are wanted, "
@@ -115,21 +121,6 @@ def sliding_strokes(recording: FrictionBench) -> Strokes:
         for part, way in rows
     )
     return Strokes(strokes, used / t.size)
-
-
-def _finite(recording: FrictionBench) -> tuple[si.FloatArray, ...]:
-    """Time, both forces, position and amplitude where all are finite."""
-    columns = np.array(
-        [
-            recording.time,
-            recording.normal_force,
-            recording.tangential_force,
-            recording.position,
-            recording.vibration_amplitude,
-        ],
-        dtype=float,
-    )
-    return tuple(columns[:, np.all(np.isfinite(columns), axis=0)])
 
 
 def _usual(values: si.FloatArray) -> float:
@@ -188,7 +179,6 @@ class FrictionBenchFit(FitResult):
     force_exponent: Estimate | None
     drift: Estimate
     between_strokes: si.Dimensionless
-    adequacy: Adequacy
 
     @property
     def observations(self) -> tuple[Observation, ...]:

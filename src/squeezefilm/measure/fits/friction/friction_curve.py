@@ -57,7 +57,6 @@ class CurveComparison(FitResult):
     speed: si.MetrePerSecondLike
     assumed: tuple[str, ...]
     band: FrictionBand
-    adequacy: Adequacy
     inside_levels: NDArray[np.bool_]
     _shown: ClassVar[str] = "display adequacy.sentence"
 

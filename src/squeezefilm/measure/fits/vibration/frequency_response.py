@@ -10,7 +10,6 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import (
-    Adequacy,
     Estimate,
     FitResult,
     Observation,
@@ -20,7 +19,7 @@ from squeezefilm.measure.fits.estimate import (
     observed,
 )
 from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
-from squeezefilm.measure.recordings.kinds import FrequencyResponse
+from squeezefilm.measure.recordings.kinds import FrequencyResponse, finite
 
 
 @dataclass(frozen=True)
@@ -123,7 +122,6 @@ class FrequencyResponseFit(FitResult):
     modes: tuple[FittedMode, ...]
     largest_per_volt: Estimate
     phase_reversed: bool
-    adequacy: Adequacy
 
     @property
     def observations(self) -> tuple[Observation, ...]:
@@ -196,11 +194,10 @@ def fit_frequency_response(recording: FrequencyResponse) -> FrequencyResponseFit
 
 def _recorded(recording: FrequencyResponse) -> tuple[si.HertzArray, si.ComplexArray]:
     """Rising frequencies and what was recorded as a finite number there."""
-    f = np.asarray(recording.frequency, dtype=float)
-    H = np.asarray(recording.displacement_per_volt)
-    good = np.isfinite(f) & np.isfinite(H) & (f > 0)
-    order = np.argsort(f[good], kind="stable")
-    f, H = f[good][order], H[good][order]
+    f, H = finite(recording.frequency, recording.displacement_per_volt)
+    f, H = f[f > 0], H[f > 0]
+    order = np.argsort(f, kind="stable")
+    f, H = f[order], H[order]
     if f.size < _FEWEST_POINTS:
         raise InputError(
             f"the frequency response has {f.size} usable points; a resonance needs at least "

@@ -10,7 +10,6 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import (
-    Adequacy,
     Estimate,
     FitResult,
     Observation,
@@ -21,7 +20,7 @@ from squeezefilm.measure.fits.estimate import (
 from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
 from squeezefilm.measure.fits.vibration.line_points import LinePoints, LineWaves
 from squeezefilm.measure.fits.vibration.solved_shapes import DrivenShape, line_by_shape
-from squeezefilm.measure.recordings.kinds import LineScan
+from squeezefilm.measure.recordings.kinds import LineScan, finite
 
 _FEWEST_POINTS = 12
 _TRIED_NUMBERS = 160
@@ -68,7 +67,6 @@ class LineScanFit(FitResult):
     by_points: bool
     offset: Estimate | None
     face_over_line: si.Dimensionless
-    adequacy: Adequacy
 
     @property
     def observations(self) -> tuple[Observation, ...]:
@@ -153,10 +151,9 @@ def _by_shape(fit: LineScanFit, shape: DrivenShape, w: si.Array) -> LineScanFit:
 
 def _recorded(recording: LineScan) -> tuple[si.MetreArray, si.Array]:
     """Rising places and what was recorded as a finite number there; sizes with a sign again."""
-    x, w = np.asarray(recording.position, dtype=float), np.asarray(recording.displacement)
-    good = np.isfinite(x) & np.isfinite(w)
-    order = np.argsort(x[good], kind="stable")
-    x, w = x[good][order], w[good][order]
+    x, w = finite(recording.position, recording.displacement)
+    order = np.argsort(x, kind="stable")
+    x, w = x[order], w[order]
     if x.size < _FEWEST_POINTS:
         raise InputError(
             f"the line scan has {x.size} usable points; a wave along a line needs at least "

@@ -15,7 +15,7 @@ from squeezefilm.measure.fits.estimate import (
     guarded_fit,
 )
 from squeezefilm.measure.fits.vibration.frequency_response import modal_circle
-from squeezefilm.measure.recordings.kinds import FrequencyResponse, RawSignals
+from squeezefilm.measure.recordings.kinds import FrequencyResponse, RawSignals, finite
 
 _FEWEST_POINTS = 256
 _SEGMENTS, _LEAST_SEGMENT = 16, 32
@@ -43,7 +43,6 @@ class RawSignalsFit(FitResult):
     recording: RawSignals
     response: FrequencyResponse
     standard_error: si.MetrePerVoltArray
-    adequacy: Adequacy
 
 
 @guarded_fit
@@ -64,7 +63,7 @@ def fit_raw_signals(recording: RawSignals) -> RawSignalsFit:
         length *= 2
         response, error = _averaged(v, x, rate, length)
     response = replace(response, told=recording.told)
-    return RawSignalsFit(recording, response, error, _coherent(response, length / rate))
+    return RawSignalsFit(recording, response, error, adequacy=_coherent(response, length / rate))
 
 
 def _averaged(
@@ -105,17 +104,11 @@ def _resolution(response: FrequencyResponse) -> float:
 
 
 def _recorded(recording: RawSignals) -> tuple[si.SecondArray, si.VoltArray, si.MetreArray]:
-    t = np.asarray(recording.time, dtype=float)
-    v, x = (
-        np.asarray(values, dtype=float) for values in (recording.voltage, recording.displacement)
-    )
-    good = np.isfinite(t) & np.isfinite(v) & np.isfinite(x)
-    if good.sum() < _FEWEST_POINTS:
+    t, v, x = finite(recording.time, recording.voltage, recording.displacement)
+    if t.size < _FEWEST_POINTS:
         raise InputError(
-            f"the signals have {int(good.sum())} usable points; a spectrum needs at least "
-            f"{_FEWEST_POINTS}"
+            f"the signals have {t.size} usable points; a spectrum needs at least {_FEWEST_POINTS}"
         )
-    t, v, x = t[good], v[good], x[good]
     steps = np.diff(t)
     if np.any(steps <= 0):
         raise InputError("time does not rise from point to point; sort the recording by time")

@@ -10,7 +10,6 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import (
-    Adequacy,
     Estimate,
     FitResult,
     Observation,
@@ -26,7 +25,7 @@ from squeezefilm.measure.fits.least_squares import (
     fit_nonlinear,
     fit_separable,
 )
-from squeezefilm.measure.recordings.kinds import RingDown
+from squeezefilm.measure.recordings.kinds import RingDown, finite
 
 _FEWEST_POINTS = 40
 _FEWEST_PERIODS = 5.0
@@ -59,7 +58,6 @@ class RingDownFit(FitResult):
     damping_rise: Estimate | None
     frequency_rise: Estimate | None
     second: tuple[Estimate, Estimate] | None
-    adequacy: Adequacy
 
     @property
     def observations(self) -> tuple[Observation, ...]:
@@ -103,10 +101,9 @@ def fit_ring_down(recording: RingDown) -> RingDownFit:
 
 
 def _recorded(recording: RingDown) -> tuple[si.SecondArray, si.MetreArray]:
-    t, w = np.asarray(recording.time, dtype=float), np.asarray(recording.displacement, dtype=float)
-    good = np.isfinite(t) & np.isfinite(w)
-    order = np.argsort(t[good], kind="stable")
-    t, w = t[good][order], w[good][order]
+    t, w = finite(recording.time, recording.displacement)
+    order = np.argsort(t, kind="stable")
+    t, w = t[order], w[order]
     if t.size < _FEWEST_POINTS or not t[-1] > t[0]:
         raise InputError(
             f"the ring-down has {t.size} usable points; a decay needs at least {_FEWEST_POINTS}"

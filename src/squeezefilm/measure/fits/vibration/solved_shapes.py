@@ -196,7 +196,6 @@ class GridScanFit(FitResult):
     parts: Mapping[str, Estimate]
     model: si.Array
     residual: si.Array
-    adequacy: Adequacy
 
     @property
     def observations(self) -> tuple[Observation, ...]:

@@ -12,7 +12,6 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import (
-    Adequacy,
     Estimate,
     FitResult,
     Observation,
@@ -28,7 +27,7 @@ from squeezefilm.measure.fits.vibration.frequency_response import (
     ModalCircle,
     modal_circle,
 )
-from squeezefilm.measure.recordings.kinds import VoltageSweeps
+from squeezefilm.measure.recordings.kinds import VoltageSweeps, finite
 from squeezefilm.physics.plate.loaded_mode import FreePlate
 
 BackboneLaw = Literal["quadratic", "linear"]
@@ -66,7 +65,6 @@ class VoltageSweepsFit(FitResult):
     phase_reversed: bool
     model: si.ComplexArray
     residual: si.ComplexArray
-    adequacy: Adequacy
 
     @property
     def observations(self) -> tuple[Observation, ...]:
@@ -149,10 +147,9 @@ class _Points:
         for number, sweep in enumerate(recording.sweeps, 1):
             if not sweep.voltage or sweep.voltage <= 0:
                 raise InputError(f"sweep {number} has no voltage; say at which it was made")
-            f, H = np.asarray(sweep.frequency, dtype=float), np.asarray(sweep.displacement_per_volt)
-            good = np.isfinite(f) & np.isfinite(H) & (f > 0)
-            V = np.full(int(good.sum()), sweep.voltage)
-            rows.append((f[good], H[good] * sweep.voltage, V))
+            f, H = finite(sweep.frequency, sweep.displacement_per_volt)
+            f, H = f[f > 0], H[f > 0]
+            rows.append((f, H * sweep.voltage, np.full(f.size, sweep.voltage)))
         f, x, V = (np.concatenate(column) for column in zip(*rows, strict=True))
         if f.size < _FEWEST_POINTS:
             raise InputError(
