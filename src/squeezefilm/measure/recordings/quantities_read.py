@@ -342,11 +342,10 @@ def words(name: str) -> str:
 
 
 def quantity(value: float, unit: si.Unit) -> str:
-    """A value with its unit, with the micro sign."""
+    """A value with its unit."""
     if unit == _OHM and abs(value) >= 1e4:
         return f"{value / 1e3:.4g} kohm"
-    head, separator, symbol = si.format_quantity(float(value), unit).rpartition(" ")
-    return f"{head}{separator}µ{symbol[1:]}" if symbol[:1] == "u" else f"{head}{separator}{symbol}"
+    return si.format_quantity(float(value), unit)
 
 
 def _sum(first: si.Dimension, second: si.Dimension) -> si.Dimension:

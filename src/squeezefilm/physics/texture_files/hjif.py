@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from typing import Annotated, Any
 
@@ -66,17 +66,8 @@ class ReferenceDevice:
 
     def document(self) -> dict[str, Any]:
         """Mapping in the format. Displays work at one frequency: least, largest and resonance."""
-        return {
-            "id": 0,
-            "type": "Piezo",
-            "name": self.name,
-            "resonance_frequency": self.resonance_frequency,
-            "maximum_voltage": self.maximum_voltage,
-            "maximum_displacement": self.maximum_displacement,
-            "maximum_amplitude": self.maximum_amplitude,
-            "maximum_frequency": self.resonance_frequency,
-            "minimum_frequency": self.resonance_frequency,
-        }
+        ends = dict.fromkeys(("maximum_frequency", "minimum_frequency"), self.resonance_frequency)
+        return {"id": 0, "type": "Piezo", **asdict(self), **ends}
 
 
 @dataclass(frozen=True, slots=True)
