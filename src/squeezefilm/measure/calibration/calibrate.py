@@ -59,7 +59,13 @@ from squeezefilm.physics.chain.touch import touch
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.working_mode import WorkingMode
 from squeezefilm.physics.uncertainty.drawn import evaluate
-from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, between_limits
+from squeezefilm.physics.uncertainty.draws import (
+    Draw,
+    Mixture,
+    as_drawn,
+    between_limits,
+    mixture_of,
+)
 from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, quantiles
 from squeezefilm.physics.uncertainty.parameters import Parameter
 from squeezefilm.physics.uncertainty.uncertainty import sobol_points
@@ -139,7 +145,7 @@ def friction_before(display: Display, seed: int) -> FrictionInterval | None:
     """µ′/µ of a display as described with its interval, as `physics.uncertainty.uncertainty` draws
     it; None where more than 2 % of the draws have no friction."""
     prediction = predict(display)
-    mixture = Mixture(display, prediction, driven=prediction.voltage is not None)
+    mixture = mixture_of(display, prediction)
     drawn, refused = evaluate(mixture, sobol_points(mixture, _BEFORE, seed), lambda _: None)
     return _interval(drawn.friction, drawn.amplitude, refused.share)
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import copy
 import dataclasses
-import json
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -21,7 +20,6 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import OutOfRangeError, SqueezefilmError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import ShareProgress, within
-from squeezefilm.core.results import to_json
 from squeezefilm.measure.calibration.discrepancy import (
     GRID,
     FrictionLikelihood,
@@ -30,6 +28,7 @@ from squeezefilm.measure.calibration.discrepancy import (
 )
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
+from squeezefilm.physics.uncertainty.drawn import hash_of_draws
 from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, between_limits
 
 DRAWS, ROUNDS = 2048, 2
@@ -91,21 +90,9 @@ def friction_of_points(
     Kept on disk in pieces, so that what was interrupted goes on. `tell` is told some ten times.
     """
     friction = np.empty((len(points), len(where)))
-    about = json.dumps(
-        [
-            to_json(mixture.display),
-            mixture.paths,
-            [item.spread for item in mixture.inputs],
-            mixture.prediction.frequency,
-            mixture.prediction.mode.half_wavelength,
-            mixture.model,
-            where,
-        ],
-        sort_keys=True,
-    )
     for first in range(0, len(points), _CHUNK):
         piece = points[first : first + _CHUNK]
-        question = f"{about} {piece.tobytes().hex()}"
+        question = hash_of_draws(mixture, piece, where)
         kept = _KEPT.get(question)
         if kept is None:
             if first % (4 * _CHUNK) == 0:
