@@ -251,19 +251,22 @@ class Piezoceramic:
         self,
         stiffness: Annotated[si.Dimensionless, si.Above(0.0)] = 1.0,
         charge: Annotated[si.Dimensionless, si.Above(0.0)] = 1.0,
+        permittivity: Annotated[si.Dimensionless, si.Above(0.0)] = 1.0,
     ) -> Piezoceramic:
-        """The ceramic of another batch: all its stiffnesses, and all its d, by a factor each.
+        """The ceramic of another batch: all its stiffnesses, all its d and all its clamped
+        permittivities, by a factor each.
 
         What was stated of e and of free permittivities in the full constants belongs to the other
-        ceramic, and follows anew; an effective e31 goes with d. Clamped permittivities stay. Raises
-        `InputError` for a factor that is not above 0, and what the dataclasses raise.
+        ceramic, and follows anew; an effective e31 goes with d. Raises `InputError` for a factor
+        that is not above 0, and what the dataclasses raise.
         """
-        if stiffness == charge == 1:
+        if stiffness == charge == permittivity == 1:
             return self
         full, e31 = self.constants, self.stress_coefficient
         if full is not None:
             pairs = {f"compliance_{pair}": 1 / stiffness for pair in (11, 12, 13, 33, 44, 66)}
             pairs |= {f"charge_coefficient_{pair}": charge for pair in (31, 33, 15)}
+            pairs |= {f"clamped_permittivity_{axis}": permittivity for axis in (11, 33)}
             changed: dict[str, Any] = {name: by * getattr(full, name) for name, by in pairs.items()}
             changed |= {f"free_permittivity_{axis}": None for axis in (11, 33)}
             changed |= {f"stress_coefficient_{pair}": None for pair in (31, 33, 15)}
@@ -273,6 +276,7 @@ class Piezoceramic:
             in_plane_stiffness=stiffness * self.in_plane_stiffness,
             charge_coefficient=charge * self.charge_coefficient,
             stress_coefficient=None if e31 is None else charge * e31,
+            relative_permittivity=permittivity * self.relative_permittivity,
             constants=full,
         )
 

@@ -10,14 +10,13 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any, NamedTuple, cast
+from typing import NamedTuple, cast
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.distributions import Distribution, LogNormal, Normal, Uniform
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.materials import Piezoceramic
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import AnnularStator, DiscPlate, RectangularPlate
 from squeezefilm.physics.uncertainty.parameters import Origin, Parameter, value_at, with_values
@@ -134,7 +133,8 @@ def _parameter(display: Display, path: str, prior: Distribution | None) -> Param
 def with_calibrated(display: Display, values: Mapping[str, float]) -> Display:
     """The display with other values at the paths of `calibration_parameters`, shares included.
 
-    Raises `InputError` for what cannot be there.
+    A ceramic's full constants are stated then, as `Piezoceramic.full_constants` had them. Raises
+    `InputError` for what cannot be there.
     """
     shares = {path: value for path, value in values.items() if path in SHARES}
     rest = {path: value for path, value in values.items() if path not in SHARES}
@@ -143,50 +143,17 @@ def with_calibrated(display: Display, values: Mapping[str, float]) -> Display:
         return changed
     # A stator has no ceramic of its own, and `calibration_parameters` refuses it.
     actuator = cast("RectangularPlate | DiscPlate", changed.actuator)
-    ceramic = ceramic_with_shares(
+    full = actuator.ceramic.full_constants
+    stated = dataclasses.replace(
         actuator.ceramic,
-        shares.get(STIFFNESS_SHARE, 1.0),
-        shares.get(CHARGE_SHARE, 1.0),
-        shares.get(PERMITTIVITY_SHARE, 1.0),
-    )
-    return dataclasses.replace(changed, actuator=dataclasses.replace(actuator, ceramic=ceramic))
-
-
-@si.checked_numbers
-def ceramic_with_shares(
-    ceramic: Piezoceramic,
-    stiffness: Annotated[si.Dimensionless, si.Above(0.0)],
-    charge: Annotated[si.Dimensionless, si.Above(0.0)],
-    permittivity: Annotated[si.Dimensionless, si.Above(0.0)],
-) -> Piezoceramic:
-    """The ceramic with all stiffnesses, all charge coefficients and all clamped permittivities
-    multiplied by a share each.
-
-    Its full constants are stated then, as `Piezoceramic.full_constants` had them. What was stated
-    twice (free permittivities, stress coefficients) belongs to the other values and is dropped.
-    Raises `InputError` for shares that are not above 0.
-    """
-    full = ceramic.full_constants
-    scaled: dict[str, Any] = {}
-    for constant in dataclasses.fields(full):
-        kind, value = constant.name.split("_")[0], getattr(full, constant.name)
-        if kind in ("free", "stress"):
-            scaled[constant.name] = None
-        elif kind == "compliance":
-            scaled[constant.name] = value / stiffness
-        else:
-            scaled[constant.name] = value * (charge if kind == "charge" else permittivity)
-    constants = dataclasses.replace(full, **scaled)
-    s11, s12 = constants.compliance_11, constants.compliance_12
-    return dataclasses.replace(
-        ceramic,
-        in_plane_stiffness=s11 / (s11**2 - s12**2),
-        charge_coefficient=constants.charge_coefficient_31,
+        in_plane_stiffness=full.compliance_11 / (full.compliance_11**2 - full.compliance_12**2),
+        charge_coefficient=full.charge_coefficient_31,
         stress_coefficient=None,
         data_set="from_d31",
-        relative_permittivity=ceramic.relative_permittivity * permittivity,
-        constants=constants,
+        constants=full,
     )
+    ceramic = stated.scaled(*(shares.get(name, 1.0) for name in SHARES))
+    return dataclasses.replace(changed, actuator=dataclasses.replace(actuator, ceramic=ceramic))
 
 
 class NormalScores:

@@ -10,14 +10,15 @@ from scipy.special import ndtri
 
 from squeezefilm.core.distributions import Normal, Uniform
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.materials import Piezoceramic
 from squeezefilm.design.plate.changed_plates import with_ceramic_stiffness, with_glue
 from squeezefilm.measure.calibration.priors import (
     CHARGE_SHARE,
     PERMITTIVITY_SHARE,
+    SHARES,
     STIFFNESS_SHARE,
     NormalScores,
     calibration_parameters,
-    ceramic_with_shares,
     share_of,
     with_calibrated,
 )
@@ -50,21 +51,25 @@ def test_paths_of_ones_own() -> None:
 
 
 def test_shares_scale_what_they_name() -> None:
+    def with_shares(stiffness: float, charge: float, permittivity: float) -> Piezoceramic:
+        values = dict(zip(SHARES, (stiffness, charge, permittivity), strict=True))
+        return with_calibrated(PAPER, values).actuator.ceramic  # type: ignore[union-attr]
+
     ceramic = PAPER.actuator.ceramic  # type: ignore[union-attr]
-    same = ceramic_with_shares(ceramic, 1.0, 1.0, 1.0)
+    same = with_shares(1.0, 1.0, 1.0)
     assert same.full_constants == ceramic.full_constants
-    softer = ceramic_with_shares(ceramic, 0.9, 1.0, 1.0)
+    softer = with_shares(0.9, 1.0, 1.0)
     stated = dataclasses.replace(PAPER.actuator, ceramic=same)  # type: ignore[type-var]
     assert softer.full_constants.compliance_33 == pytest.approx(
         with_ceramic_stiffness(stated, 0.9).ceramic.full_constants.compliance_33
     )
-    other = ceramic_with_shares(ceramic, 1.0, 1.2, 0.8).full_constants
+    other = with_shares(1.0, 1.2, 0.8).full_constants
     own = ceramic.full_constants
     assert other.charge_coefficient_33 == pytest.approx(1.2 * own.charge_coefficient_33)
     assert other.clamped_permittivity_33 == pytest.approx(0.8 * own.clamped_permittivity_33)
     assert other.compliance_11 == own.compliance_11
     with pytest.raises(InputError, match="stiffness"):
-        ceramic_with_shares(ceramic, 0.0, 1.0, 1.0)
+        with_shares(0.0, 1.0, 1.0)
 
 
 def test_values_and_shares_reach_the_display() -> None:
