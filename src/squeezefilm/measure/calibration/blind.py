@@ -59,6 +59,7 @@ _SOLVED, _FRICTION = 32, 256
 _TAILS = ((1 - LEVEL) / 2, 0.5, (1 + LEVEL) / 2)
 
 
+@si.checked_numbers
 @dataclass(frozen=True)
 class Predicted:
     """A predicted number: `answer` and `conditions` as an `Observation` has them (SI), median,
@@ -266,14 +267,15 @@ def load_prediction(path: str | Path) -> BlindPrediction:
 
     Raises `InputError` for a file that is none, or whose content is not what its SHA-256 says.
     """
-    from pydantic import TypeAdapter
-
     content = read_json(path, DESCRIPTION_BYTES, "a prediction")
     try:
         if content["kind"] != KIND:
             raise ValueError
-        prediction = TypeAdapter(BlindPrediction).validate_python(content)
-    except (ValueError, KeyError, TypeError) as error:
+        rows = content["predictions"]
+        predictions = tuple(Predicted(**row | {"interval": tuple(row["interval"])}) for row in rows)
+        told = {key: value for key, value in content.items() if key != "kind"}
+        prediction = BlindPrediction(**told | {"predictions": predictions})
+    except (InputError, ValueError, KeyError, TypeError) as error:
         raise InputError(
             f"{path} is no prediction of squeezefilm; write one with measure predict"
         ) from error
