@@ -25,24 +25,21 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.hard_limits import DECAY_LENGTH, PRESSURE
 
 AsperityHeights = Literal["exponential", "gaussian"]
-EXPONENTIAL, TABULATED = range(2)
 
 # ln F is tabulated between these, in units of the height deviation: below, the asperities are
 # crushed flat, above they carry e^-200 of anything.
 _LOWEST, _HIGHEST, _STEP = -8.0, 20.0, 0.025
+# Decay lengths over which an exponential is tabulated.
+_FAINTEST = 780.0
 
 
 class CompiledAsperities(NamedTuple):
-    """A law of asperities for compiled code: the number of its kind, its constants, and where it
-    is tabulated the cubics of ln p (p in Pa) between gaps at equal steps. For the constants see
-    `asperity_kernel`."""
+    """A law of asperities for compiled code: its constants, and the cubics of ln p (p in Pa)
+    between gaps at equal steps, the first of them straight at nearer gaps too. For the constants
+    see `asperity_kernel`."""
 
-    kind: int
     constants: si.FloatArray
     table: si.FloatArray
-
-
-_NO_CUBICS: si.FloatArray = np.zeros((0, 4))
 
 
 def cubics(values: si.FloatArray, slopes: si.FloatArray, step: float) -> si.FloatArray:
@@ -177,12 +174,15 @@ class AsperityLaw:
 
     def compiled(self) -> CompiledAsperities:
         """The law as the compiled code takes it."""
-        constants = [self.reference_pressure, self.reference_gap, self.decay_length, 0.0, 0.0, 0.0]
+        scale, first, step = self.decay_length, _LOWEST * self.decay_length, _STEP
         if self.heights == "exponential":
-            return CompiledAsperities(EXPONENTIAL, np.array(constants), _NO_CUBICS)
-        table = _gaussian_cubics().copy()
-        overlap = float(gaussian_overlap(self.reference_gap / self.decay_length))
-        table[:, 0] += math.log(self.reference_pressure / overlap)
-        scale = self.decay_length
-        constants[3:] = [_LOWEST * scale, _STEP * scale, -_STEP * scale / table[-1, 1]]
-        return CompiledAsperities(TABULATED, np.array(constants), table)
+            # One straight line, to where a float holds nothing.
+            first, step, slope = self.reference_gap, _FAINTEST, -_FAINTEST
+            table = np.array([[math.log(self.reference_pressure), slope, 0.0, 0.0]])
+        else:
+            table = _gaussian_cubics().copy()
+            overlap = float(gaussian_overlap(self.reference_gap / scale))
+            table[:, 0] += math.log(self.reference_pressure / overlap)
+        steps = [first, step * scale, -step * scale / table[-1, 1]]
+        constants = [self.reference_pressure, self.reference_gap, scale, *steps]
+        return CompiledAsperities(np.array(constants), table)

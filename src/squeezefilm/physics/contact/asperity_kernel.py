@@ -1,7 +1,7 @@
-"""The compiled laws of asperities: mean pressures over a period.
+"""The compiled law of asperities: mean pressures over a period.
 
 The constants of a law are a pressure, a gap and a decay length, p_ref exp(−(h − h_ref)/λ) being
-the law or near it; of a table also its first gap, its step and the decay length at its end, in m.
+the law or near it, then of its table the first gap, the step and the decay length at the end, in m.
 All functions run without the interpreter.
 """
 
@@ -11,37 +11,13 @@ import math
 
 import numpy as np
 
-from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.contact.asperities import EXPONENTIAL, CompiledAsperities
-
-
-@compiled(error_model="numpy")
-def bessel(order: int, z: float) -> float:
-    """exp(−z) I_order(z) for order 0 or 1 and z ≥ 0: series below 18, asymptotics above."""
-    if z < 18.0:
-        quarter = 0.25 * z * z
-        term = 1.0 if order == 0 else 0.5 * z
-        total = term
-        for k in range(1, 80):
-            term *= quarter / (k * (k + order))
-            total += term
-            if term < 1e-17 * total:
-                break
-        return total * math.exp(-z)
-    four = 4.0 * order * order
-    term, total = 1.0, 1.0
-    for k in range(1, 30):
-        odd = 2.0 * k - 1.0
-        term *= -(four - odd * odd) / (8.0 * z * k)
-        total += term
-        if abs(term) < 1e-16:
-            break
-    return float(total / math.sqrt(2.0 * math.pi * z))
-
+from squeezefilm.physics.contact.asperities import CompiledAsperities
 
 # What is e^-30 of the most that a period carries is left out.
 _FADED = 30.0
+# Of ln p: what a float holds, however far two surfaces are pushed into each other.
+_LARGEST = 700.0
 
 
 @compiled(error_model="numpy")
@@ -53,11 +29,13 @@ def _covered(reach: float, a: float) -> float:
 
 
 @compiled(error_model="numpy")
-def _tabulated_mean(
-    law: si.FloatArray, table: si.FloatArray, u: float, a: float
-) -> tuple[float, float]:
-    """`asperity_mean` by the trapezoidal rule over what touches: what is smooth and fades out, or
-    comes back, is averaged by few points: to 1e-9, of rough contact to what its table holds."""
+def asperity_mean(asperities: CompiledAsperities, u: float, a: float) -> tuple[float, float]:
+    """⟨p_a(u − a cos T)⟩ and its first harmonic 2⟨p_a cos T⟩, in Pa, of a law that is smooth.
+
+    By the trapezoidal rule over what touches: what is smooth and fades out, or comes back, is
+    averaged by few points: to 1e-9, of rough contact to what its table holds.
+    """
+    law, table = asperities
     middle, swing = (u - law[3]) / law[4], a / law[4]
     x = middle - swing
     i = np.uint64(max(x, 0.0))
@@ -85,7 +63,7 @@ def _tabulated_mean(
         p = table[i, 0] + x * table[i, 1]
         if x > 0.0:
             p += x * x * (table[i, 2] + x * table[i, 3])
-        p = math.exp(p)
+        p = math.exp(min(p, _LARGEST))
         if k == 0 or k == count:
             p *= 0.5
         mean += p
@@ -93,14 +71,3 @@ def _tabulated_mean(
         c, before = 2.0 * cosine * c - before, c
     share = phase / (math.pi * count)
     return mean * share, 2.0 * first * share
-
-
-@compiled(error_model="numpy")
-def asperity_mean(asperities: CompiledAsperities, u: float, a: float) -> tuple[float, float]:
-    """⟨p_a(u − a cos T)⟩ and its first harmonic 2⟨p_a cos T⟩, in Pa, of a law that is smooth."""
-    law = asperities.constants
-    if asperities.kind == EXPONENTIAL:
-        least = law[0] * math.exp(min(-(u - a - law[1]) / law[2], 700.0))
-        z = a / law[2]
-        return least * bessel(0, z), 2.0 * least * bessel(1, z)
-    return _tabulated_mean(law, asperities.table, u, a)

@@ -35,7 +35,6 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.core.hard_limits import HEIGHTS, MODULUS
 from squeezefilm.physics.contact.asperities import (
-    TABULATED,
     AsperityLaw,
     CompiledAsperities,
     cubics,
@@ -278,7 +277,7 @@ def _compiled(law: RoughContact) -> CompiledAsperities:
         -law.roughness / known.steepness[-1],
     ]
     table = cubics(known.logarithm + math.log(law.pressure_scale), known.steepness, _STEP)
-    return CompiledAsperities(TABULATED, np.array(constants), table)
+    return CompiledAsperities(np.array(constants), table)
 
 
 ContactLaw = AsperityLaw | RoughContact

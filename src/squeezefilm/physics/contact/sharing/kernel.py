@@ -14,7 +14,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.contact.asperities import CompiledAsperities
-from squeezefilm.physics.contact.asperity_kernel import asperity_mean, bessel
+from squeezefilm.physics.contact.asperity_kernel import asperity_mean
 from squeezefilm.physics.contact.finger.load import CompiledFinger, felt
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
@@ -146,7 +146,9 @@ def balance(
     # Where exponential asperities alone would carry the load; with the gas it is further out.
     step = law[2]
     swing = amplitudes.max()
-    alone = law[1] + swing - step * math.log(pressure / (law[0] * bessel(0, swing / step)))
+    # Of an exponential a period's mean is its most times I0(z) exp(−z), near (1 + 2πz)^−½.
+    most = math.log(law[0] / pressure) - 0.5 * math.log1p(2.0 * math.pi * swing / step)
+    alone = law[1] + swing + step * most
     guess = max(low + 0.5 * step, alone)
     u, at, spent = guess, math.nan, 0
     gas, solid, lack = _carried(u, ridges, asperities, films)

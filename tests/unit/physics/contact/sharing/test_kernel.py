@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from numpy.polynomial import chebyshev
 from scipy.optimize import brentq
-from scipy.special import ive
 
 from squeezefilm.physics.contact.asperities import AsperityLaw
 from squeezefilm.physics.contact.sharing.kernel import (
@@ -30,7 +29,6 @@ from squeezefilm.physics.contact.sharing.kernel import (
     asperity_mean,
     balance,
     balance_rows,
-    bessel,
     film_value,
 )
 
@@ -49,12 +47,6 @@ def films(panels: np.ndarray | None = None, built: np.ndarray | None = None) -> 
     if built is None:
         built = np.ones((6, 3), dtype=np.int64)
     return CompiledFilms(np.array([LENGTH, AMBIENT, FIRST]), EDGES, built, panels)
-
-
-@pytest.mark.parametrize("order", [0, 1])
-@pytest.mark.parametrize("z", [0.0, 1e-9, 0.3, 2.0, 9.0, 17.99, 18.0, 18.01, 40.0, 600.0])
-def test_bessel_functions_are_scipys(order: int, z: float) -> None:
-    assert bessel(order, z) == pytest.approx(ive(order, z), rel=2e-13)
 
 
 @pytest.mark.parametrize("law", LAWS)
