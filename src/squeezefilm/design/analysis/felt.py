@@ -171,16 +171,10 @@ def felt_gratings(
         return None
     senses = load_observer()
     tau = p.envelope_time_constant
-
-    def described(
-        amplitude: si.MetreArray, speed: si.MetrePerSecond = 0.0
-    ) -> si.DimensionlessArray:
-        return np.asarray(p.friction(amplitude, np.full(amplitude.shape, speed)))
-
     base, pad = p.friction_coefficient * p.normal_force, display.finger.fingerpad
     nominal, speeds = [], tuple(sorted({p.speed, *speeds}))
     for speed in speeds:
-        law = functools.partial(described, speed=speed)
+        law = functools.partial(p.friction, speed=speed)
         nominal.append(_finest(senses, tau, p.vibration_amplitude, law, Rubbed(base, pad, speed)))
     drawn, why = (None, "no draws were asked for")
     if draws and p.touch.law is not None:
@@ -292,15 +286,9 @@ def _felt_of(
     pad = draw.display.finger.fingerpad
     periods = []
     for speed, row in zip(speeds, friction, strict=True):
-        known = functools.partial(_tabulated, knots=knots, row=row)
+        known = functools.partial(np.interp, xp=knots, fp=row)
         periods.append(_finest(senses, tau, high, known, Rubbed(base, pad, speed)))
     return periods
-
-
-def _tabulated(
-    amplitude: si.MetreArray, knots: si.MetreArray, row: si.DimensionlessArray
-) -> si.DimensionlessArray:
-    return np.asarray(np.interp(amplitude, knots, row))
 
 
 def _known(value: si.Metre) -> si.Metre | None:

@@ -15,7 +15,7 @@ from squeezefilm.core.progress import SayProgress
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.touch import amplitude_per_volt, kept_at
-from squeezefilm.physics.chain.wanted_voltage import voltage_for_friction
+from squeezefilm.physics.chain.wanted_voltage import needed_voltage
 from squeezefilm.physics.contact.sharing.levitation import HIGHEST_AMPLITUDE
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.draws import (
@@ -109,7 +109,8 @@ def wanted_friction(
     strict: bool = True,
     progress: SayProgress | None = None,
 ) -> Wanted:
-    """Price of a wanted µ′/µ where a prediction was made: its frequency, force, surface, speed.
+    """Price of a wanted µ′/µ where a prediction was made: by its solved plate, frequency, force,
+    surface, place and speed.
 
     `samples` is the base of the draws (0: no interval). Raises `UnreachableError` where no voltage
     does it as described, without `strict` that is said in its place, and what
@@ -120,17 +121,7 @@ def wanted_friction(
     amplitude: si.Metre | None
     why_not = ""
     try:
-        volts, amplitude = voltage_for_friction(
-            display,
-            relative_friction,
-            frequency=p.frequency,
-            normal_force=p.normal_force,
-            surface=p.surface.name,
-            model=p.model,
-            speed=p.speed,
-            place=None if p.law.place is None else p.place,
-            position=p.law.position if p.law.place is None else None,
-        )
+        volts, amplitude = needed_voltage(p.mode, p.law, relative_friction)
     except UnreachableError as error:
         if strict:
             raise

@@ -69,13 +69,14 @@ def voltage_for_friction(
     )
     if place is None and position is None:
         law = at_best_place(display, mode, law)
-    return _needed(mode, law, relative_friction)
+    return needed_voltage(mode, law, relative_friction)
 
 
-def _needed(
-    mode: WorkingMode, law: FrictionLaw, relative_friction: si.Dimensionless
+def needed_voltage(
+    mode: WorkingMode, law: FrictionLaw, relative_friction: WantedFriction
 ) -> WantedVoltage:
-    """Voltage (V) and the best antinode's amplitude (m) for a µ′/µ of a law."""
+    """Voltage and amplitude that bring µ′/µ of a law down to a wanted value, on a plate that moves
+    in a mode. Raises as `voltage_for_friction`."""
     amplitude = law.amplitude_for(relative_friction)
     if amplitude == 0:
         return WantedVoltage(0.0, 0.0)
