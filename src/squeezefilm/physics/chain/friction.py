@@ -107,7 +107,7 @@ class FrictionLaw(PadLaw):
         """Relative friction µ′/µ in a limit of the skin at amplitudes (m), shape (n,), at the law's
         speed: each ridge at its own balance ("own", a skin compliant at rest, the default) or all
         tied to one mean gap ("one-gap")."""
-        return self.sharing(amplitude, limit).relative_friction
+        return np.asarray(self.over_speeds(amplitude, np.array([self.speed]), limit)[0])
 
     @si.checked_numbers
     def ridge_friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
@@ -121,7 +121,8 @@ class FrictionLaw(PadLaw):
     ) -> si.DimensionlessArray:
         """Relative friction µ′/µ at speeds (m/s, from 0) and amplitudes (m), shape (speeds,
         amplitudes), in a limit of the skin as `friction_in` has it."""
-        return np.repeat(self.friction_in(limit, np.ravel(amplitude))[None, :], np.size(speed), 0)
+        alike = self.sharing(np.ravel(amplitude), limit).relative_friction
+        return np.repeat(alike[None, :], np.size(speed), 0)
 
     @si.checked_numbers
     def at(self, amplitude: si.Metre) -> si.Dimensionless:
@@ -209,14 +210,17 @@ class AsymptoteLaw(FrictionLaw):
         return FilmLoad(float(contact_mean_pressure(gap, self._closed_form)) - 1, 0.0)
 
     @si.checked_numbers
-    def friction_in(self, limit: Limit, amplitude: si.MetreArray) -> si.DimensionlessArray:
-        """Relative friction µ′/µ at amplitudes (m), shape (n,), whichever the limit: this gap does
-        not yield."""
+    def over_speeds(
+        self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray, limit: Limit = "own"
+    ) -> si.DimensionlessArray:
+        """Relative friction µ′/µ at amplitudes (m), shape (speeds, amplitudes), whichever the limit
+        and the speed (m/s): this gap does not yield."""
+        gap = self.gap(np.ravel(amplitude))
         share = levitation.relative_friction(
-            self.gap(amplitude), self.normal_force, self.gas.ambient_pressure, self._closed_form
+            gap, self.normal_force, self.gas.ambient_pressure, self._closed_form
         )
         # As printed, the mean pressure of small vibrations is a hair below the ambient one.
-        return np.minimum(share, 1.0)
+        return np.repeat(np.minimum(share, 1.0)[None, :], np.size(speed), 0)
 
     @si.checked_numbers
     def amplitude_for(
@@ -242,27 +246,23 @@ class LiftedLaw(FrictionLaw):
         return FilmLoad((1 - self.at(amplitude)) * self.contact_pressure / ambient, 0.0)
 
     @si.checked_numbers
-    def friction_in(self, limit: Limit, amplitude: si.MetreArray) -> si.DimensionlessArray:
-        """Relative friction µ′/µ in a limit of the skin at amplitudes (m), shape (n,), at the law's
-        speed: see `FrictionLaw`."""
-        return np.asarray(self._lifted(amplitude, self.speed, limit)[0])
-
-    @si.checked_numbers
     def ridge_friction(self, amplitude: si.MetreArray) -> si.DimensionlessArray:
         """Relative friction µ′/µ of one ridge at the amplitudes that it meets (m), shape (n,)."""
         return self._lifted_ridge(amplitude, self.speed)
 
-    def _lifted(
-        self, amplitude: si.MetreArray, speed: si.MetrePerSecondLike, limit: Limit
+    @si.checked_numbers
+    def over_speeds(
+        self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray, limit: Limit = "own"
     ) -> si.DimensionlessArray:
-        """Relative friction µ′/µ, shape (speeds, amplitudes): the mean over ridges that each meet
-        their own amplitude, or one film that meets the root of their mean square."""
+        """Relative friction µ′/µ at speeds (m/s, from 0) and amplitudes (m), shape (speeds,
+        amplitudes): the mean over ridges that each meet their own amplitude, or one film that meets
+        the root of their mean square."""
         met, shares = self.ridge_swings
         require_tabulated(amplitude, met)
         if limit == "one-gap":
             met, shares = np.sqrt(met**2 @ shares)[None], np.ones(1)
-        at_ridges = amplitude[:, None] * met
-        speeds = np.atleast_1d(speed).tolist()
+        at_ridges = np.ravel(amplitude)[:, None] * met
+        speeds = np.ravel(speed).tolist()
         return np.stack([self._lifted_ridge(at_ridges, pace) @ shares for pace in speeds])
 
     def _lifted_ridge(
@@ -277,14 +277,6 @@ class LiftedLaw(FrictionLaw):
 class FittedLaw(LiftedLaw):
     """The law of "levitation", the default: a film lifts the contact off over a length fitted to
     people, which grows with `speed`, that of sliding."""
-
-    @si.checked_numbers
-    def over_speeds(
-        self, amplitude: si.MetreArray, speed: si.MetrePerSecondArray, limit: Limit = "own"
-    ) -> si.DimensionlessArray:
-        """Relative friction µ′/µ at speeds (m/s, from 0) and amplitudes (m), shape (speeds,
-        amplitudes), in a limit of the skin as `friction_in` has it."""
-        return self._lifted(np.ravel(amplitude), np.ravel(speed), limit)
 
     def _lifted_ridge(
         self, amplitude: si.MetreArray, speed: si.MetrePerSecond
