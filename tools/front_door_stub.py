@@ -55,6 +55,15 @@ def imported_from(module: Any, name: str) -> str:
     return str(module.__name__)
 
 
+def home_of(subject: Any, parameter: str, module: Any) -> Any:
+    """The module in whose names a parameter's annotation is: that of the record that declares it,
+    where the subject is called with the fields of one."""
+    for record in getattr(getattr(subject, "record", None), "__mro__", ()):
+        if parameter in vars(record).get("__annotations__", {}):
+            return sys.modules[record.__module__]
+    return module
+
+
 class _WithoutMarks(ast.NodeTransformer):
     """A type's bounds are not for those who check types."""
 
@@ -96,7 +105,7 @@ class Stub:
         for key, (parameter, text) in parameters.items():
             if parameter.kind is parameter.KEYWORD_ONLY and "*" not in said:
                 said.append("*")
-            plain = self._plain(parameter.annotation, module)
+            plain = self._plain(parameter.annotation, home_of(subject, key, module))
             first, none, _ = plain.partition(" | None")
             widened = f"{first} | {text}{none}" if text else plain
             given = "" if parameter.default is parameter.empty else " = ..."
@@ -116,7 +125,7 @@ class Stub:
         called = subject.__init__ if inspect.isclass(subject) else subject
         if not hasattr(called, "__wrapped__"):
             return {}  # it reads no text
-        hints = typing.get_type_hints(subject, vars(module), include_extras=True)
+        hints = typing.get_type_hints(getattr(subject, "record", subject), include_extras=True)
         given = inspect.signature(subject).parameters
         return {name: (given[name], text_of(hints.get(name))) for name in given}
 

@@ -1,7 +1,6 @@
 """The front door: its names, what importing it costs, and that text does where a number does."""
 
 import ast
-import importlib
 import inspect
 import pkgutil
 import subprocess
@@ -163,9 +162,8 @@ def _hints(name: str) -> tuple[Any, dict[str, Any]]:
     """What is called, and the annotations of its parameters."""
     found = getattr(sf, name)
     called = found.__init__ if inspect.isclass(found) else found
-    module = importlib.import_module(f"squeezefilm.{sf._NAMES[name]}")
     given = inspect.signature(called).parameters
-    hints = typing.get_type_hints(found, vars(module), include_extras=True)
+    hints = typing.get_type_hints(getattr(found, "record", found), include_extras=True)
     return called, {key: hint for key, hint in hints.items() if key in given}
 
 

@@ -48,7 +48,8 @@ def _reading(function: Callable[..., Any], annotated: Any) -> Callable[..., Any]
         if not any(isinstance(value, _TEXTUAL) for value in (*args, *kwargs.values())):
             return function(*args, **kwargs)
         if not readers:
-            hints = typing.get_type_hints(annotated, include_extras=True)
+            own = getattr(annotated, "record", annotated)
+            hints = typing.get_type_hints(own, include_extras=True)
             readers.update((name, _reader(hint)) for name, hint in hints.items())
         try:
             bound = inspect.signature(function).bind(*args, **kwargs)

@@ -34,6 +34,8 @@ def called_with(
             "return": back,
         }
         vars(called)["__signature__"] = fields.replace(return_annotation=back)
+        # By whose own modules its annotations are read.
+        vars(called)["record"] = record
         # So that Python tells of a wrong call by the name of what was called.
         vars(record)["__init__"].__qualname__ = function.__qualname__
         return called

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -24,12 +24,11 @@ from squeezefilm.design.analysis.verdict import (
     why_not_good,
 )
 from squeezefilm.design.analysis.wanted import Wanted, wanted_friction
-from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, FrictionModel
-from squeezefilm.physics.chain.pad_place import FacePlace
-from squeezefilm.physics.chain.prediction import Prediction, predict
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL
+from squeezefilm.physics.chain.prediction import Prediction, WorkingPoint, predict
 from squeezefilm.physics.chain.wanted_voltage import WantedFriction
 from squeezefilm.physics.contact.sharing.pad import FrictionRipple
-from squeezefilm.physics.display import Display, NamedDisplay
+from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.drawn import require_samples
 from squeezefilm.physics.uncertainty.uncertainty import (
     SAMPLES,
@@ -122,21 +121,11 @@ class FrictionAnalysis(Result):
 
 
 @si.checked_numbers
-@dataclass(frozen=True, slots=True, eq=False)
-class FrictionRequest:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class FrictionRequest(WorkingPoint):
     """Arguments of `analyze_friction`."""
 
-    display: NamedDisplay
-    _: KW_ONLY
-    voltage: si.Volt | None = None
-    frequency: si.Hertz | None = None
-    vibration_amplitude: si.Metre | None = None
-    normal_force: si.Newton | None = None
-    surface: str | None = None
-    model: FrictionModel | None = None
     position: si.Metre | None = None
-    speed: si.MetrePerSecond | None = None
-    place: FacePlace | None = None
     ambient_pressure: si.Pascal | None = None
     wanted_friction: WantedFriction | None = None
     samples: int = SAMPLES
@@ -164,19 +153,9 @@ def analyze_friction(asked: FrictionRequest) -> FrictionAnalysis:
         gas = display.gas.at_pressure(asked.ambient_pressure)
         display = dataclasses.replace(display, gas=gas)
     tell("amplitude and load balance")
-    prediction = predict(
-        display,
-        voltage=asked.voltage,
-        frequency=asked.frequency,
-        normal_force=asked.normal_force,
-        surface=asked.surface,
-        vibration_amplitude=asked.vibration_amplitude,
-        model=asked.model,
-        position=asked.position,
-        speed=asked.speed,
-        place=asked.place,
-        pace=Pace(tell=said_with_time_left(tell)),
-    )
+    pace = Pace(tell=said_with_time_left(tell))
+    point = asked.point() | {"display": display}
+    prediction = predict(**point, position=asked.position, pace=pace)
     wanted = (
         None
         if asked.wanted_friction is None

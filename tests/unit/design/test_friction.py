@@ -161,10 +161,10 @@ def test_an_analysis_passes_on_what_was_asked(stator: Display, parts: list[Any])
     )  # fmt: skip
     thin = dataclasses.replace(stator, gas=stator.gas.at_pressure(5e4))
     point = {"frequency": 41e3, "normal_force": 0.3, "surface": "bare", "model": "levitation-2016"}
-    point["place"] = None
+    point |= {"display": thin, "place": None}
     more = {"voltage": 100.0, "vibration_amplitude": None, "position": 1e-3}
     assert parts == [
-        ("predict", (thin,), point | more | {"speed": 0.1, "pace": NO_HURRY}),
+        ("predict", (), point | more | {"speed": 0.1, "pace": NO_HURRY}),
         (
             "wanted_friction", (thin, PREDICTION, 0.6),
             {"samples": 16, "seed": 9, "progress": said},
@@ -198,7 +198,7 @@ def test_what_is_not_asked_for_is_not_computed(stator: Display, parts: list[Any]
         "predict", "model_curves", "friction_map", "interval_or_reason",
         "judged_area", "_ripple", "friction_verdict",
     ]  # fmt: skip
-    assert parts[0][1][0] is stator
+    assert parts[0][2]["display"] is stator
     assert parts[0][2]["vibration_amplitude"] == 2e-6
     assert parts[0][2]["speed"] is None
     assert parts[3][2]["samples"] == 0

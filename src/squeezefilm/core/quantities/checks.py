@@ -13,10 +13,10 @@ refused in another way, stands with `require`.
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import functools
 import inspect
 import math
-import sys
 import types
 import typing
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -28,6 +28,7 @@ import numpy as np
 from squeezefilm.core.errors import InputError, OutOfRangeError
 from squeezefilm.core.quantities.require import bounds_of
 from squeezefilm.core.quantities.rules import Rule, rule_of
+from squeezefilm.core.quantities.units import hints_of
 
 __all__ = ["CLOSED_FORMS", "checked_numbers", "closed_form", "outermost_checked"]
 
@@ -61,32 +62,33 @@ def outermost_checked() -> Iterator[None]:
 class _Arguments:
     """The arguments of a function and their rules, read from its annotations at the first call.
 
-    `more` are further bounds by name; names of annotations are looked up in `module`, without one
-    in the function's own globals.
+    `more` are further bounds by name; annotations are those of the fields of `made`, without one
+    those of the function.
     """
 
     def __init__(
         self,
         function: Callable[..., Any],
         more: Mapping[str, dict[str, float]],
-        module: str | None,
+        made: type[Any] | None,
     ) -> None:
         self.names = list(inspect.signature(function).parameters)
-        self._function, self._more, self._module = function, more, module
+        self._function, self._more, self._made = function, more, made
         if unknown := set(more) - set(self.names):
             raise TypeError(f"{function.__qualname__} has no argument {sorted(unknown)}")
 
     @functools.cached_property
     def rules(self) -> tuple[tuple[int, str, Rule, bool], ...]:
         """Place, name and rule of each argument that is checked; True for those that broadcast."""
-        function, module = self._function, self._module
-        # The result's annotation may be imported for type checking only.
-        taken = types.SimpleNamespace(__annotations__=dict(inspect.get_annotations(function)))
-        taken.__annotations__.pop("return", None)
-        its_own = getattr(inspect.unwrap(function), "__globals__", {})
-        names_there = its_own if module is None else vars(sys.modules[module])
-        rules = []
-        hints = typing.get_type_hints(taken, names_there, include_extras=True)
+        function, rules = self._function, []
+        if self._made is not None:
+            hints = hints_of(self._made)
+        else:
+            # The result's annotation may be imported for type checking only.
+            taken = types.SimpleNamespace(__annotations__=dict(inspect.get_annotations(function)))
+            taken.__annotations__.pop("return", None)
+            names_there = getattr(inspect.unwrap(function), "__globals__", {})
+            hints = typing.get_type_hints(taken, names_there, include_extras=True)
         for place, name in enumerate(self.names):
             if name not in hints:
                 continue
@@ -143,10 +145,10 @@ class _Arguments:
 def _guarded(
     function: Callable[_P, _R],
     more: Mapping[str, dict[str, float]] | None = None,
-    module: str | None = None,
+    made: type[Any] | None = None,
 ) -> Callable[_P, _R]:
     """The function, its arguments checked before and its result after."""
-    arguments = _Arguments(function, more or {}, module)
+    arguments = _Arguments(function, more or {}, made)
     makes = function.__name__ in ("__init__", "__new__")
 
     @functools.wraps(function)
@@ -188,9 +190,10 @@ def checked_numbers(item: _T) -> _T:
     if isinstance(item, type):
         made = typing.cast(Any, item)
         if issubclass(item, tuple):
-            made.__new__ = _guarded(made.__new__, module=item.__module__)
+            made.__new__ = _guarded(made.__new__, made=item)
         else:
-            made.__init__ = _guarded(made.__init__)
+            fields = item if dataclasses.is_dataclass(item) else None
+            made.__init__ = _guarded(made.__init__, made=fields)
         return typing.cast(_T, item)
     return typing.cast(_T, _guarded(item))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 from typing import get_args
 
 from squeezefilm.core import quantities as si
@@ -17,11 +17,8 @@ from squeezefilm.design.analysis.felt import what_survives
 from squeezefilm.design.analysis.sensitivities import Effort
 from squeezefilm.design.analysis.verdict import verdict
 from squeezefilm.design.analysis.wanted import wanted_friction
-from squeezefilm.physics.chain.pad_law import FrictionModel
-from squeezefilm.physics.chain.pad_place import FacePlace
-from squeezefilm.physics.chain.prediction import Prediction, predict
+from squeezefilm.physics.chain.prediction import Prediction, WorkingPoint, predict
 from squeezefilm.physics.chain.wanted_voltage import WantedFriction
-from squeezefilm.physics.display import Display, NamedDisplay
 from squeezefilm.physics.plate.working_mode import PlateTheory
 from squeezefilm.physics.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.physics.uncertainty.drawn import require_samples
@@ -35,21 +32,11 @@ _INTERVAL = 6.0
 
 
 @si.checked_numbers
-@dataclass(frozen=True, slots=True, eq=False)
-class AnalysisRequest:
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class AnalysisRequest(WorkingPoint):
     """Arguments of `analyze`."""
 
-    display: NamedDisplay
-    _: KW_ONLY
-    voltage: si.Volt | None = None
-    frequency: si.Hertz | None = None
-    vibration_amplitude: si.Metre | None = None
-    normal_force: si.Newton | None = None
-    surface: str | None = None
     theory: PlateTheory | None = None
-    model: FrictionModel | None = None
-    speed: si.MetrePerSecond | None = None
-    place: FacePlace | None = None
     strict: bool = False
     samples: int = SAMPLES
     wanted_friction: WantedFriction | None = None
@@ -72,7 +59,7 @@ def analyze(asked: AnalysisRequest) -> Analysis:
     bounds the plate's solve, and the interval is left out where nothing is left for it: what is
     missing is said.
     """
-    display, budget = asked.display, asked.budget
+    budget = asked.budget
     if budget is not None:
         si.require("budget", budget, si.Unit("s"), above=0)
     if asked.sensitivities is not None:
@@ -82,46 +69,28 @@ def analyze(asked: AnalysisRequest) -> Analysis:
     tell = asked.progress or (lambda _: None)
     deadline = Pace(budget).deadline()
     tell("resonance, amplitude and friction")
-    prediction = predict(
-        display,
-        voltage=asked.voltage,
-        frequency=asked.frequency,
-        normal_force=asked.normal_force,
-        surface=asked.surface,
-        vibration_amplitude=asked.vibration_amplitude,
-        theory=asked.theory,
-        model=asked.model,
-        speed=asked.speed,
-        place=asked.place,
-        strict=asked.strict,
-        pace=Pace(None if budget is None else budget / 2, said_with_time_left(tell)),
+    pace = Pace(None if budget is None else budget / 2, said_with_time_left(tell))
+    prediction = predict(**asked.point(), theory=asked.theory, strict=asked.strict, pace=pace)
+    analysis = _what_follows(asked, prediction, tell, deadline)
+    if asked.wanted_friction is None:
+        return analysis
+    tell("the voltage for the friction wanted")
+    wanted = wanted_friction(
+        asked.display,
+        prediction,
+        asked.wanted_friction,
+        samples=asked.samples,
+        strict=False,
+        progress=tell,
     )
-    wanted = None
-    analysis = _what_follows(display, prediction, asked.samples, tell, deadline)
-    if asked.wanted_friction is not None:
-        tell("the voltage for the friction wanted")
-        wanted = wanted_friction(
-            display,
-            prediction,
-            asked.wanted_friction,
-            samples=asked.samples,
-            strict=False,
-            progress=tell,
-        )
-    return dataclasses.replace(
-        analysis, wanted=wanted, effort=asked.sensitivities, whole=asked.whole
-    )
+    return dataclasses.replace(analysis, wanted=wanted)
 
 
 def _what_follows(
-    display: Display,
-    prediction: Prediction,
-    samples: int,
-    tell: SayProgress,
-    deadline: Deadline | None,
+    asked: AnalysisRequest, prediction: Prediction, tell: SayProgress, deadline: Deadline | None
 ) -> Analysis:
     """Analysis of a prediction; what a deadline leaves no room for is left out."""
-    mode = prediction.mode
+    display, samples, mode = asked.display, asked.samples, prediction.mode
     tau = prediction.envelope_time_constant
     tell("friction against amplitude")
     own = friction_curve(prediction, prediction.surface, prediction.model)
@@ -145,6 +114,8 @@ def _what_follows(
         uncertainty=unsure,
         fidelity=table,
         verdict=tuple(verdict(display, prediction, area, own, table, unsure, why_not)),
+        effort=asked.sensitivities,
+        whole=asked.whole,
         notebook=_notebook,
     )
 

@@ -17,6 +17,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.core.kept.store import Kept
+from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.contact.finger.fingertip import rest_friction_factor
 from squeezefilm.physics.display import DECAY_LENGTH, Display
@@ -286,8 +287,8 @@ def _felt_of(
     pad = draw.display.finger.fingerpad
     periods = []
     for speed, row in zip(speeds, friction, strict=True):
-        known = functools.partial(np.interp, xp=knots, fp=row)
-        periods.append(_finest(senses, tau, high, known, Rubbed(base, pad, speed)))
+        table = FrictionTable(knots, np.zeros(1), row[None, :], speed)
+        periods.append(_finest(senses, tau, high, table, Rubbed(base, pad, speed)))
     return periods
 
 

@@ -218,8 +218,8 @@ class Prediction(Result):
 
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
-class PredictionRequest:
-    """Arguments of `predict`."""
+class WorkingPoint:
+    """What every prediction may be asked at; of what is left out says `predict` what it is."""
 
     display: NamedDisplay
     _: KW_ONLY
@@ -228,11 +228,23 @@ class PredictionRequest:
     normal_force: si.Newton | None = None
     surface: str | None = None
     vibration_amplitude: si.Metre | None = None
-    position: si.Metre | None = None
-    theory: PlateTheory | None = None
     model: FrictionModel | None = None
     speed: si.MetrePerSecond | None = None
     place: FacePlace | None = None
+
+    def point(self) -> dict[str, Any]:
+        """The working point alone, as the arguments of `predict`."""
+        names = (field.name for field in dataclasses.fields(WorkingPoint))
+        return {name: getattr(self, name) for name in names}
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class PredictionRequest(WorkingPoint):
+    """Arguments of `predict`."""
+
+    position: si.Metre | None = None
+    theory: PlateTheory | None = None
     strict: bool = False
     pace: Pace = NO_HURRY
 
