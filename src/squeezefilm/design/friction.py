@@ -25,8 +25,8 @@ from squeezefilm.design.analysis.verdict import (
 )
 from squeezefilm.design.analysis.wanted import Wanted, wanted_friction
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL
-from squeezefilm.physics.chain.prediction import Prediction, WorkingPoint, predict
-from squeezefilm.physics.chain.wanted_voltage import WantedFriction
+from squeezefilm.physics.chain.prediction import Prediction, predict
+from squeezefilm.physics.chain.wanted_voltage import WantedFriction, WorkingPoint
 from squeezefilm.physics.contact.sharing.pad import FrictionRipple
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.drawn import require_samples

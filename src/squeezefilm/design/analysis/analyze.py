@@ -17,8 +17,8 @@ from squeezefilm.design.analysis.felt import what_survives
 from squeezefilm.design.analysis.sensitivities import Effort
 from squeezefilm.design.analysis.verdict import verdict
 from squeezefilm.design.analysis.wanted import wanted_friction
-from squeezefilm.physics.chain.prediction import Prediction, WorkingPoint, predict
-from squeezefilm.physics.chain.wanted_voltage import WantedFriction
+from squeezefilm.physics.chain.prediction import Prediction, predict
+from squeezefilm.physics.chain.wanted_voltage import WantedFriction, WorkingPoint
 from squeezefilm.physics.plate.working_mode import PlateTheory
 from squeezefilm.physics.render.resonator.envelope import envelope_bandwidth
 from squeezefilm.physics.uncertainty.drawn import require_samples

@@ -12,7 +12,7 @@ import dataclasses
 import functools
 import math
 import warnings
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -27,7 +27,7 @@ from squeezefilm.physics.chain.area_map import at_best_place
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
 from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, FrictionModel
-from squeezefilm.physics.chain.pad_place import FacePlace, pad_place, place_words
+from squeezefilm.physics.chain.pad_place import pad_place, place_words
 from squeezefilm.physics.chain.touch import (
     FreeVibration,
     Touch,
@@ -36,7 +36,8 @@ from squeezefilm.physics.chain.touch import (
     held_touch,
     touch,
 )
-from squeezefilm.physics.display import Display, NamedDisplay, Surface
+from squeezefilm.physics.chain.wanted_voltage import WorkingPoint
+from squeezefilm.physics.display import Display, Surface
 from squeezefilm.physics.film.validity import FilmValidity, film_validity
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.warming import Warming, warming_of_mode
@@ -214,28 +215,6 @@ class Prediction(Result):
             "warnings": list(self.warnings),
             "objections": list(self.objections),
         }
-
-
-@si.checked_numbers
-@dataclass(frozen=True, slots=True, eq=False)
-class WorkingPoint:
-    """What every prediction may be asked at; of what is left out says `predict` what it is."""
-
-    display: NamedDisplay
-    _: KW_ONLY
-    voltage: si.Volt | None = None
-    frequency: si.Hertz | None = None
-    normal_force: si.Newton | None = None
-    surface: str | None = None
-    vibration_amplitude: si.Metre | None = None
-    model: FrictionModel | None = None
-    speed: si.MetrePerSecond | None = None
-    place: FacePlace | None = None
-
-    def point(self) -> dict[str, Any]:
-        """The working point alone, as the arguments of `predict`."""
-        names = (field.name for field in dataclasses.fields(WorkingPoint))
-        return {name: getattr(self, name) for name in names}
 
 
 @si.checked_numbers

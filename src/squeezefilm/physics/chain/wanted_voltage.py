@@ -1,8 +1,10 @@
-"""The voltage for a wanted friction: the chain of a display from its end to its beginning."""
+"""What the chain of a display is asked: at which working point, and, from its end to its beginning,
+the voltage for a wanted friction."""
 
 from __future__ import annotations
 
-from typing import Annotated, NamedTuple
+from dataclasses import KW_ONLY, dataclass, fields
+from typing import Annotated, Any, NamedTuple
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
@@ -19,6 +21,28 @@ from squeezefilm.physics.plausibility.checks import require_plausible
 
 WantedFriction = Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)]
 """A µ′/µ that is asked for."""
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True, eq=False)
+class WorkingPoint:
+    """What every prediction may be asked at; of what is left out says `predict` what it is."""
+
+    display: NamedDisplay
+    _: KW_ONLY
+    voltage: si.Volt | None = None
+    frequency: si.Hertz | None = None
+    normal_force: si.Newton | None = None
+    surface: str | None = None
+    vibration_amplitude: si.Metre | None = None
+    model: FrictionModel | None = None
+    speed: si.MetrePerSecond | None = None
+    place: FacePlace | None = None
+
+    def point(self) -> dict[str, Any]:
+        """The working point alone, as the arguments of `predict`."""
+        names = (field.name for field in fields(WorkingPoint))
+        return {name: getattr(self, name) for name in names}
 
 
 class WantedVoltage(NamedTuple):
