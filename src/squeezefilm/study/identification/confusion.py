@@ -57,7 +57,8 @@ class ConfusionMatrix:
     @property
     def proportions(self) -> si.DimensionlessArray:
         """Share of each column's answers, shape (answers, stimuli); NaN in an empty column."""
-        return column_proportions(self.counts)
+        totals, empty = self.counts.sum(axis=0), np.full(self.counts.shape, np.nan)
+        return np.asarray(np.divide(self.counts, totals, out=empty, where=totals > 0))
 
     @property
     def percent(self) -> si.FloatArray:
@@ -104,13 +105,6 @@ def whole_counts(counts: ArrayLike) -> si.IntArray:
     return whole
 
 
-def column_proportions(counts: ArrayLike) -> si.FloatArray:
-    """Counts over the sums of their columns, shape (…, answers, stimuli); NaN for an empty one."""
-    given = np.asarray(counts, dtype=float)
-    totals = given.sum(axis=-2, keepdims=True)
-    return np.asarray(np.divide(given, totals, out=np.full_like(given, np.nan), where=totals > 0))
-
-
 def one_per_trial(**columns: ArrayLike) -> tuple[NDArray[Any], ...]:
     """The columns as arrays of shape (trials,). Raises `InputError` where they are of others."""
     arrays = tuple(np.asarray(column) for column in columns.values())
@@ -121,25 +115,6 @@ def one_per_trial(**columns: ArrayLike) -> tuple[NDArray[Any], ...]:
             f"{', '.join(str(array.shape) for array in arrays)}"
         )
     return arrays
-
-
-def goodness_of_fit(
-    counts: si.FloatArray, probabilities: si.FloatArray, freedom: int, *, judged: bool
-) -> tuple[float, float, float]:
-    """G² of a model's answer probabilities against the saturated model, its p value by χ², and the
-    ln likelihood; shapes (…, answers, stimuli). G² and p are NaN unless `judged`, and without
-    degrees of freedom."""
-    some = counts > 0
-    log_p = np.log(np.where(some, probabilities, 1.0))
-    saturated = np.log(np.where(some, column_proportions(counts), 1.0))
-    likelihood = float((counts * log_p).sum())
-    if freedom <= 0 or not judged:
-        return float("nan"), float("nan"), likelihood
-    # Who only counts answers need not wait for it.
-    from scipy.special import chdtrc
-
-    deviance = max(2 * float((counts * (saturated - log_p)).sum()), 0.0)
-    return deviance, float(chdtrc(freedom, deviance)), likelihood
 
 
 def participant_counts(

@@ -8,16 +8,17 @@ is the total sensitivity Δ′.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
-from scipy.special import ndtr
+from scipy.special import chdtrc, ndtr, xlogy
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.confusion import goodness_of_fit, whole_counts
+from squeezefilm.study.identification.confusion import whole_counts
 from squeezefilm.study.identification.proportions import (
     recentred_interval,
     resampled_counts,
@@ -112,10 +113,13 @@ def ordered_sensitivity(
         z = float(stats.norm.isf((1 - level) / 2))
         low, high, method = d_prime - z * error, d_prime + z * error, "Fisher information"
     freedom = (answers - 1) * stimuli - (answers + stimuli - 2)
+    likelihood = float(xlogy(n, _probabilities(criteria, positions)).sum())
+    deviance = p_value = math.nan
     # The trials added are no answers of anybody, and no normal tail describes them.
-    deviance, p_value, likelihood = goodness_of_fit(
-        n, _probabilities(criteria, positions), freedom, judged=not corrected
-    )
+    if freedom > 0 and not corrected:
+        saturated = float(xlogy(n, n / n.sum(axis=1, keepdims=True)).sum())
+        deviance = max(2 * (saturated - likelihood), 0.0)
+        p_value = float(chdtrc(freedom, deviance))
     return OrderedSensitivity(
         positions[0],
         criteria[0],
@@ -154,7 +158,8 @@ def _standard_error(
 ) -> si.FloatArray:
     """Standard error of the d′ of neighbours, from the information of the first of a batch."""
     cuts, steps = criteria.shape[1], positions.shape[1] - 1
-    covariance = np.linalg.inv(_information(criteria, positions, totals)[0])
+    weight = totals[:, None, :] / _probabilities(criteria, positions)
+    covariance = np.linalg.inv(_information(weight, _slopes(criteria, positions))[0])
     to_d = np.zeros((steps, cuts + steps))
     to_d[:, cuts:] = np.eye(steps) - np.eye(steps, k=-1)
     return np.asarray(np.sqrt(np.diag(to_d @ covariance @ to_d.T)))
@@ -197,11 +202,8 @@ def _slopes(criteria: si.FloatArray, positions: si.FloatArray) -> si.FloatArray:
     return out
 
 
-def _information(
-    criteria: si.FloatArray, positions: si.FloatArray, totals: si.FloatArray
-) -> si.FloatArray:
-    slopes = _slopes(criteria, positions)
-    weight = totals[:, None, :] / _probabilities(criteria, positions)
+def _information(weight: si.FloatArray, slopes: si.FloatArray) -> si.FloatArray:
+    """Fisher information, shape (batch, parameters, parameters), of trials over probabilities."""
     return np.asarray(np.einsum("baj,bajp,bajq->bpq", weight, slopes, slopes, optimize=True))
 
 
@@ -230,9 +232,7 @@ def _fit(n: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray, NDArray[np.boo
         slopes = _slopes(c, x)
         p = _probabilities(c, x)
         gradient = np.einsum("baj,bajp->bp", n[active] / p, slopes)
-        information = np.einsum(
-            "baj,bajp,bajq->bpq", totals[active][:, None, :] / p, slopes, slopes, optimize=True
-        )
+        information = _information(totals[active][:, None, :] / p, slopes)
         information += 1e-10 * np.eye(theta.shape[1])
         step = np.linalg.solve(information, gradient[..., None])[..., 0]
         step *= np.minimum(1.0, 2.0 / np.maximum(np.abs(step).max(axis=1, keepdims=True), 1e-300))
