@@ -351,7 +351,8 @@ class RunOptions:
 @called_with(RunOptions)
 def run(asked: RunOptions) -> None:
     """Run a session at the terminal; stop with Ctrl-C, and go on later where it stopped."""
-    from squeezefilm.study.report.terminal import ask_acknowledgement, run_study
+    from squeezefilm.study.conduct.terminal_run import ask_acknowledgement
+    from squeezefilm.study.report.terminal import run_study
 
     ended = run_study(
         asked.design,

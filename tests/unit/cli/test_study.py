@@ -17,9 +17,9 @@ from squeezefilm.cli import study_file
 from squeezefilm.cli.study import study
 from squeezefilm.core.presets import study_names
 from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.study.conduct.terminal_run import ask_acknowledgement
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.report.terminal import ask_acknowledgement
 
 from ..study.scripted import gratings
 

@@ -40,29 +40,38 @@ from squeezefilm.study.record.deletion import remove_rows
 from squeezefilm.study.record.store import StudyStore, utc_now
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+def ask_acknowledgement(statement: str, read: Callable[[str], str] = input) -> bool:
+    """Show the exposure to airborne ultrasound and ask whether it is acknowledged.
+
+    Raises `InputError` where nobody can be asked.
+    """
+    print(f"\n{statement}\nPeople and animals nearby are exposed too; children may hear it.")
+    try:
+        return read("Type 'yes' to acknowledge it: ").strip().lower() == "yes"
+    except EOFError as error:
+        raise InputError(
+            "nobody is there to acknowledge the exposure; give acknowledge_ultrasound"
+        ) from error
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Desk:
-    """Ways to speak to people where a session is held.
+    """Where a session is held: on which device, in which conditions, and who is told what.
 
     Attributes:
-        examiner: asks the participant.
+        drive: "none", "twin" (behind a port, in real time) or "serial:PORT", whose pickup gives
+            `amplitude_per_pickup` (m/V; None if not calibrated).
+        conditions: TOML file of `SessionConditions`; `consent` counts beside what it says.
         acknowledge: is shown the statement on airborne ultrasound, and says whether it may go on.
         tell: is told who was enrolled, and what the experimenter has to know at the end.
-        by_hand: is told which surface to put under the finger where no device plays; the
-            participant must not read it. Without one nobody is told.
-        progress: shows what goes on while it is open; it is closed whenever anybody is asked.
-        mark: is told what happens when, see `conduct`.
-        placed: returns when a surface that is presented by hand is in place, see `conduct`; without
-            one the question comes, and the response time runs, as soon as the surface is asked for.
     """
 
-    examiner: Examiner
-    acknowledge: Callable[[str], bool]
+    drive: str = "none"
+    amplitude_per_pickup: si.MetrePerVolt | None = None
+    conditions: Path | None = None
+    consent: bool = False
+    acknowledge: Callable[[str], bool] = ask_acknowledgement
     tell: Callable[[str], None] = print
-    progress: Callable[[], AbstractContextManager[SayProgress]] | None = None
-    by_hand: Callable[[str], None] | None = None
-    mark: Mark = lambda *_: None
-    placed: Callable[[], None] | None = None
 
 
 def open_study(
@@ -103,26 +112,32 @@ def open_study(
     return store
 
 
+Mark = Callable[[str, si.Second | None], None]
+"""Function that is told what happened and when (s, the run's clock; now, without a moment)."""
+
+
 def run_session(
     store: StudyStore,
     participant: str | None,
     desk: Desk,
+    examiner: Examiner,
     *,
-    drive: str = "none",
-    amplitude_per_pickup: si.MetrePerVolt | None = None,
-    conditions: Path | None = None,
-    consent: bool = False,
+    progress: Callable[[], AbstractContextManager[SayProgress]] | None = None,
+    by_hand: Callable[[str], None] | None = None,
+    mark: Mark = lambda *_: None,
+    placed: Callable[[], None] | None = None,
 ) -> str:
     """Run a session on the display that the participant's next trial needs. Returns how it ended.
 
-    `drive` is "none", "twin" (behind a port, in real time) or "serial:PORT", whose pickup gives
-    `amplitude_per_pickup` (m/V; None if not calibrated). Without a participant somebody new is
-    enrolled and named by `desk.tell`; not so if the session cannot start.
-    `conditions` is a TOML file of `SessionConditions`; `consent` counts beside what it says. Raises
-    what `begin_session` and `conduct` raise.
+    Without a participant somebody new is enrolled and named by `desk.tell`; not so if the session
+    cannot start. `progress` shows what goes on while it is open; it is closed whenever anybody is
+    asked. Where no device plays `by_hand` is told which surface to put under the finger,
+    which the participant must not read, and `placed` returns when it is there: without one the
+    question comes, and the response time runs, as soon as the surface is asked for. `mark` is told
+    what happens when, see `conduct`. Raises what `begin_session` and `conduct` raise.
     """
-    sitting = _sitting(conditions, consent)
-    shown = desk.progress or (lambda: contextlib.nullcontext(lambda _: None))
+    sitting = _sitting(desk.conditions, desk.consent)
+    shown = progress or (lambda: contextlib.nullcontext(lambda _: None))
     who = participant or store.enrol()
     with contextlib.ExitStack() as closing:
         try:
@@ -130,9 +145,7 @@ def run_session(
             if display is None:
                 return f"participant {who} has answered every trial"
             with shown() as step:
-                device, exposed = _device(
-                    drive, store, display, amplitude_per_pickup, step, closing, desk.by_hand
-                )
+                device, exposed = _device(desk, store, display, step, closing, by_hand)
             acknowledged = exposed is not None and desk.acknowledge(exposed.statement)
             with shown() as step:
                 if exposed is not None:
@@ -150,8 +163,8 @@ def run_session(
             desk.tell(again)
         run = StudyRun(store, session)
         try:
-            placed = desk.placed if drive == "none" else None
-            count = conduct(run, device, desk.examiner, mark=desk.mark, placed=placed)
+            placed = placed if desk.drive == "none" else None
+            count = conduct(run, device, examiner, mark=mark, placed=placed)
         except KeyboardInterrupt:
             # Stopped by a person: what was answered up to here deserves its verification too.
             end_session(store, session, device)
@@ -205,15 +218,14 @@ def _free_path(display: Display, file: Path) -> str:
 
 
 def _device(
-    drive: str,
+    desk: Desk,
     store: StudyStore,
     display: str,
-    amplitude_per_pickup: si.MetrePerVolt | None,
     tell: SayProgress,
     closing: contextlib.ExitStack,
     by_hand: Callable[[str], None] | None,
 ) -> tuple[StudyDevice, Exposure | None]:
-    if drive == "none":
+    if desk.drive == "none":
         return (NoDevice() if by_hand is None else ByHand(by_hand)), None
     # Plates, film and loop take a second to import, which a study by hand need not wait for.
     from squeezefilm.instruments.twin.hand import EXPLORING
@@ -221,22 +233,19 @@ def _device(
     from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive
     from squeezefilm.study.conduct.playing_process import WorkerOrders
 
-    require_study_drive(drive)
+    require_study_drive(desk.drive)
     loaded = load_display(display)
     duration = expected_duration(store.design) / len(store.design.displays)
     exposed = exposure(loaded, duration, progress=tell)
     stroke = EXPLORING
-    if drive == "twin" and store.design.exploring == "free":
+    if desk.drive == "twin" and store.design.exploring == "free":
         folder = closing.enter_context(tempfile.TemporaryDirectory())
         stroke = _free_path(loaded, Path(folder) / "hand.csv")
+    pickup = desk.amplitude_per_pickup
     orders = WorkerOrders(
-        display, drive, store.traces, amplitude_per_pickup=amplitude_per_pickup, stroke=stroke
+        display, desk.drive, store.traces, amplitude_per_pickup=pickup, stroke=stroke
     )
     return closing.enter_context(SessionDevice(orders)), exposed
-
-
-Mark = Callable[[str, si.Second | None], None]
-"""Function that is told what happened and when (s, the run's clock; now, without a moment)."""
 
 
 class Examiner(Protocol):

@@ -245,23 +245,9 @@ class TerminalExaminer:
             self._write("Answer with a number above 0.")
 
 
-def ask_acknowledgement(statement: str, read: Callable[[str], str] = input) -> bool:
-    """Show the exposure to airborne ultrasound and ask whether it is acknowledged.
-
-    Raises `InputError` where nobody can be asked.
-    """
-    print(f"\n{statement}\nPeople and animals nearby are exposed too; children may hear it.")
-    try:
-        return read("Type 'yes' to acknowledge it: ").strip().lower() == "yes"
-    except EOFError as error:
-        raise InputError(
-            "nobody is there to acknowledge the exposure; give acknowledge_ultrasound"
-        ) from error
-
-
 @si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
-class SessionRequest:
+class SessionRequest(Desk):
     """Arguments of `run_study`."""
 
     design: str | Path
@@ -269,15 +255,9 @@ class SessionRequest:
     participant: str | None = None
     _: KW_ONLY
     examiner: Examiner | None = None
-    drive: str = "none"
-    amplitude_per_pickup: si.MetrePerVolt | None = None
-    conditions: Path | None = None
-    consent: bool = False
-    acknowledge: Callable[[str], bool] = ask_acknowledgement
     seed: int | None = None
     station: int | None = None
     stations: int | None = None
-    tell: Callable[[str], None] = print
     progress: Callable[[], AbstractContextManager[Callable[[str], None]]] | None = None
     by_hand: str = "terminal"
     lsl: bool | str = False
@@ -308,19 +288,12 @@ def run_study(asked: SessionRequest) -> str:
         return run_session(
             found,
             asked.participant,
-            Desk(
-                examiner,
-                asked.acknowledge,
-                asked.tell,
-                asked.progress,
-                _told_by_hand(asked) if asked.drive == "none" else None,
-                mark=(lambda *_: None) if markers is None else markers.push,
-                placed=placed,
-            ),
-            drive=asked.drive,
-            amplitude_per_pickup=asked.amplitude_per_pickup,
-            conditions=asked.conditions,
-            consent=asked.consent,
+            asked,
+            examiner,
+            progress=asked.progress,
+            by_hand=_told_by_hand(asked) if asked.drive == "none" else None,
+            mark=(lambda *_: None) if markers is None else markers.push,
+            placed=placed,
         )
 
 

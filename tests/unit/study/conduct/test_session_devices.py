@@ -78,8 +78,8 @@ class Room:
     def held(self, store: StudyStore, who: str | None, script: Script, **more: Any) -> str:
         """A session; how it ended."""
         how: dict[str, Any] = {"consent": True, **more}
-        desk = Desk(script, self.acknowledge, self.told.append, self.progress)
-        return run_session(store, who, desk, **how)
+        desk = Desk(acknowledge=self.acknowledge, tell=self.told.append, **how)
+        return run_session(store, who, desk, script, progress=self.progress)
 
 
 @pytest.fixture

@@ -43,7 +43,8 @@ def test_what_goes_on_is_shown_only_while_nobody_is_asked(tmp_path: Path) -> Non
         assert shown[0] == 0
 
     with StudyStore.create(tmp_path / "a.sqlite", gratings(), 7) as store:
-        run_session(store, None, Desk(Person(), lambda _: True, tell, progress), consent=True)
+        desk = Desk(tell=tell, consent=True)
+        run_session(store, None, desk, Person(), progress=progress)
     assert asked[0] == 6
     assert told[0] == 1
 

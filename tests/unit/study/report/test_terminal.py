@@ -13,6 +13,7 @@ from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation
+from squeezefilm.study.conduct.terminal_run import ask_acknowledgement
 from squeezefilm.study.design.plan import StudyPlan
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.trials import Phase, Trial
@@ -20,7 +21,6 @@ from squeezefilm.study.record.deletion import Deletion
 from squeezefilm.study.record.merge import Merge
 from squeezefilm.study.report.terminal import (
     TerminalExaminer,
-    ask_acknowledgement,
     show_deletion,
     show_merge,
     show_plan,

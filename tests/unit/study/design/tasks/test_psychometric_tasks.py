@@ -226,8 +226,7 @@ def test_a_session_is_held_analysed_and_exported(name: str, tmp_path: Path) -> N
         short = short.replace(f"repetitions = {{ value = {times}", "repetitions = { value = 1")
     file.write_text(short, "utf-8")
     with open_study(tmp_path / "own.sqlite", file, 1) as store:
-        desk = Desk(Script(), lambda _: True, lambda _: None)
-        said = run_session(store, None, desk, consent=True)
+        said = run_session(store, None, Desk(tell=lambda _: None, consent=True), Script())
         assert "trials on biet2008-plate recorded" in said
         (found,) = analyze_study(store).values()
         schedule = plan_study(load_design(file)).schedules[0]

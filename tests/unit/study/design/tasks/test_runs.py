@@ -89,7 +89,7 @@ def held(design: StudyDesign, people: list[Person], file: Path) -> TaskAnalysis:
     """A study of people who sit down one after the other, analysed from its file."""
     with StudyStore.create(file, design, 1) as store:
         for person in people:
-            run_session(store, None, Desk(person, lambda _: True, lambda _: None), consent=True)
+            run_session(store, None, Desk(tell=lambda _: None, consent=True), person)
         export_study(store, "csv")
         (found,) = analyze_study(store).values()
     assert isinstance(found, TaskAnalysis)
