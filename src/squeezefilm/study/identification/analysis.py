@@ -48,13 +48,38 @@ class StimulusCorrect:
     high: si.Dimensionless
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class IdentificationAnalysis(Result):
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class DisplayAnalysis(Result):
+    """What analyses of all tasks have, on one display.
+
+    Attributes:
+        name: of the study and the display.
+        origin: whose answers these are, e.g. "simulated" or "measured"; every figure repeats it.
+        response_times: by condition; empty without times.
+        exploration: quantity (with unit in its key) → means by condition.
+        notes: what could not be computed, or needs care, and why.
+        seed: of all resampling.
+        course: response times, drift and attention; None of trials without a design.
+        methods: the methods section of a paper; empty likewise.
+        screening: who does the task, by the design's rule; None likewise.
+    """
+
+    name: str
+    origin: str
+    response_times: tuple[ResponseTimeSummary, ...]
+    exploration: Mapping[str, tuple[ConditionMean, ...]]
+    notes: tuple[str, ...]
+    seed: int
+    course: Course | None = None
+    methods: str = ""
+    screening: Screening | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class IdentificationAnalysis(DisplayAnalysis):
     """Analysis of an identification study.
 
     Attributes:
-        name: of the study.
-        origin: whose answers these are, e.g. "simulated" or "measured"; every figure repeats it.
         matrix: all trials, rows answers, columns stimuli.
         counts: every participant's, shape (participants, k, k).
         intervals: of the proportion correct: Wilson's (trials taken as independent), and by
@@ -64,17 +89,8 @@ class IdentificationAnalysis(Result):
         permutation_p: test against answers unrelated to stimuli, preferences kept.
         information: transfer of the answers, with its interval over participants.
         sensitivity: d′ of stimuli in the order of the labels; None where it has none.
-        response_times: empty without response times.
-        exploration: quantity (with unit in its key) → means by stimulus.
-        notes: what could not be computed, and why.
-        seed: of all resampling.
-        course: response times, drift and attention; None of trials without a design.
-        methods: the methods section; empty likewise.
-        screening: who does the task; None likewise.
     """
 
-    name: str
-    origin: str
     matrix: ConfusionMatrix
     counts: si.IntArray
     intervals: tuple[Estimate, ...]
@@ -83,13 +99,6 @@ class IdentificationAnalysis(Result):
     permutation_p: si.Dimensionless
     information: InformationTransfer
     sensitivity: OrderedSensitivity | None
-    response_times: tuple[ResponseTimeSummary, ...]
-    exploration: Mapping[str, tuple[ConditionMean, ...]]
-    notes: tuple[str, ...]
-    seed: int
-    course: Course | None = None
-    methods: str = ""
-    screening: Screening | None = None
     _shown: ClassVar[str] = "name origin participants proportion_correct"
 
     @property

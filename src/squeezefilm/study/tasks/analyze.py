@@ -206,9 +206,8 @@ def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
             f"{found.measure}: an end of its interval is where the prior ends, and more trials "
             "near the threshold are wanted"
         )
-    own = {field.name: getattr(found, field.name) for field in dataclasses.fields(found)}
     return TaskAnalysis(
-        **own | {"notes": tuple(notes)},
+        **vars(found) | {"notes": tuple(notes)},
         name=how.name,
         origin=answers.origin,
         task=design.task,
@@ -225,7 +224,6 @@ def _judgements(answers: Answers, how: _How) -> TaskAnalysis:
         },
         assumed=how.assumed,
         methods=methods_text(answers, display),
-        screening=None,
         seed=seed,
     )
 

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.results import Result, stamp
 from squeezefilm.physics.perception.stimuli import Varied
 from squeezefilm.study.design.tasks.task import JUDGED, Task
-from squeezefilm.study.identification.condition_means import (
-    ConditionMean,
-    Course,
-    ResponseTimeSummary,
-)
-from squeezefilm.study.identification.screening import Screening
+from squeezefilm.study.identification.analysis import DisplayAnalysis
 from squeezefilm.study.psychometric.estimate import Estimate
 
 EQUALITY = "point of equality"
@@ -72,62 +67,55 @@ class ConditionFinding:
     magnitude: Estimate | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class TaskAnalysis(Result):
-    """Analysis of a two-interval, same-different or magnitude task on one display.
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """What a task measures, of each person, of the population and by condition.
 
     Attributes:
-        name: of the study and the display.
-        origin: whose answers these are; every figure repeats it.
-        task, judged: of the design.
         measure: what `persons` and `pooled` are: "Weber fraction", "threshold" (SI), "exponent",
             or "sensitivity d′" of surfaces without an amount to compare.
-        people: pseudonyms.
-        trials: main trials.
-        standard: the reference's value of what is judged (SI); NaN without a reference.
         persons: of each person.
         pooled: of the population, see `population` and `scales`.
         spread: standard deviation over people of the logarithm of `PARTS`, or of the exponent.
         conditions: by comparison or stimulus.
+        notes: what could not be computed, or needs care, and why.
         more: other numbers by name, such as the bias for an interval.
         functions: each person's, of Weber fractions.
-        is_adaptive: whether series chose the comparisons: `conditions` are then eighths of the
-            trials by their difference, which is their value.
-        response_times: by condition; empty without times.
-        course: drift and attention.
-        exploration: quantity (with unit in its key) → means by condition.
-        assumed: what simulated answers rest on; empty for people.
-        notes: what could not be computed, or needs care, and why.
-        methods: the methods section of a paper.
-        screening: who does the task, by the design's rule.
         robust: `pooled` as people who do not do the task hardly move it.
-        seed: of resampling.
     """
 
-    name: str
-    origin: str
-    task: Task
-    judged: Varied
     measure: str
-    people: tuple[str, ...]
-    trials: int
-    standard: float
     persons: tuple[PersonEstimate, ...]
     pooled: Estimate | None
     spread: Estimate | None
     conditions: tuple[ConditionFinding, ...]
-    more: Mapping[str, Estimate]
-    functions: Mapping[str, PersonFunction]
-    is_adaptive: bool
-    response_times: tuple[ResponseTimeSummary, ...]
-    course: Course
-    exploration: Mapping[str, tuple[ConditionMean, ...]]
-    assumed: tuple[str, ...]
     notes: tuple[str, ...]
-    methods: str
-    screening: Screening | None
-    robust: Estimate | None
-    seed: int
+    more: Mapping[str, Estimate] = field(default_factory=dict)
+    functions: Mapping[str, PersonFunction] = field(default_factory=dict)
+    robust: Estimate | None = None
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class TaskAnalysis(Measured, DisplayAnalysis):
+    """Analysis of a two-interval, same-different or magnitude task on one display.
+
+    Attributes:
+        task, judged: of the design.
+        people: pseudonyms.
+        trials: main trials.
+        standard: the reference's value of what is judged (SI); NaN without a reference.
+        is_adaptive: whether series chose the comparisons: `conditions` are then eighths of the
+            trials by their difference, which is their value.
+        assumed: what simulated answers rest on; empty for people.
+    """
+
+    task: Task
+    judged: Varied
+    people: tuple[str, ...]
+    trials: int
+    standard: float
+    is_adaptive: bool
+    assumed: tuple[str, ...]
     _shown: ClassVar[str] = "name origin measure participants trials"
 
     @property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from scipy.stats import mstats
@@ -18,9 +18,8 @@ from squeezefilm.study.tasks.by_condition import (
     unlike_persons,
 )
 from squeezefilm.study.tasks.findings import (
-    ConditionFinding,
+    Measured,
     PersonEstimate,
-    PersonFunction,
     through,
 )
 from squeezefilm.study.tasks.scales import (
@@ -30,24 +29,9 @@ from squeezefilm.study.tasks.scales import (
     rank_exponents,
     strengths,
 )
-from squeezefilm.study.tasks.thresholds import of_settings, on_grid, settings_of
+from squeezefilm.study.tasks.thresholds import on_grid, settings_of
 
 Tell = Callable[[str], None]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Measured:
-    """Results of a task's own analysis, as `TaskAnalysis` has them."""
-
-    measure: str
-    persons: tuple[PersonEstimate, ...]
-    pooled: Estimate | None
-    spread: Estimate | None
-    conditions: tuple[ConditionFinding, ...]
-    more: dict[str, Estimate]
-    functions: dict[str, PersonFunction]
-    notes: list[str]
-    robust: Estimate | None = None
 
 
 def measured(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
@@ -60,7 +44,7 @@ def measured(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
     if task.ranks:
         analysis = _ranked
     elif any(series.in_runs for series in main.design.adaptive):
-        analysis = _set
+        analysis = settings_of
     found = analysis(main, level, seed, tell)
     return replace(found, robust=found.robust or _trimmed(found.persons, level))
 
@@ -104,9 +88,9 @@ def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> Measur
         pooled,
         spread,
         () if main.design.described.ranks else condition_findings(main, level, seed),
+        tuple(notes),
         more_numbers(main, people.bias, level),
         people.functions(level),
-        notes,
         robust,
     )
 
@@ -118,24 +102,15 @@ def _ranked(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
     design = main.design
     if design.on_a_scale and design.described.model is not None:
         found = _by_difference(main, level, seed, tell)
-        return replace(found, conditions=conditions, notes=[*found.notes, *notes])
+        return replace(found, conditions=conditions, notes=(*found.notes, *notes))
     if design.on_a_scale and not design.in_amounts:
         persons = rank_exponents(main, level)
         pooled, spread = of_exponents(persons, level)
-        return Measured("exponent", tuple(persons), pooled, spread, conditions, {}, {}, notes)
+        return Measured("exponent", tuple(persons), pooled, spread, conditions, tuple(notes))
     notes.append(
         f"the surfaces have no amount of {design.judged} with which strengths grow by a power"
     )
-    return Measured("strength", (), None, None, conditions, {}, {}, notes)
-
-
-def _set(main: Answers, level: float, _seed: int, tell: Tell) -> Measured:
-    tell("runs of each person")
-    measure, persons, conditions, more, notes = settings_of(main, level)
-    pooled = of_settings(measure, main.design.in_amounts, persons, level)
-    if len(persons) == 1:
-        notes.append("one participant: the interval is over their runs, and says nothing of others")
-    return Measured(measure, tuple(persons), pooled, None, conditions, more, {}, notes)
+    return Measured("strength", (), None, None, conditions, tuple(notes))
 
 
 def _unlike(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
@@ -147,7 +122,7 @@ def _unlike(main: Answers, level: float, seed: int, tell: Tell) -> Measured:
         "fraction: d′ is of whole surfaces"
     ]
     more = more_numbers(main, [], level)
-    return Measured(MEASURE, tuple(persons), pooled, None, conditions, more, {}, notes)
+    return Measured(MEASURE, tuple(persons), pooled, None, conditions, tuple(notes), more)
 
 
 def _magnitudes(main: Answers, level: float, _seed: int, tell: Tell) -> Measured:
@@ -162,4 +137,4 @@ def _magnitudes(main: Answers, level: float, _seed: int, tell: Tell) -> Measured
         )
     if len(persons) == 1:
         notes.append("one line: the interval is of it, and not of a population")
-    return Measured("exponent", tuple(persons), pooled, spread, conditions, {}, {}, notes)
+    return Measured("exponent", tuple(persons), pooled, spread, conditions, tuple(notes))

@@ -28,6 +28,7 @@ from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import (
     EQUALITY,
     ConditionFinding,
+    Measured,
     PersonEstimate,
     PersonFunction,
     through,
@@ -184,16 +185,17 @@ def endings(main: Answers, person: int) -> list[Ending]:
 
 
 def settings_of(
-    main: Answers, level: si.Dimensionless
-) -> tuple[str, list[PersonEstimate], tuple[ConditionFinding, ...], dict[str, Estimate], list[str]]:
-    """Name of what is measured; each person's mean with Student's interval over their runs; the
-    mean over people of runs from above and from below; the difference that is just told, by the
-    scatter of runs; and what needs care.
+    main: Answers, level: si.Dimensionless, _seed: int, tell: Callable[[str], None]
+) -> Measured:
+    """Results of runs: each person's mean with Student's interval over their runs; the mean over
+    people of runs from above and from below; and the difference that is just told, by the scatter
+    of runs.
 
     Against a flat surface it is the threshold, an amount; else the point of equality, a difference
     from the reference in its parts. Means are of what the design takes differences of: amounts, or
     their logarithms. Nobody with fewer than two runs has a value.
     """
+    tell("runs of each person")
     in_amounts = main.design.in_amounts
     measure = "threshold" if main.design.described.reference == "flat" else EQUALITY
     # Of logarithms half and twice the reference are as far from it.
@@ -230,7 +232,10 @@ def settings_of(
         more["difference just told, by the scatter"] = just_told
     lacking = people.size - len(persons)
     notes = [f"{lacking} of {people.size} people ended fewer than two runs"] if lacking else []
-    return measure, persons, conditions, more, notes
+    if len(persons) == 1:
+        notes.append("one participant: the interval is over their runs, and says nothing of others")
+    pooled = of_settings(measure, in_amounts, persons, level)
+    return Measured(measure, tuple(persons), pooled, None, conditions, tuple(notes), more)
 
 
 def _own(sides: list[si.FloatArray], level: float) -> tuple[Estimate, float]:

@@ -16,9 +16,9 @@ def test_runs_from_above_and_from_below_keep_their_names(monkeypatch: pytest.Mon
     monkeypatch.setattr(thresholds, "endings", lambda main, person: runs)
     random = np.random.default_rng(1)
     main = answered(EVERY["adjustment"], [Person(0.1, 1.0, 0.0)] * 2, random).main(0)
-    _, persons, conditions, _, notes = thresholds.settings_of(main, 0.95)
-    means = {found.name: found.magnitude.value for found in conditions if found.magnitude}
+    found = thresholds.settings_of(main, 0.95, 0, lambda _: None)
+    means = {one.name: one.magnitude.value for one in found.conditions if one.magnitude}
     # Means of logarithms: a half, and twice and eight times make four.
     assert means == pytest.approx({"from above": -0.5, "from below": 3.0})
-    assert [person.estimate.value for person in persons] == pytest.approx([2**0.5 - 1] * 2)
-    assert notes == []
+    assert [person.estimate.value for person in found.persons] == pytest.approx([2**0.5 - 1] * 2)
+    assert found.notes == ()
