@@ -222,7 +222,7 @@ class StudyArea:
 
     async def _measured(self, sitting: Sitting) -> StudyDevice:
         display = await self.thread.do(Studies.display_of_sitting, sitting.id)
-        traces = await self.thread.do(Studies.traces, sitting.study)
+        traces = await self.thread.do(lambda studies: studies.store(sitting.study).traces)
         return await self._devices.measure(sitting.id, sitting.device, display, traces)
 
     async def _measured_last(self, sitting: Sitting) -> tuple[StudyDevice, str]:
@@ -240,7 +240,8 @@ class StudyArea:
 
     async def _release_ended(self) -> None:
         for held in self._devices.holders():
-            if await self.thread.do(Studies.has_ended, held):
+            is_open = await self.thread.do(lambda studies, id: studies.sittings.is_open(id), held)
+            if not is_open:
                 await self._devices.release(held)
 
     async def _where(self, sitting: Name) -> Answer:
@@ -281,7 +282,7 @@ class StudyArea:
             return {"type": "waiting" if how == "by hand" else "shown", "place": place}
         surface = await self.thread.do(Studies.surface, sitting, token, place)
         display = await self.thread.do(Studies.display_of_sitting, sitting)
-        traces = await self.thread.do(Studies.traces, begun.study)
+        traces = await self.thread.do(lambda studies: studies.store(begun.study).traces)
         self._pages[sitting] = PAGE.get()
         await self._devices.present(sitting, begun.device, display, traces, surface, token, place)
         return {"type": "playing", "place": place}

@@ -16,7 +16,6 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.conduct.sessions import SessionConditions
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.record.sittings import Sitting
 
 
 class SurfacesByHand:
@@ -101,14 +100,4 @@ def described(design: StudyDesign) -> dict[str, Any]:
         "question": design.spoken_question,
         "note": design.note,
         "design": design.name,
-    }
-
-
-def shown_sitting(sitting: Sitting) -> dict[str, Any]:
-    """A sitting, without what was consented to."""
-    return {
-        "id": sitting.id,
-        "participant": sitting.participant,
-        "device": sitting.device,
-        "begun": sitting.session is not None,
     }

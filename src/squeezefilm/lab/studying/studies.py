@@ -21,7 +21,6 @@ from squeezefilm.lab.studying.sittings import (
     SurfacesByHand,
     conditions_of,
     described,
-    shown_sitting,
 )
 from squeezefilm.lab.wire import FileName, Name, Request, Seed
 from squeezefilm.physics.perception.stimuli import Stimulus
@@ -131,7 +130,10 @@ class Studies:
             ],
             "sittings": [
                 {
-                    **shown_sitting(held),
+                    "id": held.id,
+                    "participant": held.participant,
+                    "device": held.device,
+                    "begun": held.session is not None,
                     "begun_again": why_begun_again(store, held.session) if held.session else "",
                     **self.by_hand.status(held.id),
                 }
@@ -174,10 +176,6 @@ class Studies:
         if sitting.session is not None:
             return str(self.run(sitting).session["display"])
         return self.display_of(sitting.study, sitting.participant)
-
-    def has_ended(self, id: str) -> bool:
-        """True where a sitting has ended, or is not known any more."""
-        return not self.sittings.is_open(id)
 
     def where(self, id: str) -> dict[str, Any]:
         """Message of what the participant's page shows now; nothing in it gives an answer away."""
@@ -301,10 +299,6 @@ class Studies:
             return False
         run = self.run(sitting)
         return not run.recorded(token) and isinstance(run.presented(token).surfaces[0], Stimulus)
-
-    def traces(self, name: str) -> Path:
-        """A study's folder of traces."""
-        return self.store(name).traces
 
     def respond(self, id: str, token: str, response: Response) -> dict[str, Any]:
         """Record an answer; it is on the disk when this returns."""
