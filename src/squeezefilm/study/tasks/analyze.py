@@ -27,9 +27,8 @@ from squeezefilm.study.identification.screening import Screening, judged_people,
 from squeezefilm.study.record.answers import Answers, recorded_answers
 from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.record.store import StudyStore
-from squeezefilm.study.tasks.by_condition import comparisons
 from squeezefilm.study.tasks.findings import TaskAnalysis
-from squeezefilm.study.tasks.measures import measured
+from squeezefilm.study.tasks.measures import comparisons, measured
 from squeezefilm.study.tasks.methods import methods_text
 from squeezefilm.study.tasks.scales import require_magnitudes
 

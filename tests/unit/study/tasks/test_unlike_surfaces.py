@@ -11,7 +11,7 @@ from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.simulated.planned_precision import person_values
 from squeezefilm.study.tasks.analyze import analyze_answers
-from squeezefilm.study.tasks.by_condition import MEASURE, condition_findings
+from squeezefilm.study.tasks.measures import MEASURE, condition_findings
 
 TRUE = {"bars": 1.0, "checks": 3.0}
 CRITERION = 1.4

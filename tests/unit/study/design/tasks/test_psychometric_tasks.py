@@ -26,8 +26,8 @@ from squeezefilm.study.report.page import write_study
 from squeezefilm.study.simulated.planned_power import pair_scores
 from squeezefilm.study.simulated.planned_precision import person_values
 from squeezefilm.study.tasks.analyze import analyze_answers, analyze_study
-from squeezefilm.study.tasks.by_condition import comparisons
 from squeezefilm.study.tasks.findings import TaskAnalysis
+from squeezefilm.study.tasks.measures import comparisons
 from squeezefilm.study.tasks.thresholds import on_grid
 
 PRESETS = (
