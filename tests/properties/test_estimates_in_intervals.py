@@ -11,14 +11,13 @@ from hypothesis import strategies as st
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Estimate, inverse_of
 from squeezefilm.study.identification.confusion import ConfusionMatrix
-from squeezefilm.study.identification.information import information_transfer
 from squeezefilm.study.identification.proportions import (
     METHODS,
     participant_interval,
     proportion_interval,
     recentred_interval,
 )
-from squeezefilm.study.identification.sensitivity import ordered_sensitivity
+from squeezefilm.study.identification.sensitivity import information_transfer, ordered_sensitivity
 from squeezefilm.study.psychometric.discrimination import sensitivity
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.tasks.population import Population

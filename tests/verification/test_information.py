@@ -20,11 +20,11 @@ from tests.known_observers import (
 )
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.information import information_transfer, jackknife
 from squeezefilm.study.identification.proportions import (
     recentred_interval,
     resampled_counts,
 )
+from squeezefilm.study.identification.sensitivity import information_transfer, jackknife
 
 TABLES = arrays(np.int64, (4, 3), elements=st.integers(0, 9)).filter(
     lambda n: bool(np.all(n.sum(axis=0) > 1))

@@ -21,18 +21,19 @@ from squeezefilm.study.identification.condition_means import (
     response_time_summary,
 )
 from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
-from squeezefilm.study.identification.information import (
-    METHOD,
-    InformationTransfer,
-    information_transfer,
-)
 from squeezefilm.study.identification.proportions import (
     participant_interval,
     permutation_test,
     proportion_interval,
 )
 from squeezefilm.study.identification.screening import Screening
-from squeezefilm.study.identification.sensitivity import OrderedSensitivity, ordered_sensitivity
+from squeezefilm.study.identification.sensitivity import (
+    METHOD,
+    InformationTransfer,
+    OrderedSensitivity,
+    information_transfer,
+    ordered_sensitivity,
+)
 from squeezefilm.study.psychometric.estimate import Estimate
 
 

@@ -1,28 +1,37 @@
-"""d′ of ordered stimuli from a confusion matrix: positions and criteria on one decision axis.
+"""What confusions tell of a sense: d′ along ordered stimuli, and the information transferred.
 
 Stimulus j is felt as a normal deviate about x_j of unit spread; the axis is cut by rising criteria
 into as many ranges as there are answers (Thurstone's law of categorical judgement, case of equal
 variances; Braida & Durlach 1972, 10.1121/1.1912868). x_{j+1} − x_j is d′ of neighbours; x_k − x_1
 is the total sensitivity Δ′.
+
+The transfer is I = H(answer) − H(answer | stimulus) (Garner & Hake 1951, 10.1037/h0054482;
+Miller & Nicely 1955), in bit. The share of each stimulus is what was presented, N_j/N: it is the
+experimenter's choice and is not estimated. Nothing is cut off at 0: an estimate below 0 belongs to
+an unbiased estimator, and cutting would bring the bias back.
+
+No estimator is unbiased with few trials. The jackknife is at most 0.05 bit off at 60 trials of 5
+ordered stimuli, from guessing to near perfection, where the shares as observed are 0.07 to 0.23 bit
+too high; where a few errors fall evenly on all answers (lapses, 90 to 95 % right) it is up to 0.09
+bit too high. It has no value where a stimulus has a single trial.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import stats
-from scipy.special import chdtrc, ndtr, xlogy
+from scipy.special import chdtrc, entr, ndtr, xlogy
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.confusion import whole_counts
-from squeezefilm.study.identification.proportions import (
-    recentred_interval,
-    resampled_counts,
-)
+from squeezefilm.study.identification.proportions import recentred_interval, resampled_counts
+from squeezefilm.study.psychometric.estimate import Estimate
 
 # Beyond this a position stands for "never confused": its likelihood is flat.
 _FURTHEST = 7.5
@@ -260,3 +269,115 @@ def _fit(n: si.FloatArray) -> tuple[si.FloatArray, si.FloatArray, NDArray[np.boo
 def _split(theta: si.FloatArray, cuts: int) -> tuple[si.FloatArray, si.FloatArray]:
     zero = np.zeros((theta.shape[0], 1))
     return theta[:, :cuts], np.concatenate([zero, theta[:, cuts:]], axis=1)
+
+
+Bit = Annotated[float, si.Unit("bit")]
+
+METHOD = "jackknife by stimulus"
+_LN2 = float(np.log(2.0))
+_BLOCK = 4096
+
+
+def jackknife(counts: ArrayLike) -> si.FloatArray:
+    """Transfer (bit) of counts (…, answers, stimuli), shape (…), by the jackknife of columns:
+    I + Σ_j (N_j−1)/N_j Σ_i n_ij (I − I without a trial of cell ij).
+
+    Trials are left out within a stimulus and the stimuli's shares stay (a stratified jackknife;
+    Quenouille 1956, 10.1093/biomet/43.3-4.353, by strata). NaN where a presented stimulus has a
+    single trial.
+    """
+    n = whole_counts(counts)
+    flat = n.reshape(-1, *n.shape[-2:])
+    blocks = [_jackknife(flat[k : k + _BLOCK]) for k in range(0, flat.shape[0], _BLOCK)]
+    return np.concatenate(blocks).reshape(n.shape[:-2])
+
+
+def _jackknife(whole: si.IntArray) -> si.FloatArray:
+    n = whole.astype(float)
+    column = n.sum(axis=-2)
+    share = column / column.sum(axis=-1, keepdims=True)
+    divisor = np.where(column > 0, column, 1.0)
+    within = np.log(divisor) + entr(n).sum(axis=-2) / divisor
+    p = n / divisor[:, None, :]
+    answer = (p * share[:, None, :]).sum(axis=-1)
+    entropy = entr(answer).sum(axis=-1)
+    transfer = entropy - (share * within).sum(axis=-1)
+    less = np.where(column > 1, column - 1, 1.0)
+    # Without one trial of cell (i, j): the column's own entropy, then the answers'.
+    changed = entr(n).sum(axis=-2)[:, None, :] - entr(n) + entr(np.maximum(n - 1, 0))
+    within_less = np.log(less)[:, None, :] + changed / less[:, None, :]
+    grown = p * (column / less)[:, None, :]
+    moved = answer[:, :, None] + share[:, None, :] * (grown - p)
+    removed = share / less
+    others = entr(moved).sum(axis=-2)
+    own = entr(np.maximum(moved - removed[:, None, :], 0.0)) - entr(moved)
+    entropy_less = others[:, None, :] + own
+    transfer_less = (
+        entropy_less
+        - (share * within).sum(axis=-1)[:, None, None]
+        + share[:, None, :] * (within[:, None, :] - within_less)
+    )
+    weight = n * (less / divisor)[:, None, :]
+    change = np.where(n > 0, transfer[:, None, None] - transfer_less, 0.0)
+    estimate = transfer + (weight * change).sum(axis=(-2, -1))
+    return np.asarray(np.where(np.any(column == 1, axis=-1), np.nan, estimate) / _LN2)
+
+
+@dataclass(frozen=True, slots=True)
+class InformationTransfer:
+    """The information that answers carry about stimuli.
+
+    Attributes:
+        estimate: of the pooled matrix of all participants (bit), by the jackknife; NaN where a
+            stimulus has a single trial.
+        interval: over participants; None with fewer than two, and where there is no estimate.
+        greatest: entropy of the stimuli presented; log2 of their number if equally frequent.
+        trials, participants, resamples: what it was made of.
+    """
+
+    estimate: Bit
+    interval: Estimate | None
+    greatest: Bit
+    trials: int
+    participants: int
+    resamples: int
+
+
+def information_transfer(
+    counts: ArrayLike,
+    level: si.Dimensionless = 0.95,
+    resamples: int = 1000,
+    seed: int = 0,
+) -> InformationTransfer:
+    """Information transfer of the pooled matrix, with its interval over participants.
+
+    The pooled matrix loses what differs between people: with the same stimuli for all, its
+    transfer is at most the mean of theirs.
+
+    Args:
+        counts: every participant's matrix, shape (participants, answers, stimuli); or one matrix.
+        level: of the interval, between 0 and 1.
+        resamples, seed: of the participant bootstrap.
+
+    Raises:
+        InputError: counts that are none, or without a trial.
+    """
+    whole = whole_counts(counts)
+    whole = whole[None] if whole.ndim == 2 else whole
+    if whole.ndim != 3 or whole.sum() == 0:
+        raise InputError(
+            f"counts of shape {whole.shape} hold no matrix with a trial; (participants, answers, "
+            "stimuli) is wanted"
+        )
+    si.require("level", level, above=0.0, below=1.0)
+    pooled = whole.sum(axis=0)
+    people = int(np.count_nonzero(whole.sum(axis=(1, 2))))
+    share = pooled.sum(axis=0) / pooled.sum()
+    greatest = float(-(share[share > 0] * np.log2(share[share > 0])).sum())
+    estimate, interval, made = float(jackknife(pooled)), None, 0
+    if whole.shape[0] > 1 and np.isfinite(estimate):
+        made = resamples
+        resampled = jackknife(resampled_counts(whole, resamples, seed))
+        if np.isfinite(resampled).any():
+            interval = recentred_interval(estimate, resampled, whole.shape[0], level, 0.0, greatest)
+    return InformationTransfer(estimate, interval, greatest, int(pooled.sum()), people, made)

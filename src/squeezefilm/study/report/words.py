@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.design.tasks.task import JUDGED
-from squeezefilm.study.identification.information import METHOD
+from squeezefilm.study.identification.sensitivity import METHOD
 from squeezefilm.study.tasks.findings import EQUALITY, PARTS, TaskAnalysis
 
 if TYPE_CHECKING:
