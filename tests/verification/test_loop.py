@@ -19,7 +19,6 @@ from tests.simulated_loop import SimulatedLoop
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.lateness import CLASSES, lateness_class
 from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
-from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import (
@@ -30,6 +29,7 @@ from squeezefilm.physics.render.motion.sensor import (
     sensor_stream,
 )
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
+from squeezefilm.physics.render.program.inverse import FrictionTable
 from squeezefilm.physics.render.program.lowering import lower
 from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.physics.render.texture.composition import Composable

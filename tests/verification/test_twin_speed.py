@@ -89,7 +89,7 @@ def test_a_stroke_is_what_slide_makes_of_the_same_bone_and_amplitude() -> None:
         normal_force=FORCE,
         place=predict(display).law.place,
     ).table(point().highest_amplitude, 257)
-    rows = coefficient() * law.over_speeds(truth["amplitude_m"]).T
+    rows = coefficient() * law(truth["amplitude_m"], law.speed[:, None]).T
     found = dragged(truth, SpeedFriction(law.speed, rows), speed)
     force, skin = truth["tangential_force_N"], truth["skin_x_m"]
     assert np.ptp(skin) > 14e-3

@@ -14,7 +14,6 @@ from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims
 from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
 from squeezefilm.instruments.session.loop.tick import make_tick
 from squeezefilm.instruments.session.play.plan import NOTHING_KNOWN, KnownDevice, PlayPlan, tile_of
-from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.played_texture import lowered
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display
@@ -124,7 +123,7 @@ def play_setup(
         drive=LinearDrive(per_volt, largest / per_volt),
         estimator=MotionEstimator.for_sensor(device.sensor),
         compensation=how.compensation,  # type: ignore[arg-type] # checked with a message by LoopPlan
-        relative_friction=FrictionTable.of_inverse(p.inverse),
+        relative_friction=p.inverse,
         output_delay=OUTPUT_DELAY,
     )
     tile = None

@@ -21,7 +21,6 @@ from squeezefilm.core.results import stamp, to_json
 from squeezefilm.lab.designing.form import display_of
 from squeezefilm.lab.designing.numbers import DesignPoint, predicted
 from squeezefilm.lab.wire import Name, Text
-from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.played_texture import FingerMotion, lowered, require_on_display
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.standing_wave import (
@@ -64,7 +63,6 @@ class _Ready:
     display: Display
     texture: TextureFile
     prediction: Prediction
-    friction: FrictionTable
     program: Program
 
 
@@ -82,7 +80,7 @@ def _ready(asked: TextureOnDisplay, folder: Path) -> _Ready:
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
             "renders no texture; give it a voltage in the Design area"
         )
-    return _Ready(display, texture, p, p.friction, lowered(texture, p, p.inverse))
+    return _Ready(display, texture, p, lowered(texture, p, p.inverse))
 
 
 def title_of(text: str, folder: Path) -> str:
@@ -113,7 +111,7 @@ def feel(asked: TextureOnDisplay, folder: Path) -> dict[str, Any]:
     """
     ready = _ready(asked, folder)
     display, texture, p = ready.display, ready.texture, ready.prediction
-    largest = p.vibration_amplitude
+    friction, largest = p.friction, p.vibration_amplitude
     amplitude = np.linspace(0.0, largest, _KNOTS)
     quality_factor, resonance = resonance_with_finger(p)
     actuator = display.actuator
@@ -135,10 +133,10 @@ def feel(asked: TextureOnDisplay, folder: Path) -> dict[str, Any]:
         "quantity": texture.texture.quantity,
         "program": ready.program.array.tolist(),
         "amplitude_m": amplitude.tolist(),
-        "finger_speed_m_per_s": ready.friction.speed.tolist(),
-        "nominal_finger_speed_m_per_s": ready.friction.nominal_speed,
+        "finger_speed_m_per_s": friction.speed.tolist(),
+        "nominal_finger_speed_m_per_s": friction.nominal_speed,
         "lowest_finger_speed_m_per_s": LOWEST_SPEED,
-        "relative_friction": ready.friction.over_speeds(amplitude).tolist(),
+        "relative_friction": friction(amplitude, friction.speed[:, None]).tolist(),
         "friction_coefficient": p.friction_coefficient,
         "normal_force_N": p.normal_force,
         "envelope_time_constant_s": float(quality_factor / (np.pi * resonance)),

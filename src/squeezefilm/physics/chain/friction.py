@@ -14,7 +14,6 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.pad_law import (
     DEFAULT_MODEL,
     MODEL_KINDS,
@@ -36,6 +35,7 @@ from squeezefilm.physics.contact.sharing.pad import FrictionRipple, Limit
 from squeezefilm.physics.display import Display, Surface
 from squeezefilm.physics.film.closed import PaperModel, contact_mean_pressure
 from squeezefilm.physics.film.gap import PaperGap
+from squeezefilm.physics.render.program.inverse import FrictionTable
 
 TABLE_SPEEDS: si.MetrePerSecondArray = np.append(0.0, np.geomspace(1e-3, 2.0, 47))
 """Speeds at which a law that depends on the speed is tabulated: toward rest, and from creeping to

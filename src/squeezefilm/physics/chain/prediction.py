@@ -25,7 +25,6 @@ from squeezefilm.core.progress import NO_HURRY, Pace
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.physics.chain.area_map import at_best_place
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
-from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, FrictionModel
 from squeezefilm.physics.chain.pad_place import pad_place, place_words
 from squeezefilm.physics.chain.touch import (
@@ -43,7 +42,7 @@ from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.warming import Warming, warming_of_mode
 from squeezefilm.physics.plate.working_mode import PlateTheory, WorkingMode
 from squeezefilm.physics.plausibility.checks import require_plausible
-from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.inverse import FrictionInverse, FrictionTable
 from squeezefilm.physics.render.resonator.envelope import envelope_time_constant
 
 

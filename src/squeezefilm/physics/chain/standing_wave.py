@@ -10,7 +10,6 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace
 from squeezefilm.physics.chain.played_texture import FingerMotion
@@ -18,7 +17,7 @@ from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.contact.sliding.march import SpeedFriction
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import DiscPlate
-from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.inverse import FrictionInverse, FrictionTable
 from squeezefilm.physics.render.program.wave import WaveCompensation
 from squeezefilm.physics.render.texture.coordinate import AlongX, AlongY
 

@@ -10,9 +10,9 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.session.loop.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUMNS
-from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.render.motion import kernel as motion_kernel
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
+from squeezefilm.physics.render.program.inverse import FrictionTable
 from squeezefilm.physics.render.program.lowering import Program
 from squeezefilm.physics.render.program.renderer import new_state
 from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope

@@ -1,4 +1,5 @@
-"""Amplitude that makes a wanted friction: the display's friction law, inverted."""
+"""A friction law as a table, which what takes many samples asks in place of the law, and the table
+read backwards: the amplitude that makes a wanted friction."""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError
+from squeezefilm.core.errors import InputError, OutOfRangeError
 
 _METRE, _SPEED = si.Unit("m"), si.Unit("m/s")
 _MOST_KNOTS = 65_536
@@ -17,6 +18,8 @@ _MOST_KNOTS = 65_536
 _AT_REST = 1e-4
 # Two knots closer than this in friction cannot be told apart by the inverse.
 _FLAT = 1e-12
+# By how much what a solver leaves may pass 0 and 1.
+_ROUNDING = 1e-6
 
 LOWEST_SPEED: si.MetrePerSecond = 5e-3
 """Speed below which a friction law is inverted as at it (m/s). A finger that creeps this slowly
@@ -27,39 +30,108 @@ LawOverSpeeds = Callable[[si.MetreArray, si.MetrePerSecondArray], si.Dimensionle
 """Vibration amplitudes (m, shape (n,)) and finger speeds (m/s, shape (k,)) → µ′/µ (1, (k, n))."""
 
 
-@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
-class FrictionInverse:
-    """Knots of a falling friction law, read backwards with straight lines between them.
+class FrictionTable:
+    """A friction law as a table: called with amplitudes (m), it gives µ′/µ (1) in their shape.
 
-    Between two speeds friction is linear in the speed at each knot, as a table of the law has it,
-    so that this is the inverse of that table and not of another; the lowest and the highest speed
-    hold beyond. Build it with `from_function` or, where friction depends on the finger's speed,
-    `over_speeds`.
+    `amplitude` rises from 0 (m), shape (n,); `speed` from 0 (m/s), shape (k,), is one place where
+    the law does not depend on it. `relative_friction` there (1) has shape (k, n); linear between,
+    and held beyond the last speed. `nominal_speed` (m/s) is taken where none is asked for.
 
-    Attributes:
-        amplitude: rising from 0 (m, zero-to-peak), shape (n,).
-        speed: of the finger, rising (m/s), shape (k,); one where friction does not depend on it.
-        relative_friction: from 1 (1), shape (k, n); strictly falling if k = 1, else nowhere rising
-            (a finger so fast that small amplitudes change nothing meets 1 at several knots).
-        nominal_speed: where none is said (m/s).
-        max_error: how far the friction at an amplitude found here may be from the one wanted (1),
-            measured between the knots and the speeds on the law itself.
+    Raises `InputError` for arrays of other shapes, knots that do not rise, or friction beyond 0…1.
     """
 
     amplitude: si.MetreArray
     speed: si.MetrePerSecondArray
     relative_friction: si.DimensionlessArray
     nominal_speed: si.MetrePerSecond
-    max_error: si.Dimensionless
 
     def __post_init__(self) -> None:
-        shape = (np.size(self.speed), np.size(self.amplitude))
-        if np.shape(self.relative_friction) != shape:
+        a, v, known = self.amplitude, self.speed, self.relative_friction
+        si.require("amplitude", a, si.Unit("m"), at_least=0.0)
+        si.require("speed", v, si.Unit("m/s"), at_least=0.0)
+        si.require("relative_friction", known, at_least=-_ROUNDING, at_most=1.0 + _ROUNDING)
+        object.__setattr__(self, "relative_friction", np.clip(known, 0.0, 1.0))
+        rise = a.ndim == v.ndim == 1 and np.all(np.diff(a) > 0.0) and np.all(np.diff(v) > 0.0)
+        if not rise or a.size < 2 or a[0] != 0.0 or known.shape != (v.size, a.size):
             raise InputError(
-                f"relative_friction of shape {np.shape(self.relative_friction)} belongs to no "
-                f"{shape[0]} speeds and {shape[1]} amplitudes; give one row for each speed"
+                f"relative_friction of shape {known.shape} over {v.shape} speeds and {a.shape} "
+                "amplitudes is no table; give speeds that rise, at least two amplitudes that rise "
+                "from 0, and of friction one row for each speed"
             )
+
+    def inverse(
+        self, law: LawOverSpeeds, largest_amplitude: si.Metre, share: si.Dimensionless = 1.0
+    ) -> FrictionInverse:
+        """The amplitude for a wanted µ′/µ at a finger's speed: this table read backwards.
+
+        `law` is what was tabulated, by which the inverse's error is measured between the knots;
+        `largest_amplitude` (m) is the largest that may be asked for, and `share` (1) what it is of
+        the amplitude that the table knows. Raises `InputError` where friction does not fall.
+        """
+        if self.speed.size == 1:
+            return FrictionInverse.from_function(lambda a: self(a / share), largest_amplitude)
+        return FrictionInverse.over_speeds(
+            lambda a, v: law(a / share, v),
+            self.amplitude * share,
+            self.speed,
+            self.nominal_speed,
+            known=self.relative_friction,
+        )
+
+    @si.checked_numbers
+    def __call__(
+        self, amplitude: si.MetreLike, speed: si.MetrePerSecondLike | None = None
+    ) -> si.DimensionlessArray:
+        """Relative friction µ′/µ at amplitudes (m) and a finger's speeds (m/s, either sign; None:
+        the nominal one); both broadcast. Raises `OutOfRangeError` outside of the table."""
+        values, highest = np.asarray(amplitude, dtype=float), float(self.amplitude[-1])
+        # A hair of slack: an exponential envelope may overshoot its target by rounding.
+        slack = 1e-9 * highest
+        if values.size and (values.min() < -slack or values.max() > highest + slack):
+            raise OutOfRangeError(
+                f"the friction law was tabulated for amplitudes from 0 to {highest:.4g} m and "
+                f"asked at {values.min():.4g} to {values.max():.4g} m; tabulate it higher"
+            )
+        pace = np.abs(self.nominal_speed if speed is None else speed)
+        if np.ndim(pace) == 0:
+            return np.asarray(np.interp(values, self.amplitude, self.at_speed(float(pace))))
+        values, pace = np.broadcast_arrays(values, pace)
+        if self.speed.size == 1:
+            return np.asarray(np.interp(values, self.amplitude, self.relative_friction[0]))
+        row, along = _place(self.speed, pace)
+        column, across = _place(self.amplitude, values)
+        known = self.relative_friction
+        below = known[row, column] * (1 - across) + known[row, column + 1] * across
+        above = known[row + 1, column] * (1 - across) + known[row + 1, column + 1] * across
+        return np.asarray(below * (1 - along) + above * along)
+
+    @si.checked_numbers
+    def at_speed(self, speed: si.MetrePerSecond) -> si.DimensionlessArray:
+        """Relative friction µ′/µ at the table's amplitudes and one speed (m/s), shape (n,)."""
+        if self.speed.size == 1:
+            return np.asarray(self.relative_friction[0])
+        row, along = _place(self.speed, np.array(abs(speed)))
+        known = self.relative_friction
+        return np.asarray(known[row] * (1 - along) + known[row + 1] * along)
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True, eq=False)
+class FrictionInverse(FrictionTable):
+    """A table of friction that rises nowhere with the amplitude, read backwards.
+
+    It is the inverse of the table and not of another. The lowest and the highest speed hold beyond.
+    Build it with `from_function` or, where friction depends on the finger's speed, `over_speeds`.
+
+    Attributes beside those of `FrictionTable`, whose friction begins at 1 and strictly falls over
+    the amplitude in a single row (a finger so fast that small amplitudes change nothing meets 1 at
+    several knots):
+        max_error: how far the friction at an amplitude found here may be from the one wanted (1),
+            measured between the knots and the speeds on the law itself.
+    """
+
+    max_error: si.Dimensionless
 
     @classmethod
     @si.checked_numbers
@@ -165,8 +237,7 @@ class FrictionInverse:
     def least_friction_at(self, speed: si.MetrePerSecondLike) -> si.DimensionlessArray:
         """The least relative friction that can be reached at speeds (m/s, either sign), in their
         shape (1)."""
-        row, share = self._place(np.asarray(speed, dtype=float))
-        return self._friction(row, share, np.full(row.shape, self.amplitude.size - 1))
+        return self(np.full(np.shape(speed), self.largest_amplitude), speed)
 
     @si.checked_numbers
     def amplitude_for(
@@ -189,15 +260,20 @@ class FrictionInverse:
         if self.speed.size == 1:
             known = self.relative_friction[0]
             return np.asarray(np.interp(wanted, known[::-1], self.amplitude[::-1]))
-        row, share = self._place(pace)
+        row, share = _place(self.speed, np.abs(pace))
+        known = self.relative_friction
+
+        def friction(knot: si.IntArray) -> si.DimensionlessArray:
+            return np.asarray((1.0 - share) * known[row, knot] + share * known[row + 1, knot])
+
         # Bisection for the first knot where friction is no more than wanted.
         low = np.zeros(wanted.shape, dtype=np.int64)
         high = np.full(wanted.shape, self.amplitude.size - 1)
         while np.any(high - low > 1):
             middle = (low + high) >> 1
-            sticky = self._friction(row, share, middle) > wanted
+            sticky = friction(middle) > wanted
             low, high = np.where(sticky, middle, low), np.where(sticky, high, middle)
-        above, below = self._friction(row, share, low), self._friction(row, share, high)
+        above, below = friction(low), friction(high)
         drop = above - below
         part = np.where(above > wanted, (above - wanted) / np.where(drop > 0.0, drop, 1.0), 0.0)
         return np.asarray((1.0 - part) * self.amplitude[low] + part * self.amplitude[high])
@@ -208,34 +284,14 @@ class FrictionInverse:
     ) -> si.DimensionlessArray:
         """Relative friction (1) at amplitudes (m, held beyond the largest) under a finger at a
         speed (m/s, either sign; None: the nominal one), by the knots; both broadcast."""
-        pace = np.asarray(self.nominal_speed if speed is None else speed, dtype=float)
-        a, pace = np.broadcast_arrays(np.asarray(amplitude, dtype=float), pace)
-        if self.speed.size == 1:
-            return np.asarray(np.interp(a, self.amplitude, self.relative_friction[0]))
-        row, share = self._place(pace)
-        held = np.clip(a, 0.0, self.largest_amplitude)
-        knot = np.searchsorted(self.amplitude, held, side="right") - 1
-        knot = np.clip(knot, 0, self.amplitude.size - 2)
-        step = self.amplitude[knot + 1] - self.amplitude[knot]
-        part = (held - self.amplitude[knot]) / step
-        first, second = self._friction(row, share, knot), self._friction(row, share, knot + 1)
-        return np.asarray((1.0 - part) * first + part * second)
+        return self(np.clip(amplitude, 0.0, self.largest_amplitude), speed)
 
-    def _place(self, speed: si.FloatArray) -> tuple[si.IntArray, si.FloatArray]:
-        """The row at or below speeds, and the share of the next."""
-        if self.speed.size == 1:
-            return np.zeros(speed.shape, dtype=np.int64), np.zeros(speed.shape)
-        held = np.clip(np.abs(speed), self.speed[0], self.speed[-1])
-        row = np.clip(np.searchsorted(self.speed, held, side="right") - 1, 0, self.speed.size - 2)
-        step = self.speed[row + 1] - self.speed[row]
-        return row, np.asarray((held - self.speed[row]) / step)
 
-    def _friction(
-        self, row: si.IntArray, share: si.FloatArray, knot: si.IntArray
-    ) -> si.DimensionlessArray:
-        known = self.relative_friction
-        following = np.minimum(row + 1, self.speed.size - 1)
-        return np.asarray((1.0 - share) * known[row, knot] + share * known[following, knot])
+def _place(knots: si.FloatArray, values: si.FloatArray) -> tuple[si.IntArray, si.FloatArray]:
+    """Indices of the knots below values, and places up to the next (0 to 1); held at both ends."""
+    at = np.clip(np.searchsorted(knots, values, side="right") - 1, 0, knots.size - 2)
+    part = (values - knots[at]) / (knots[at + 1] - knots[at])
+    return at, np.clip(part, 0.0, 1.0)
 
 
 def _rows_of(

@@ -11,7 +11,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan, tick_arrays
-from squeezefilm.physics.chain.friction_table import FrictionTable
+from squeezefilm.physics.render.program.inverse import FrictionTable
 
 PlanOf = Callable[..., LoopPlan]
 

@@ -17,9 +17,8 @@ from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.shared import COMMANDS, ROWS
 from squeezefilm.instruments.session.loop.tick import interpolated
-from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.render.program import layout
-from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.inverse import FrictionInverse, FrictionTable
 from squeezefilm.physics.render.program.lowering import lower
 from squeezefilm.physics.render.resonator import kernel as compensation_kernel
 from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope

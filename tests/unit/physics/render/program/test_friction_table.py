@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.physics.chain.friction_table import FrictionTable
+from squeezefilm.physics.render.program.inverse import FrictionTable
 
 AMPLITUDE = np.array([0.0, 1e-6, 3e-6])
 TABLE = FrictionTable(AMPLITUDE, np.zeros(1), np.array([[1.0, 0.6, 0.2]]), 0.1)
@@ -27,7 +27,9 @@ def test_over_speeds_it_is_straight_too_and_held_beyond_the_last() -> None:
     assert PACED(amplitude[:2]) == pytest.approx([0.8, 0.4])
     assert PACED(amplitude[:2], 0.05) == pytest.approx([0.65, 0.2])
     assert PACED.at_speed(-0.2) == pytest.approx([1.0, 0.7, 0.4])
-    assert PACED.over_speeds(np.array([2e-6])) == pytest.approx(np.array([[0.0], [0.4], [0.7]]))
+    assert PACED(np.array([2e-6]), PACED.speed[:, None]) == pytest.approx(
+        np.array([[0.0], [0.4], [0.7]])
+    )
     # One row stands for every speed.
     assert TABLE(amplitude, speed) == pytest.approx(TABLE(amplitude))
     assert TABLE.at_speed(7.0) == pytest.approx([1.0, 0.6, 0.2])
@@ -61,7 +63,7 @@ def test_its_inverse_makes_the_friction_that_was_wanted_by_the_table_itself() ->
         wanted = rng.uniform(0.6, 1.0, 500)
         amplitude = inverse.amplitude_for(wanted, speed)
         assert table(amplitude / share, speed) == pytest.approx(wanted, abs=1e-12)
-    again = FrictionTable.of_inverse(table.inverse(law, KNOTS[-1]))
+    again = table.inverse(law, KNOTS[-1])
     assert again(KNOTS[::4], 0.3) == pytest.approx(table(KNOTS[::4], 0.3), abs=1e-12)
     assert again.nominal_speed == 0.08
 
@@ -70,7 +72,7 @@ def test_without_a_speed_the_inverse_has_one_row() -> None:
     inverse = TABLE.inverse(law, 3e-6)
     assert inverse.speed.size == 1
     assert inverse.amplitude_for(0.6) == pytest.approx(1e-6, rel=0.02)
-    assert FrictionTable.of_inverse(inverse)(np.array([1e-6])) == pytest.approx([0.6], abs=5e-3)
+    assert inverse(np.array([1e-6])) == pytest.approx([0.6], abs=5e-3)
 
 
 @pytest.mark.parametrize(
