@@ -185,10 +185,10 @@ def _require_alike(textures: SequenceOf[Composable], what: str) -> None:
         )
 
 
+@part
 class _Several(Composable):
     """Textures of one quantity, which is its own."""
 
-    __slots__ = ()
     textures: tuple[Composable, ...]
 
     @property
@@ -201,7 +201,6 @@ class _Several(Composable):
 class Sum(_Several):
     """The sum of `textures` of one quantity. Raises `InputError` for a mixture."""
 
-    textures: tuple[Composable, ...]
     type: Literal["sum"] = field(default="sum", repr=False)
 
     def __post_init__(self) -> None:
@@ -214,10 +213,10 @@ class Sum(_Several):
                 assembler.emit(ADD)
 
 
+@part
 class _Changed(Composable):
     """A texture that something changes, but for its quantity."""
 
-    __slots__ = ()
     texture: Composable
 
     def __post_init__(self) -> None:
@@ -229,10 +228,10 @@ class _Changed(Composable):
         return self.texture.quantity
 
 
+@part
 class _Shaped(_Changed):
     """A texture that a pattern shapes."""
 
-    __slots__ = ()
     pattern: Pattern
 
     def __post_init__(self) -> None:
@@ -244,8 +243,6 @@ class _Shaped(_Changed):
 class Product(_Shaped):
     """`texture` times a dimensionless `pattern`, value by value. See `Masked` to fade to rest."""
 
-    texture: Composable
-    pattern: Pattern
     type: Literal["product"] = field(default="product", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
@@ -258,7 +255,6 @@ class Product(_Shaped):
 class Scaled(_Changed):
     """`texture` times a number from 0 to 1000. Raises `InputError` outside that."""
 
-    texture: Composable
     factor: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1000.0)]
     type: Literal["scaled"] = field(default="scaled", repr=False)
 
@@ -274,8 +270,6 @@ class Masked(_Shaped):
     Value: rest + pattern·(texture − rest), with the rest of the texture's quantity.
     """
 
-    texture: Composable
-    pattern: Pattern
     type: Literal["masked"] = field(default="masked", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
@@ -299,7 +293,6 @@ class Sequence(_Several):
         InputError: textures of several quantities, edges that do not rise or fit, a fade too wide.
     """
 
-    textures: tuple[Composable, ...]
     edges: tuple[Place, ...]
     fade: si.Metre = 0.0
     along: Coordinate = X_AXIS

@@ -29,21 +29,16 @@ from squeezefilm.physics.render.opcodes import (
 from squeezefilm.physics.render.texture.coordinate import X_AXIS, Coordinate, require_coordinate
 from squeezefilm.physics.render.texture.pattern import Pattern, part
 
-# So that lattice numbers stay far within 32 bits over ten metres.
-Spacing = Annotated[si.Metre, si.AtLeast(1e-6), TEXTURE_LENGTH]
-Seed = Annotated[int, si.AtLeast(0), si.AtMost(MASK)]
-Octaves = Annotated[int, si.AtLeast(1), si.AtMost(8)]
-Persistence = Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)]
 
-
+@part
 class _Added(Pattern):
     """Noises that are added, each with twice the period of the one before."""
 
-    __slots__ = ()
-    finest_period: Spacing
-    seed: Seed
-    octaves: Octaves
-    persistence: Persistence
+    # So that lattice numbers stay far within 32 bits over ten metres.
+    finest_period: Annotated[si.Metre, si.AtLeast(1e-6), TEXTURE_LENGTH]
+    seed: Annotated[int, si.AtLeast(0), si.AtMost(MASK)]
+    octaves: Annotated[int, si.AtLeast(1), si.AtMost(8)] = 1
+    persistence: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 0.5
 
     def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
         raise NotImplementedError
@@ -73,10 +68,6 @@ class Noise(_Added):
         InputError: a value outside its range.
     """
 
-    finest_period: Spacing
-    seed: Seed
-    octaves: Octaves = 1
-    persistence: Persistence = 0.5
     along: Coordinate = X_AXIS
     type: Literal["noise"] = field(default="noise", repr=False)
 
@@ -95,10 +86,6 @@ class NoiseField(_Added):
     Args and errors as for `Noise`.
     """
 
-    finest_period: Spacing
-    seed: Seed
-    octaves: Octaves = 1
-    persistence: Persistence = 0.5
     type: Literal["noise_field"] = field(default="noise_field", repr=False)
 
     def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:

@@ -143,10 +143,10 @@ class Complement(Pattern):
         assembler.emit(COMPLEMENT)
 
 
-class _Joined:
+@part
+class _Joined(Pattern):
     """Any number of patterns joined by one operation, in which their order makes no difference."""
 
-    __slots__ = ()
     patterns: tuple[Pattern, ...]
     _opcode: ClassVar[int]
 
@@ -167,28 +167,25 @@ class _Joined:
 
 
 @part
-class Least(_Joined, Pattern):
+class Least(_Joined):
     """The least of `patterns`: where masks overlap."""
 
-    patterns: tuple[Pattern, ...]
     type: Literal["least"] = field(default="least", repr=False)
     _opcode = LEAST
 
 
 @part
-class Greatest(_Joined, Pattern):
+class Greatest(_Joined):
     """The greatest of `patterns`: masks side by side."""
 
-    patterns: tuple[Pattern, ...]
     type: Literal["greatest"] = field(default="greatest", repr=False)
     _opcode = GREATEST
 
 
 @part
-class Times(_Joined, Pattern):
+class Times(_Joined):
     """The product of `patterns`: one fading another."""
 
-    patterns: tuple[Pattern, ...]
     type: Literal["times"] = field(default="times", repr=False)
     _opcode = MULTIPLY
 
