@@ -99,36 +99,30 @@ class _Arguments:
                 raise TypeError(f"{function.__qualname__}: {name} is bounded and is no number")
         return tuple(rules)
 
-    def are_plain(self, args: Sequence[Any], kwargs: Mapping[str, Any]) -> bool:
-        """True where all are good as they are, with one shape at most to broadcast."""
-        count, shapes = len(args), 0
-        for place, name, rule, broadcasts in self.rules:
-            if place < count:
-                value = args[place]
-            elif name in kwargs:
-                value = kwargs[name]
-            else:
-                continue
-            if not rule.is_plain(value):
-                return False
-            if broadcasts and type(value) is np.ndarray:
-                shapes += 1
-        return shapes < 2
+    def checked(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Sequence[Any]:
+        """The arguments by place as the call takes them; those by name are put into `kwargs`.
 
-    def check(self, args: list[Any], kwargs: dict[str, Any]) -> None:
-        """Put what the call takes in the place of each argument. Raises `InputError`."""
+        Raises `InputError`.
+        """
+        given: Sequence[Any] = args
         shapes: list[tuple[str, tuple[int, ...]]] = []
         for place, name, rule, broadcasts in self.rules:
-            if place < len(args):
-                args[place] = value = rule.checked(name, args[place])
-            elif name in kwargs:
-                kwargs[name] = value = rule.checked(name, kwargs[name])
-            else:
+            by_place = place < len(args)
+            if not by_place and name not in kwargs:
                 continue
+            value = args[place] if by_place else kwargs[name]
+            # Nearly all are good as they are.
+            if not rule.is_plain(value):
+                value = rule.checked(name, value)
+                if by_place:
+                    given = [*given[:place], value, *given[place + 1 :]]
+                else:
+                    kwargs[name] = value
             if broadcasts and isinstance(value, np.ndarray):
                 shapes.append((name, value.shape))
         if len(shapes) > 1:
             _require_broadcast(shapes)
+        return given
 
     def beyond(self, args: Sequence[Any], kwargs: Mapping[str, Any], why: str) -> OutOfRangeError:
         """The error of a call whose arguments leave the range of a float."""
@@ -157,10 +151,7 @@ def _guarded(
             return function(*args, **kwargs)
         if len(args) > len(arguments.names):
             return function(*args, **kwargs)  # which says how many arguments it takes
-        given: Sequence[Any] = args
-        if not arguments.are_plain(args, kwargs):
-            given = list(args)
-            arguments.check(given, kwargs)
+        given = arguments.checked(args, kwargs)
         token = _WITHIN.set(True) if _ONLY.get() and not makes else None
         try:
             with np.errstate(over="raise", divide="raise", invalid="raise"):
