@@ -195,8 +195,8 @@ def _found(claim: Claim) -> ClaimValue:
             f"nothing computes the claim '{claim.id}'.{si.did_you_mean(claim.id, known)}",
             file=presets.claims_path(),
         )
-    of_model = functools.partial(DIRECTION_VALUES[claim.id], claim.model) if claim.model else None
-    return _VALUES.found(f"{claim.id} {claim.model}", of_model or CLAIM_VALUES[claim.id])
+    model = (claim.model,) if claim.model else ()
+    return _VALUES.found(f"{claim.id} {claim.model}", functools.partial(known[claim.id], *model))
 
 
 def judge(claim: Claim, value: ClaimValue) -> ClaimResult:

@@ -10,8 +10,9 @@ What is compared are directions and orders of magnitude, from abstracts.
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
 from typing import Any, Literal
@@ -33,7 +34,7 @@ from squeezefilm.physics.contact.sharing.levitation import (
     ridge_friction,
 )
 from squeezefilm.physics.contact.sharing.pad import pad_friction, pad_points
-from squeezefilm.validation.values import ClaimValue
+from squeezefilm.validation.values import ClaimValue, Computes, value_of
 
 Kind = Literal["balance", "closed form", "ridges"]
 
@@ -165,19 +166,9 @@ FROZEN = FrozenContact()
 # 0.017 atm (Pa).
 _THIN = 0.017 * 101325.0
 
-DIRECTION_VALUES: dict[str, Callable[[str], ClaimValue]] = {}
-
-
-def _direction(
-    claim: str,
-) -> Callable[[Callable[[str], ClaimValue]], Callable[[str], ClaimValue]]:
-    """Enter a function of the model's name as what computes a published direction."""
-
-    def register(function: Callable[[str], ClaimValue]) -> Callable[[str], ClaimValue]:
-        DIRECTION_VALUES[claim] = function
-        return function
-
-    return register
+DIRECTION_VALUES: dict[str, Computes] = {}
+"""What computes a published direction, from a model's name."""
+_direction = functools.partial(value_of, values=DIRECTION_VALUES)
 
 
 @_direction("vacuum")

@@ -67,14 +67,17 @@ GLASS_DENSITY: si.KilogramPerCubicMetre = 2500.0
 GLASS_PLATES = ((67e-3, 5e-3, 29.08e3), (105e-3, 3.3e-3, 34.917e3), (135e-3, 3.2e-3, 30e3))
 """Length and thickness (m) and measured resonance (Hz) of glass plates of one laboratory."""
 
-CLAIM_VALUES: dict[str, Callable[[], ClaimValue]] = {}
+Computes = Callable[..., ClaimValue]
+CLAIM_VALUES: dict[str, Computes] = {}
 
 
-def value_of(claim: str) -> Callable[[Callable[[], ClaimValue]], Callable[[], ClaimValue]]:
+def value_of(
+    claim: str, values: dict[str, Computes] = CLAIM_VALUES
+) -> Callable[[Computes], Computes]:
     """Enter a function as what computes a claim's value."""
 
-    def register(function: Callable[[], ClaimValue]) -> Callable[[], ClaimValue]:
-        CLAIM_VALUES[claim] = function
+    def register(function: Computes) -> Computes:
+        values[claim] = function
         return function
 
     return register
