@@ -27,10 +27,17 @@ from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, _instructions, lower
 from squeezefilm.physics.render.program.renderer import Renderer, evaluate, new_state
 from squeezefilm.physics.render.texture.composition import Composable
-from squeezefilm.physics.render.texture.gates import Attack, speed
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
 from squeezefilm.physics.render.texture.noise import Noise, NoiseField
-from squeezefilm.physics.render.texture.shapes import Band, Bump, Pulse, SineWave, SquareWave
+from squeezefilm.physics.render.texture.shapes import (
+    Attack,
+    Band,
+    Bump,
+    Pulse,
+    SineWave,
+    SquareWave,
+    speed,
+)
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.numpy_textures import numpy_values

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm.physics.render.opcodes import MASK, STEP_ACROSS, STEP_ALONG, mixed
-from squeezefilm.physics.render.texture import composition, gates, levels, noise, pattern, shapes
+from squeezefilm.physics.render.texture import composition, levels, noise, pattern, shapes
 from squeezefilm.physics.render.texture.image import Image
 
 
@@ -90,25 +90,25 @@ def _(shape: shapes.Bump, finger: Finger) -> np.ndarray:
 
 
 @_values.register
-def _(gate: gates.SpeedGate, finger: Finger) -> np.ndarray:
+def _(gate: shapes.SpeedGate, finger: Finger) -> np.ndarray:
     low = -1.0 if gate.above is None else gate.above
     high = math.inf if gate.below is None else gate.below
     return np.where((np.abs(finger.v) > low) & (np.abs(finger.v) < high), 1.0, 0.0)
 
 
 @_values.register
-def _(gate: gates.Attack, finger: Finger) -> np.ndarray:
+def _(gate: shapes.Attack, finger: Finger) -> np.ndarray:
     end = gate.start + gate.duration
     return np.clip((finger.t - gate.start) / (end - gate.start), 0.0, 1.0)
 
 
 @_values.register
-def _(gate: gates.Decay, finger: Finger) -> np.ndarray:
+def _(gate: shapes.Decay, finger: Finger) -> np.ndarray:
     return np.exp(-np.maximum(finger.t - gate.start, 0.0) / gate.time_constant)
 
 
 @_values.register
-def _(gate: gates.Periodic, finger: Finger) -> np.ndarray:
+def _(gate: shapes.Periodic, finger: Finger) -> np.ndarray:
     cycles = finger.t / (1.0 / gate.frequency) + gate.phase / (2 * math.pi)
     if gate.shape == "sine":
         return 0.5 + 0.5 * np.sin(2 * math.pi * cycles)

@@ -44,7 +44,7 @@ _NAMES = {
     "SquareWave": "physics.render.texture.shapes",
     "Noise": "physics.render.texture.noise",
     "Image": "physics.render.texture.image",
-    "speed": "physics.render.texture.gates",
+    "speed": "physics.render.texture.shapes",
     "Stroke": "physics.render.motion.stroke",
     # Rendered, played, recorded
     "render_texture": "physics.chain.rendered_texture",

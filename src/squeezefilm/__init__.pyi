@@ -68,19 +68,18 @@ if TYPE_CHECKING:
     from squeezefilm.physics.render.motion.sensor import SensorModel
     from squeezefilm.physics.render.motion.stroke import Stroke as _Stroke
     from squeezefilm.physics.render.texture.coordinate import Coordinate, Length, Place
-    from squeezefilm.physics.render.texture.gates import speed as speed
     from squeezefilm.physics.render.texture.image import Image as _Image
     from squeezefilm.physics.render.texture.image import Share
     from squeezefilm.physics.render.texture.levels import Amplitude as _Amplitude
     from squeezefilm.physics.render.texture.levels import FrictionShare, VibrationAmplitude
     from squeezefilm.physics.render.texture.levels import RelativeFriction as _RelativeFriction
     from squeezefilm.physics.render.texture.noise import Noise as _Noise
-    from squeezefilm.physics.render.texture.noise import Octaves, Persistence, Seed, Spacing
     from squeezefilm.physics.render.texture.pattern import Pattern
     from squeezefilm.physics.render.texture.shapes import Band as _Band
     from squeezefilm.physics.render.texture.shapes import Bump as _Bump
     from squeezefilm.physics.render.texture.shapes import SineWave as _SineWave
     from squeezefilm.physics.render.texture.shapes import SquareWave as _SquareWave
+    from squeezefilm.physics.render.texture.shapes import speed as speed
     from squeezefilm.physics.texture_files.texture_file import NamedTexture
     from squeezefilm.physics.texture_files.texture_file import load_texture as load_texture
     from squeezefilm.physics.texture_files.texture_file import save_texture as save_texture
@@ -318,10 +317,10 @@ if TYPE_CHECKING:
         """Seeded noise along one coordinate, with nothing finer than `finest_period`."""
         def __init__(
             self,
-            finest_period: Spacing | str,
-            seed: Seed,
-            octaves: Octaves = ...,
-            persistence: Persistence | str = ...,
+            finest_period: Metre | str,
+            seed: int,
+            octaves: int = ...,
+            persistence: Dimensionless | str = ...,
             along: Coordinate = ...,
             type: Literal["noise"] = ...,
         ) -> None: ...

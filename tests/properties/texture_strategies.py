@@ -20,7 +20,6 @@ from squeezefilm.physics.render.texture.coordinate import (
     Coordinate,
     FromPoint,
 )
-from squeezefilm.physics.render.texture.gates import Attack, Decay, Periodic, SpeedGate
 from squeezefilm.physics.render.texture.image import Image
 from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
 from squeezefilm.physics.render.texture.noise import Noise, NoiseField
@@ -33,12 +32,16 @@ from squeezefilm.physics.render.texture.pattern import (
     Times,
 )
 from squeezefilm.physics.render.texture.shapes import (
+    Attack,
     Band,
     Bump,
     Constant,
+    Decay,
+    Periodic,
     Pulse,
     Ramp,
     SineWave,
+    SpeedGate,
     SquareWave,
 )
 

@@ -38,8 +38,8 @@ from squeezefilm.physics.plate.ring.section import (
     full_drive,
 )
 from squeezefilm.physics.plate.solid.forecast import estimated_frequency
-from squeezefilm.physics.render.texture.gates import Attack
 from squeezefilm.physics.render.texture.pattern import Greatest, Least, Times
+from squeezefilm.physics.render.texture.shapes import Attack
 from squeezefilm.physics.texture_files.image_file import ImageFile, picture_from
 from squeezefilm.physics.uncertainty.drawn import require_samples
 

@@ -7,18 +7,22 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.texture.coordinate import AlongDirection, AlongY, FromPoint
-from squeezefilm.physics.render.texture.gates import Attack, Decay, Periodic, SpeedGate, speed
 from squeezefilm.physics.render.texture.image import Image
 from squeezefilm.physics.render.texture.noise import Noise, NoiseField
 from squeezefilm.physics.render.texture.pattern import Pattern
 from squeezefilm.physics.render.texture.shapes import (
+    Attack,
     Band,
     Bump,
     Constant,
+    Decay,
+    Periodic,
     Pulse,
     Ramp,
     SineWave,
+    SpeedGate,
     SquareWave,
+    speed,
 )
 
 

@@ -16,18 +16,21 @@ from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import Renderer, evaluate
 from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.render.texture.coordinate import AlongDirection, AlongY, FromPoint
-from squeezefilm.physics.render.texture.gates import Attack, Decay, Periodic, SpeedGate
 from squeezefilm.physics.render.texture.image import Image
 from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
 from squeezefilm.physics.render.texture.noise import Noise, NoiseField
 from squeezefilm.physics.render.texture.pattern import Pattern
 from squeezefilm.physics.render.texture.shapes import (
+    Attack,
     Band,
     Bump,
     Constant,
+    Decay,
+    Periodic,
     Pulse,
     Ramp,
     SineWave,
+    SpeedGate,
     SquareWave,
 )
 

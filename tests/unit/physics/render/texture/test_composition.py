@@ -5,9 +5,15 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.texture.composition import Masked, Sequence, Sum
-from squeezefilm.physics.render.texture.gates import speed
 from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
-from squeezefilm.physics.render.texture.shapes import Band, Constant, Ramp, SineWave, SquareWave
+from squeezefilm.physics.render.texture.shapes import (
+    Band,
+    Constant,
+    Ramp,
+    SineWave,
+    SquareWave,
+    speed,
+)
 
 GRATING = RelativeFriction(SquareWave(2e-3), 0.4, 0.9)
 
