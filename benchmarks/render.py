@@ -27,8 +27,8 @@ from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, _instructions, lower
 from squeezefilm.physics.render.program.renderer import Renderer, evaluate, new_state
 from squeezefilm.physics.render.texture.composition import Composable
+from squeezefilm.physics.render.texture.image import Noise, NoiseField
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.physics.render.texture.noise import Noise, NoiseField
 from squeezefilm.physics.render.texture.shapes import (
     Attack,
     Band,

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from squeezefilm.physics.render.opcodes import MASK, STEP_ACROSS, STEP_ALONG, mixed
-from squeezefilm.physics.render.texture import composition, levels, noise, pattern, shapes
+from squeezefilm.physics.render.texture import composition, image, levels, pattern, shapes
 from squeezefilm.physics.render.texture.image import Image
 
 
@@ -149,12 +149,12 @@ def _field(u: np.ndarray, w: np.ndarray, state: int) -> np.ndarray:
 
 
 @_values.register
-def _(noises: noise._Added, finger: Finger) -> np.ndarray:
+def _(noises: image._Added, finger: Finger) -> np.ndarray:
     weights = [noises.persistence ** (noises.octaves - 1 - k) for k in range(noises.octaves)]
     total = np.zeros(finger.x.shape)
     for k, weight in enumerate(weights):
         period, state = noises.finest_period * 2.0**k, mixed(noises.seed + k)
-        if isinstance(noises, noise.Noise):
+        if isinstance(noises, image.Noise):
             octave = _line(_place(noises, finger) / period, state)
         else:
             octave = _field(finger.x / period, finger.y / period, state)

@@ -42,7 +42,7 @@ _NAMES = {
     "Bump": "physics.render.texture.shapes",
     "SineWave": "physics.render.texture.shapes",
     "SquareWave": "physics.render.texture.shapes",
-    "Noise": "physics.render.texture.noise",
+    "Noise": "physics.render.texture.image",
     "Image": "physics.render.texture.image",
     "speed": "physics.render.texture.shapes",
     "Stroke": "physics.render.motion.stroke",

@@ -20,9 +20,8 @@ from squeezefilm.physics.render.texture.coordinate import (
     Coordinate,
     FromPoint,
 )
-from squeezefilm.physics.render.texture.image import Image
+from squeezefilm.physics.render.texture.image import Image, Noise, NoiseField
 from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
-from squeezefilm.physics.render.texture.noise import Noise, NoiseField
 from squeezefilm.physics.render.texture.pattern import (
     Complement,
     Greatest,

@@ -33,8 +33,8 @@ from squeezefilm.physics.render.program.inverse import FrictionTable
 from squeezefilm.physics.render.program.lowering import lower
 from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.physics.render.texture.composition import Composable
+from squeezefilm.physics.render.texture.image import Noise
 from squeezefilm.physics.render.texture.levels import Amplitude
-from squeezefilm.physics.render.texture.noise import Noise
 from squeezefilm.physics.render.texture.shapes import Periodic, SineWave, SpeedGate, SquareWave
 
 LIMIT, PER_VOLT = 1e-6, 1e-8

@@ -26,7 +26,7 @@ from squeezefilm.physics.plate.solid.mesh import plate_model
 from squeezefilm.physics.plate.solid.modes import check_band
 from squeezefilm.physics.plate.solid.solve import solve_modes
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
-from squeezefilm.physics.render.texture.noise import Noise
+from squeezefilm.physics.render.texture.image import Noise
 from squeezefilm.physics.render.texture.shapes import Bump, SquareWave
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.study_design import load_design

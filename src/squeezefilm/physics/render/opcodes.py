@@ -32,7 +32,7 @@ the finger's place (m), velocity (m/s) and the time (s).
 18  BAND          start end fade           1 within start…end, 0 outside, edges linear over fade
 19  BUMP          centre width sign        d = (s − centre)/width; ½ − ½ sign·way·d exp(½(1 − d²))
                                            held within 0…1; way = −1 if v < 0, else 1
-20  NOISE         period seed              spline noise of s/period (see `texture.noise`)
+20  NOISE         period seed              spline noise of s/period (see `texture.image`)
 21  NOISE_FIELD   period seed              pushes spline noise of (x/period, y/period)
 22  IMAGE         table rows columns       pushes the table (row after row, the first at the
                   x0 y0 pixel outside      greatest y) read bilinearly; outside: 0 hold, 1 repeat,

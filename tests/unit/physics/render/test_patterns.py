@@ -7,8 +7,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.texture.coordinate import AlongDirection, AlongY, FromPoint
-from squeezefilm.physics.render.texture.image import Image
-from squeezefilm.physics.render.texture.noise import Noise, NoiseField
+from squeezefilm.physics.render.texture.image import Image, Noise, NoiseField
 from squeezefilm.physics.render.texture.pattern import Pattern
 from squeezefilm.physics.render.texture.shapes import (
     Attack,

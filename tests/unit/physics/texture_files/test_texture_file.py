@@ -6,9 +6,8 @@ import pytest
 
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.physics.render.texture.coordinate import AlongDirection
-from squeezefilm.physics.render.texture.image import Image
+from squeezefilm.physics.render.texture.image import Image, Noise
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.physics.render.texture.noise import Noise
 from squeezefilm.physics.render.texture.pattern import Complement, Pattern, Times
 from squeezefilm.physics.render.texture.shapes import Band, SquareWave
 from squeezefilm.physics.texture_files.texture_file import (

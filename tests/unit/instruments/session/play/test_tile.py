@@ -15,8 +15,8 @@ from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.render.texture.coordinate import AlongDirection
+from squeezefilm.physics.render.texture.image import NoiseField
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.physics.render.texture.noise import NoiseField
 from squeezefilm.physics.render.texture.pattern import Pattern
 from squeezefilm.physics.render.texture.shapes import (
     Bump,
