@@ -354,6 +354,16 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "core.calibration_record.JointSpread.moved": {"paths": ("a",), "points": np.full((3, 1), 0.5)},
     "physics.render.motion.stroke.FingerPath": {"time": _GRID, "x": WAYS, "y": WAYS},
     "physics.render.program.inverse.FrictionInverse.from_function": _FALL,
+    "physics.render.program.inverse.FrictionTable": {
+        "amplitude": 1e-6 * np.arange(4),
+        "speed": np.array([0.01, 0.1, 1.0]),
+        "relative_friction": falling_over_speeds(1e-6 * np.arange(4), np.array([0.01, 0.1, 1.0])),
+        "nominal_speed": 0.1,
+    },
+    "physics.render.program.inverse.FrictionTable.inverse": {
+        "law": falling_over_speeds,
+        "largest_amplitude": 2e-6,
+    },
     "physics.render.program.inverse.FrictionInverse.over_speeds": {
         "law": falling_over_speeds,
         "amplitude": 1e-6 * np.arange(4),

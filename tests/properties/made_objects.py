@@ -102,7 +102,7 @@ from squeezefilm.physics.render.motion.stroke import (
     Stroke,
     Trajectory,
 )
-from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.inverse import FrictionInverse, FrictionTable
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import MadeForSpeed, Renderer
 from squeezefilm.physics.render.program.wave import WaveCompensation
@@ -259,6 +259,7 @@ MADE: dict[Any, Callable[[], Any]] = {
     Coordinate: AlongX,
     FingerPath: lambda: FingerPath(np.linspace(0, 1, 9), np.linspace(0, 0.02, 9), np.zeros(9)),
     MadeForSpeed: lambda: MadeForSpeed(0.08, -0.1, 0.05),
+    FrictionTable: lambda: FrictionInverse.from_function(falling_friction, 2e-6),
     FrictionInverse: lambda: FrictionInverse.from_function(falling_friction, 2e-6),
     MotionEstimator: lambda: MotionEstimator.for_sensor(LVDT_10_KHZ),
     MotionModel: MotionModel,

@@ -30,6 +30,7 @@ LawOverSpeeds = Callable[[si.MetreArray, si.MetrePerSecondArray], si.Dimensionle
 """Vibration amplitudes (m, shape (n,)) and finger speeds (m/s, shape (k,)) → µ′/µ (1, (k, n))."""
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class FrictionTable:
     """A friction law as a table: called with amplitudes (m), it gives µ′/µ (1) in their shape.
@@ -60,6 +61,7 @@ class FrictionTable:
                 "from 0, and of friction one row for each speed"
             )
 
+    @si.checked_numbers
     def inverse(
         self, law: LawOverSpeeds, largest_amplitude: si.Metre, share: si.Dimensionless = 1.0
     ) -> FrictionInverse:
