@@ -17,7 +17,6 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.core.kept.store import Kept
-from squeezefilm.physics.chain.friction_table import FrictionTable
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.contact.finger.fingertip import rest_friction_factor
 from squeezefilm.physics.display import DECAY_LENGTH, Display
@@ -29,6 +28,7 @@ from squeezefilm.physics.perception.felt import (
     tried_periods,
 )
 from squeezefilm.physics.perception.observer import Observer, load_observer
+from squeezefilm.physics.render.program.inverse import FrictionTable
 from squeezefilm.physics.render.resonator.envelope import (
     envelope_time_constant,
     fastest_speed,
