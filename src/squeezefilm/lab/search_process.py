@@ -42,12 +42,9 @@ _ALL_WORDS = 40
 def plate(
     requirements: Requirements, evaluated: Evaluated, made: Made | None = None
 ) -> dict[str, Any]:
-    """A plate: name, shape and objectives (SI), what was chosen and what it does in words."""
+    """A plate: name, shape and objectives (SI), what was chosen and what it does in words, of each
+    of its numbers the criterion's key, its name for people and the value."""
     design, space = evaluated.design, requirements.spaces[evaluated.design.shape]
-    chosen = []
-    for variable in space:
-        words = setting_words(variable, design, requirements)
-        chosen.append([variable.name.replace("_", " "), words])
     objectives = evaluated.objectives(requirements.objectives)
     return {
         "name": design.address,
@@ -57,21 +54,19 @@ def plate(
             criterion_of(name).shown(value)
             for name, value in zip(requirements.objectives, objectives, strict=True)
         ],
-        "numbers": numbers(evaluated),
-        "chosen": chosen,
+        "numbers": [
+            [key, CRITERIA[key].said, CRITERIA[key].shown(value)]
+            for key, value in evaluated.numbers.items()
+            if key in CRITERIA and key != "cost"
+        ],
+        "chosen": [
+            [variable.name.replace("_", " "), setting_words(variable, design, requirements)]
+            for variable in space
+        ],
         "design": {"shape": design.shape, "values": design.settings},
         "yield": None if made is None else made.kept,
         "warnings": list(evaluated.warnings),
     }
-
-
-def numbers(candidate: Evaluated) -> list[list[str]]:
-    """Numbers of a design by row: a criterion's key, its name for people, the value in words."""
-    return [
-        [key, CRITERIA[key].said, CRITERIA[key].shown(value)]
-        for key, value in candidate.numbers.items()
-        if key in CRITERIA and key != "cost"
-    ]
 
 
 def glimpse(seen: DesignSearch) -> dict[str, Any]:

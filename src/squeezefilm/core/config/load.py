@@ -24,8 +24,8 @@ from squeezefilm.core.config.provenance import (
     tree_values,
     value_at,
 )
-from squeezefilm.core.config.references import COPIED_FROM, References
-from squeezefilm.core.config.schema import family, model_of, reads_from_file
+from squeezefilm.core.config.references import References
+from squeezefilm.core.config.schema import OWNERS, family, model_of, reads_from_file
 from squeezefilm.core.config.syntax import DEEPEST, explained, locate, require_quick_toml
 from squeezefilm.core.distributions import Distribution
 from squeezefilm.core.errors import ConfigError, InputError
@@ -92,8 +92,7 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
     original = None
     try:
         if references is not None:
-            raw, copied_from = references.written_out(raw)
-            original = None if copied_from is None else _original(references, copied_from)
+            raw, original = references.written_out(raw)
         split = split_provenance(raw, of_tables=references is not None)
     except ConfigError as error:
         place = locate(text, (error.key or "").split("."))
@@ -103,7 +102,7 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
         model = model_of(cls).model_validate(split.plain)
     except ValidationError as error:
         raise _all_errors(cls, error, source) from error
-    built = _build(cls, model, (), source)
+    built = _build(model, (), source)
     if any(field.name == "provenance" for field in dataclasses.fields(cls)):  # type: ignore[arg-type]
         for key, spread in split.spreads.items():
             distribution = _distribution(built, key, spread, source)
@@ -111,14 +110,6 @@ def load_text(cls: type[T], text: str, *, file: str | Path | None = None) -> T:
         sources = split.sources if references is None else stated_sources(built, split, original)
         built = dataclasses.replace(built, provenance=read_only(sources))
     return typing.cast(T, built)
-
-
-def _original(references: References, name: str) -> Any:
-    """The description that a file was copied from. Raises `ConfigError` with the key."""
-    try:
-        return references.original(name)
-    except InputError as error:
-        raise ConfigError(str(error), key=COPIED_FROM) from error
 
 
 def _depth(tree: Any) -> int:
@@ -146,11 +137,12 @@ def _distribution(built: Any, key: str, spread: Spread, source: _Source) -> Dist
         raise source.error(str(error), place) from error
 
 
-def _build(cls: type[Any], model: BaseModel, path: _Path, source: _Source) -> Any:
-    hints = si.hints_of(cls)
-    values: dict[str, Any] = {}
-    for name in type(model).model_fields:
-        values[name] = _built_value(hints[name], getattr(model, name), (*path, name), source)
+def _build(model: BaseModel, path: _Path, source: _Source) -> Any:
+    cls = OWNERS[type(model)]
+    values = {
+        name: _built_value(getattr(model, name), (*path, name), source)
+        for name in type(model).model_fields
+    }
     try:
         return cls(**values)
     except ConfigError:
@@ -158,7 +150,7 @@ def _build(cls: type[Any], model: BaseModel, path: _Path, source: _Source) -> An
     except InputError as error:
         key = getattr(error, "quantity", None)
         at = (*path, key) if key in values else path
-        raise source.error(_as_typed(error, hints, at, source), at) from error
+        raise source.error(_as_typed(error, si.hints_of(cls), at, source), at) from error
 
 
 def _as_typed(error: InputError, hints: dict[str, Any], at: _Path, source: _Source) -> str:
@@ -171,17 +163,12 @@ def _as_typed(error: InputError, hints: dict[str, Any], at: _Path, source: _Sour
     return str(error)
 
 
-def _built_value(hint: Any, value: Any, path: _Path, source: _Source) -> Any:
+def _built_value(value: Any, path: _Path, source: _Source) -> Any:
     if isinstance(value, BaseModel):
-        options = _options(hint) or [hint]
-        owner = next(cls for cls in options if model_of(cls) is type(value))
-        return _build(owner, value, path, source)
+        return _build(value, path, source)
     if isinstance(value, list):
-        item_hint = typing.get_args(hint)[0]
-        return tuple(
-            _built_value(item_hint, item, (*path, index), source)
-            for index, item in enumerate(value)
-        )
+        items = enumerate(value)
+        return tuple(_built_value(item, (*path, index), source) for index, item in items)
     return value
 
 

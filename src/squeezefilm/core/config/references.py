@@ -31,25 +31,31 @@ class References:
     original: Callable[[str], Any]
     parts: Mapping[str, Callable[[str], Mapping[str, Any]]]
 
-    def written_out(self, tree: Mapping[str, Any]) -> tuple[dict[str, Any], str | None]:
-        """The tree with its materials in place of their names, and what it was copied from.
+    def written_out(self, tree: Mapping[str, Any]) -> tuple[dict[str, Any], Any]:
+        """The tree with its materials in place of their names, and what it was copied from, built;
+        None where it is no copy.
 
         A table that names a material may state single values of its own beside it: they stand in
         place of the library's. A name may have a source, as a value has one: where that says that
         the material is assumed, every value that it brings is. Raises `ConfigError`, with the key,
         for a name that is not known.
         """
-        whole = dict(tree)
+        whole, original = dict(tree), None
         copied_from = whole.pop(COPIED_FROM, None)
-        if copied_from is not None and not isinstance(copied_from, str):
-            raise ConfigError(
-                f"{copied_from!r} is no name; write the preset that this file was copied from, "
-                "or delete the line",
-                key=COPIED_FROM,
-            )
+        if copied_from is not None:
+            if not isinstance(copied_from, str):
+                raise ConfigError(
+                    f"{copied_from!r} is no name; write the preset that this file was copied from, "
+                    "or delete the line",
+                    key=COPIED_FROM,
+                )
+            try:
+                original = self.original(copied_from)
+            except InputError as error:
+                raise ConfigError(str(error), key=COPIED_FROM) from error
         for path, table in self.parts.items():
             whole = _with_material(whole, path.split("."), path, table)
-        return whole, copied_from
+        return whole, original
 
 
 def _with_material(

@@ -99,6 +99,8 @@ def model_of(cls: type[Any]) -> type[BaseModel]:
 
 
 _MODELS: dict[type[Any], type[BaseModel]] = {}
+OWNERS: dict[type[BaseModel], type[Any]] = {}
+"""The dataclass that each model reads."""
 _IN_THE_MAKING: list[type[Any]] = []
 _UNFINISHED: list[type[BaseModel]] = []
 
@@ -136,6 +138,7 @@ def _build_model(cls: type[Any]) -> type[BaseModel]:
     finally:
         _IN_THE_MAKING.pop()
     _UNFINISHED.append(model)
+    OWNERS[model] = cls
     return model
 
 

@@ -13,7 +13,7 @@ from scipy.stats import spearmanr
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import Result, to_json
-from squeezefilm.design.search.candidate import Design, Evaluated, plates_of, sourced_display_of
+from squeezefilm.design.search.candidate import Evaluated, plates_of, sourced_display_of
 from squeezefilm.design.search.criteria import CRITERIA
 from squeezefilm.design.search.reasons import (
     EmptyCorner,
@@ -40,22 +40,6 @@ class FrontMember:
     def name(self) -> str:
         """The design's short name."""
         return self.evaluated.design.address
-
-
-def unbeaten(
-    requirements: Requirements, solved: Iterable[Evaluated], made: Mapping[Design, Made]
-) -> list[Evaluated]:
-    """The feasible designs that none other beats, the first objective rising; without those of
-    which, as made, fewer keep the limits than are wanted."""
-    wanted = requirements.limits.least_yield or 0.0
-    feasible = [
-        evaluated
-        for evaluated in solved
-        if evaluated.is_feasible
-        and (evaluated.design not in made or made[evaluated.design].kept >= wanted)
-    ]
-    rows = objectives_of(requirements, feasible)
-    return [feasible[k] for k in sorted(front_of(rows), key=lambda k: tuple(rows[k]))]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

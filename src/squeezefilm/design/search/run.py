@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 
@@ -13,7 +14,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError, WorkersError
-from squeezefilm.core.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED, require_within
+from squeezefilm.core.hard_limits import DESIGNS_SCREENED, DESIGNS_SOLVED
 from squeezefilm.core.progress import SayProgress, about
 from squeezefilm.core.results import config_hash, stamp
 from squeezefilm.design.search import worth_solving as choice
@@ -29,12 +30,13 @@ from squeezefilm.design.search.candidate import (
     reference_of,
 )
 from squeezefilm.design.search.evolution import POPULATION, Proposals
-from squeezefilm.design.search.found import DesignSearch, FrontMember, unbeaten
+from squeezefilm.design.search.found import DesignSearch, FrontMember
 from squeezefilm.design.search.requirements import NamedRequirements
 from squeezefilm.design.search.space import Space
 from squeezefilm.design.search.store import DesignStore
 from squeezefilm.design.search.tolerance import Made, made_of
 from squeezefilm.design.sweep.tasks import NoAnswer, Workers
+from squeezefilm.design.sweep.tradeoffs import front_of
 from squeezefilm.design.sweep.workers import workers
 
 # Screened designs to a task: one takes some ten milliseconds.
@@ -55,13 +57,13 @@ class SearchRequest:
 
     requirements: NamedRequirements
     _: KW_ONLY
-    screened: int = 2000
-    solved: int = 120
-    seed: int = 1
-    jobs: int = 1
+    screened: Annotated[int, DESIGNS_SCREENED] = 2000
+    solved: Annotated[int, DESIGNS_SOLVED] = 120
+    seed: Annotated[int, si.AtLeast(0)] = 1
+    jobs: Annotated[int, si.AtLeast(1)] = 1
     scheduler: str | None = None
     out: str | Path | None = None
-    member: int = 0
+    member: Annotated[int, si.AtLeast(0)] = 0
     progress: SayProgress | None = None
     watch: Callable[[DesignSearch], None] | None = None
 
@@ -116,14 +118,9 @@ class SearchRun:
     """A search under way: what it knows, and what it does next."""
 
     def __init__(self, asked: SearchRequest) -> None:
-        require_within(DESIGNS_SCREENED, asked.screened, "screened")
-        require_within(DESIGNS_SOLVED, asked.solved, "solved")
-        si.require("jobs", asked.jobs, at_least=1)
-        si.require("member", asked.member, at_least=0)
-        si.require("seed", asked.seed, at_least=0)
         self._asked, self.requirements = asked, asked.requirements
-        self._folder = None if asked.out is None else Path(asked.out)
-        self._store = DesignStore(self.requirements, self._folder, asked.member)
+        folder = None if asked.out is None else Path(asked.out)
+        self._store = DesignStore(self.requirements, folder, asked.member)
         self._tell = asked.progress or (lambda _: None)
         self._made: dict[Design, Made] = {}
         self._reference: Evaluated | None = None
@@ -349,8 +346,17 @@ class SearchRun:
         return evaluated
 
     def _front(self, seen: choice.Seen | None = None) -> list[Evaluated]:
-        """The feasible solved designs that none other beats, the first objective rising."""
-        return unbeaten(self.requirements, (seen or self._seen)["solved"].values(), self._made)
+        """The feasible solved designs that none other beats, the first objective rising; without
+        those of which, as made, fewer keep the limits than are wanted."""
+        wanted, made = self.requirements.limits.least_yield or 0.0, self._made
+        feasible = [
+            solution
+            for solution in (seen or self._seen)["solved"].values()
+            if solution.is_feasible
+            and (solution.design not in made or made[solution.design].kept >= wanted)
+        ]
+        rows = choice.objectives_of(self.requirements, feasible)
+        return [feasible[k] for k in sorted(front_of(rows), key=lambda k: tuple(rows[k]))]
 
     def _show_meanwhile(self, level: Level, evaluated: Mapping[Design, Evaluated]) -> None:
         """Show what came in the middle of a batch, so seldom that it takes little of the time."""
