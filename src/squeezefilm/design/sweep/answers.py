@@ -18,8 +18,6 @@ from dataclasses import dataclass, field
 from importlib import resources
 from typing import Any
 
-import numpy as np
-
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.analysis.analyze import analyze
@@ -59,20 +57,12 @@ class VerbOption:
     def value(self, given: Any) -> float | str:
         """A value as it stands in a table: a word, or the number (SI) of a text or a number.
         Raises `InputError` for one that is none, of another dimension, or not allowed."""
-        if self.unit is None:
-            if not isinstance(given, str):
-                raise InputError(f"{self.name} = {given!r:.60} is no text; write a name")
-            self.read(given)
-            return given
-        if isinstance(given, str):
-            return self.number(self.quantity(given))
-        if isinstance(given, bool) or not isinstance(given, int | float | np.number):
-            raise InputError(
-                f"{self.name} = {given!r:.60} is no number and no text; write a quantity"
-            )
-        if not np.isfinite(given):
-            raise InputError(f"{self.name} = {given!r} is not finite; write a finite number")
-        return self.number(float(given))
+        if self.unit is not None:
+            return self.number(self.quantity(given) if isinstance(given, str) else given)
+        if not isinstance(given, str):
+            raise InputError(f"{self.name} = {given!r:.60} is no text; write a name")
+        self.read(given)
+        return given
 
     def quantity(self, text: str) -> float:
         """The number (SI) that a text says. Raises `InputError` for what is none of its unit."""
@@ -82,8 +72,10 @@ class VerbOption:
             raise InputError(f"{self.name}: {error}", quantity=self.name) from error
 
     def number(self, value: float) -> float:
-        """A number (SI) of this option. Raises `InputError` for one outside its bounds."""
-        si.require(self.name, value, self.unit or si.Unit("1"), **self.bounds)
+        """A number (SI) of this option. Raises `InputError` for what is none, and for one outside
+        its bounds."""
+        si.require(self.name, value, self.unit or si.Unit("1"), **self.bounds, axes=0)
+        value = float(value)
         if not self.whole:
             return value
         if not value.is_integer():
@@ -140,17 +132,14 @@ USUAL_MOTION = "60 mm/s over 4 cm, 2 passes"
 @dataclass(frozen=True)
 class Verb:
     """A verb that answers: its name, what is called with a display and the options that it `takes`,
-    the options that leave its answers as they are, and whether it draws an interval (`samples`)."""
+    the options that may not stand beside it, since they would move its answers (`strange`; all
+    others leave them as they are), and whether it draws an interval (`samples`)."""
 
     name: str
     call: Callable[..., Any]
     takes: frozenset[str]
-    unmoved: frozenset[str]
+    strange: frozenset[str] = frozenset()
     draws: bool = False
-
-    def knows(self, option: str) -> bool:
-        """True where an option may stand beside this verb: it takes it, or is not moved by it."""
-        return option in self.takes | self.unmoved | {"voltage", "ambient_pressure"}
 
     def settings(self, options: Mapping[str, Any]) -> dict[str, Any]:
         """Options of a point that the verb is called with."""
@@ -185,30 +174,29 @@ def _words(text: str) -> frozenset[str]:
 
 
 _OF_POINT = _words("voltage frequency vibration_amplitude normal_force surface model speed")
-_OF_TEXTURES = _words("texture motion sensor compensation braking wave")
-_FELT = _words("normal_force speed surface model position")
-_OF_OTHERS = _OF_TEXTURES | {"band", "wanted_friction"}
+_OF_MODES = _words("frequency vibration_amplitude theory")
 
 VERBS: dict[str, Verb] = {
     verb.name: verb
     for verb in (
-        Verb("predict", predict, _OF_POINT | {"position", "theory"}, _OF_OTHERS),
+        Verb("predict", predict, _OF_POINT | {"position", "theory"}),
         Verb(
             "render",
             _render,
-            _OF_TEXTURES | _words("voltage normal_force surface model"),
-            _words("band wanted_friction"),
+            _words("texture motion sensor compensation braking wave")
+            | _words("voltage normal_force surface model"),
+            _OF_MODES | {"speed", "position"},
         ),
-        Verb("followed", modes_to_follow, _words("band"), _OF_OTHERS | _FELT),
-        Verb("plate", solve_plate, _words("band"), _OF_OTHERS | _FELT),
+        Verb("followed", modes_to_follow, _words("band"), _OF_MODES),
+        Verb("plate", solve_plate, _words("band"), _OF_MODES),
         Verb(
             "friction",
             analyze_friction,
             _OF_POINT | {"position", "wanted_friction"},
-            _OF_OTHERS,
+            _words("theory"),
             draws=True,
         ),
-        Verb("analyze", analyze, _OF_POINT | {"theory"}, _OF_OTHERS, draws=True),
+        Verb("analyze", analyze, _OF_POINT | {"theory"}, _words("position"), draws=True),
     )
 }
 """Verbs by name, the quickest first: what several verbs answer is asked of the first of them."""
@@ -228,13 +216,8 @@ class AskedNumber:
     @property
     def column(self) -> str:
         """The name of its column: the key, with the verb before it where another is asked first."""
-        return self.key if self._plain else f"{self.verb}.{self.key}"
-
-    @property
-    def _plain(self) -> bool:
-        """True where the key alone asks this verb."""
         verbs = (verb for verb in VERBS if verb != FOLLOWED and _known(verb, self.key))
-        return next(verbs, None) == self.verb
+        return self.key if next(verbs, None) == self.verb else f"{self.verb}.{self.key}"
 
     @property
     def unit(self) -> si.Unit:
@@ -346,8 +329,7 @@ def _asked_by(name: str) -> list[AskedNumber]:
     wanted = rest if verbs == [head] else name
     for verb in verbs:
         keys = catalogue()[verb]
-        exact = [wanted] if any(_pattern(key).fullmatch(wanted) for key in keys) else []
-        plain = exact or _spelled_out(wanted, keys)
+        plain = [wanted] if _known(verb, wanted) else _spelled_out(wanted, keys)
         if len(plain) > 1:
             raise InputError(f"ask {name} may be {' or '.join(plain)}; say which", quantity="ask")
         group = [key for key in keys if without_units(key).startswith(f"{without_units(wanted)}.")]

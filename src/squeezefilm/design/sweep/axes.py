@@ -21,7 +21,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -92,8 +92,12 @@ def axes_of(
     if count is not None:
         require_within(SWEEP_POINTS, count, "samples")
         si.require("seed", seed, at_least=0)
-        ranges = [(name, match) for name, values in named if (match := _range_in(values))]
-        axes.append(_sampled([_drawn_range(*given, display) for given in ranges], count, seed))
+        ranges = [
+            (what_is_varied(name, display), match)
+            for name, values in named
+            if (match := _range_in(values))
+        ]
+        axes.append(_sampled(ranges, count, seed))
         named = [(name, values) for name, values in named if not _range_in(values)]
     axes += [axis_of(name, values, display) for name, values in named]
     if over is not None:
@@ -243,32 +247,13 @@ def _spaced(option: VerbOption, asked: re.Match[str]) -> Iterator[float]:
     yield from (first, *(float(f"{value:.12g}") for value in middle[1:-1]), last)
 
 
-class _DrawnRange(NamedTuple):
-    """A range in which samples are drawn: its ends (SI), and whether in the logarithm."""
-
-    option: VerbOption
-    low: float
-    high: float
-    logarithmic: bool
-
-    def values(self, shares: si.FloatArray) -> list[float]:
-        """The values at shares of the range, from 0 to 1."""
-        low, high = self.low, self.high
-        if self.option.whole:
-            drawn = np.floor(low + shares * (high - low + 1))
-        elif self.logarithmic:
-            drawn = low * (high / low) ** shares
-        else:
-            drawn = low + shares * (high - low)
-        return [self.option.number(float(f"{value:.12g}")) for value in drawn.tolist()]
-
-
 def _range_in(values: Any) -> re.Match[str] | None:
     return _RANGE.fullmatch(values) if isinstance(values, str) else None
 
 
-def _drawn_range(name: str, asked: re.Match[str], display: Display) -> _DrawnRange:
-    option = what_is_varied(name, display)
+def _drawn(option: VerbOption, asked: re.Match[str], shares: si.FloatArray) -> list[float]:
+    """The values at shares (0 to 1) of a range."""
+    name = option.name
     if option.unit is None:
         raise InputError(f"{name} takes words, which have no range; name them with commas between")
     ends = [asked[end].strip() for end in ("first", "last")]
@@ -278,10 +263,16 @@ def _drawn_range(name: str, asked: re.Match[str], display: Display) -> _DrawnRan
             f"{name} from {ends[0]} to {ends[1]} is no range to draw in; give two ends"
             f"{', above 0 for a logarithm' if asked['log'] else ''}"
         )
-    return _DrawnRange(option, low, high, asked["log"] is not None)
+    if option.whole:
+        drawn = np.floor(low + shares * (high - low + 1))
+    elif asked["log"]:
+        drawn = low * (high / low) ** shares
+    else:
+        drawn = low + shares * (high - low)
+    return [option.number(float(f"{value:.12g}")) for value in drawn.tolist()]
 
 
-def _sampled(ranges: Sequence[_DrawnRange], count: int, seed: int) -> Axis:
+def _sampled(ranges: Sequence[tuple[VerbOption, re.Match[str]]], count: int, seed: int) -> Axis:
     """The axis of so many samples in ranges, of which there must be one."""
     from scipy.stats import qmc
 
@@ -295,10 +286,10 @@ def _sampled(ranges: Sequence[_DrawnRange], count: int, seed: int) -> Axis:
     shares = qmc.Sobol(len(ranges), scramble=True, rng=seed).random_base2(
         math.ceil(math.log2(max(count, 2)))
     )[:count]
-    columns = [drawn.values(shares[:, k]) for k, drawn in enumerate(ranges)]
+    columns = [_drawn(*asked, shares[:, k]) for k, asked in enumerate(ranges)]
     return Axis(
-        tuple(drawn.option.name for drawn in ranges),
-        tuple(drawn.option.unit for drawn in ranges),
+        tuple(option.name for option, _ in ranges),
+        tuple(option.unit for option, _ in ranges),
         tuple(zip(*columns, strict=True)),
-        sampled=tuple("log" if drawn.logarithmic else "linear" for drawn in ranges),
+        sampled=tuple(asked["log"] or "linear" for _, asked in ranges),
     )

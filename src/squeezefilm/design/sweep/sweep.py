@@ -122,7 +122,7 @@ def _check_options(
     verbs = [VERBS[name] for name in dict.fromkeys(answer.verb for answer in asked)]
     options = [name for axis in axes for name in axis.names if name in OPTIONS]
     for name in options:
-        strangers = [verb.name for verb in verbs if not verb.knows(name)]
+        strangers = [verb.name for verb in verbs if name in verb.strange]
         applies = {"voltage", "ambient_pressure"} | {o for v in verbs for o in v.takes}
         if strangers or name not in applies:
             whose = " and ".join(strangers or [verb.name for verb in verbs])

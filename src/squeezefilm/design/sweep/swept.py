@@ -193,12 +193,10 @@ class Effects:
 
 def varied_values(sweep: Sweep) -> tuple[SweptColumn, ...]:
     """The values that were varied and take several values."""
-    made = []
-    places = list(itertools.product(*(range(len(axis)) for axis in sweep.axes)))
-    for number, axis in enumerate(sweep.axes):
-        rows = [point[number] for point in places]
+    made, settings = list[SweptColumn](), sweep.settings()
+    for axis in sweep.axes:
         for k, (name, unit) in enumerate(zip(axis.columns, axis.units, strict=True)):
-            said = [axis.steps[row][k] for row in rows]
+            said = settings[name]
             if len(set(said)) < 2:
                 continue
             if unit is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import textwrap
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -244,12 +245,8 @@ def _effect(axes: Axes, value: SweptColumn, values: si.FloatArray) -> None:
 
 def _short(name: str) -> str:
     """A name in lines of an axis that is narrow."""
-    lines, most = [""], 18
-    for word in name.replace(".", ". ").split():
-        if lines[-1] and len(lines[-1]) + len(word) >= most:
-            lines.append("")
-        lines[-1] = f"{lines[-1]} {word}".strip()
-    return "\n".join(lines)
+    words = " ".join(name.replace(".", ". ").split())
+    return textwrap.fill(words, 18, break_long_words=False, break_on_hyphens=False)
 
 
 @style.drawn
