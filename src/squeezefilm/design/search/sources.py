@@ -6,19 +6,18 @@ import dataclasses
 import re
 from collections.abc import Iterator, Mapping
 
-from squeezefilm.core import presets
-from squeezefilm.core.config.provenance import Provenance, distribution_of, split_provenance
+from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.config.schema import Leaf, leaves
 from squeezefilm.core.distributions import Normal
 from squeezefilm.core.presets.materials import Kind
 from squeezefilm.design.search.requirements import Requirements, toleranced
 from squeezefilm.design.search.space import VOLTAGE, Setting
-from squeezefilm.design.search.stock import OWN
+from squeezefilm.design.search.stock import OWN, of_library
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.physics.uncertainty.parameters import value_at
 
-_PARTS: Mapping[str, Kind] = {"substrate": "substrate", "ceramic": "ceramic"}
+_PARTS: tuple[Kind, ...] = ("substrate", "ceramic")
 # Of the body, what the requirements say once for all plates.
 _GIVEN = ("glue", "supports")
 
@@ -46,8 +45,8 @@ def plate_sources(
             sources[path] = chosen
     sources |= dict(_tolerances(requirements, display, sources))
     base = requirements.started_from
-    for part, kind in _PARTS.items():
-        sources |= _of_material(base, part, str(settings[part]), kind, display)
+    for part in _PARTS:
+        sources |= _of_material(base, part, str(settings[part]))
     # As a file has them: what is uncertain is drawn in this order.
     order = {".".join(map(str, leaf.path)): n for n, leaf in enumerate(leaves(display))}
     return {at: sources[at] for at in sorted(sources, key=lambda at: order.get(at, len(order)))}
@@ -120,20 +119,11 @@ def _quality(requirements: Requirements, given: Provenance) -> Provenance:
     )
 
 
-def _of_material(
-    base: Display, part: str, name: str, kind: Kind, display: Display
-) -> dict[str, Provenance]:
+def _of_material(base: Display, part: Kind, name: str) -> dict[str, Provenance]:
     """The sources of a material's values: those of the display, or of the library with the ranges
     that it gives."""
-    at = f"actuator.{part}."
     if name == OWN:
+        at = f"actuator.{part}."
         return {path: origin for path, origin in base.provenance.items() if path.startswith(at)}
-    split = split_provenance(presets.materials.table(name, kind))
-    sources = {}
-    for path, source in split.sources.items():
-        spread = split.spreads.get(path)
-        if spread is not None:
-            value, unit = value_at(display, f"{at}{path}")
-            source = dataclasses.replace(source, distribution=distribution_of(value, unit, spread))
-        sources[at + path] = source
-    return sources
+    library = of_library(name, part).provenance
+    return {f"actuator.{path}": source for path, source in library.items()}

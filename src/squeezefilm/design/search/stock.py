@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import functools
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar
 
 from squeezefilm.core import config, presets
 from squeezefilm.core import hard_limits as hard
 from squeezefilm.core import quantities as si
+from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.config.references import References
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
@@ -49,10 +50,11 @@ class CeramicStock:
 
 @dataclass(frozen=True)
 class _Library:
-    """A material by its kind, as a file that names it has it."""
+    """A material by its kind, as a file that names it has it, and where its values are from."""
 
     substrate: ElasticMaterial | None = None
     ceramic: Piezoceramic | None = None
+    provenance: Mapping[str, Provenance] = field(default_factory=dict, metadata={"loader": True})
     references: ClassVar[References] = References(
         original=lambda name: None,
         parts={
@@ -63,9 +65,10 @@ class _Library:
 
 
 @functools.cache
-def _of_library(name: str, kind: Kind) -> Any:
+def of_library(name: str, kind: Kind) -> _Library:
+    """The library's material of a name and kind, with its sources. Raises as `material_named`."""
     named = presets.materials.named(name, kind).name
-    return getattr(config.load_text(_Library, f'[{kind}]\nmaterial = "{named}"\n'), kind)
+    return config.load_text(_Library, f'[{kind}]\nmaterial = "{named}"\n')
 
 
 def material_named(name: str, kind: Kind, own: RectangularPlate | DiscPlate) -> Any:
@@ -73,7 +76,7 @@ def material_named(name: str, kind: Kind, own: RectangularPlate | DiscPlate) -> 
 
     Raises `InputError` for a name that is not known.
     """
-    return getattr(own, kind) if name == OWN else _of_library(name, kind)
+    return getattr(own if name == OWN else of_library(name, kind), kind)
 
 
 def require_known(name: str, kind: Kind) -> None:
