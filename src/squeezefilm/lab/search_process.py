@@ -20,7 +20,6 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.config.syntax import require_quick_toml
 from squeezefilm.core.errors import ConfigError, SqueezefilmError
 from squeezefilm.core.interrupts import hear_interrupts
-from squeezefilm.core.progress import about
 from squeezefilm.design.search.candidate import Design, Evaluated
 from squeezefilm.design.search.criteria import CRITERIA, bounded, criterion_of
 from squeezefilm.design.search.found import DesignSearch
@@ -73,7 +72,8 @@ def glimpse(seen: DesignSearch) -> dict[str, Any]:
     """Message of what a search has so far."""
     every = max(1, -(-len(seen.screened_front) // MOST_POINTS))
     screened_front = sorted(seen.screened_front.tolist())[::every]
-    return {"stage": seen.stage, "screened_front": screened_front, **_so_far(seen)}
+    now = {"stage": seen.stage, "left": seen.left, "screened_front": screened_front}
+    return {**now, **_so_far(seen)}
 
 
 def _so_far(search: DesignSearch) -> dict[str, Any]:
@@ -138,26 +138,6 @@ class SearchProcess(ToldProcess):
         "it knew is kept, and the same requirements go on from there"
     )
     patience = 1.0
-
-
-class StagePace:
-    """Estimate of how long screening or solving goes on, by how fast its stage went until now."""
-
-    def __init__(self, screened: int, solved: int) -> None:
-        self._every = screened, solved
-        self._stage, self._began, self._first = "", 0.0, 0
-
-    def left(self, seen: DesignSearch) -> str:
-        """Words for how long it takes until all designs are screened, or as many are solved as may
-        be; "" while nobody knows."""
-        solves, now = not seen.stage.startswith("screening"), time.monotonic()
-        done = seen.plates_solved if solves else len(seen.screened)
-        every = self._every[solves]
-        if seen.stage != self._stage:
-            self._stage, self._began, self._first = seen.stage, now, done
-        if done <= self._first or done >= every:
-            return ""
-        return about((now - self._began) / (done - self._first) * (every - done))
 
 
 class _Stop:
@@ -225,7 +205,6 @@ def _found(
 
     requirements = requirements_of(text, folder)
     last: tuple[str, float] | None = None
-    pace = StagePace(how["screened"], how["solved"])
 
     def say(words: str) -> None:
         with stop.held():
@@ -233,13 +212,13 @@ def _found(
 
     def watch(seen: DesignSearch) -> None:
         nonlocal last
-        now, left = time.monotonic(), pace.left(seen)
+        now = time.monotonic()
         every = TELL_EVERY * (1 + len(seen.front) / _SLOWER)
         if last is not None and last[0] == seen.stage and now - last[1] < every:
             return
         last = seen.stage, now
         with stop.held():
-            tell({"type": "search found", "left": left, **glimpse(seen)})
+            tell({"type": "search found", **glimpse(seen)})
 
     search, stopped = search_until_stopped(
         SearchRequest(requirements, out=out, progress=say, watch=watch, **how)

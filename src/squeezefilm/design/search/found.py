@@ -49,7 +49,8 @@ class DesignSearch(Result):
     `front` are the feasible solved designs that none other beats, the best in the first objective
     first; one plate may stand there at several voltages. `reference` is the display of
     `compare_with`, judged by the same questions. `corrections` are by shape what solved plates
-    taught the screening. `stopped` says that not all was done, `stage` in words what is done now.
+    taught the screening. `stopped` says that not all was done, `stage` in words what is done now,
+    and `left` how long that takes at most ("" while nobody knows).
     """
 
     requirements: Requirements
@@ -65,6 +66,7 @@ class DesignSearch(Result):
     stopped: bool
     provenance: Mapping[str, Any]
     stage: str = ""
+    left: str = ""
     _shown: ClassVar[str] = "requirements.name chosen_name hypervolume seconds"
 
     @functools.cached_property

@@ -127,7 +127,7 @@ class SearchRun:
         self._corrections: list[choice.Correction | None] = [None] * len(self.requirements.spaces)
         self._seen: dict[Level, dict[Design, Evaluated]] = {"screened": {}, "solved": {}}
         self._began, self._done = time.monotonic(), False
-        self._stage, self._shown_next = "", 0.0
+        self._stage, self._left, self._shown_next = "", "", 0.0
 
     def finish(self) -> None:
         """All that is left to do. What came is kept where this is interrupted."""
@@ -173,11 +173,11 @@ class SearchRun:
             )
 
     def _say_screening(self, shape: str, done: int, begun: float) -> None:
-        self._stage, every = f"screening {shape}", self._asked.screened
-        left = ""
+        self._stage, self._left, every = f"screening {shape}", "", self._asked.screened
         if done:
             seconds = (time.monotonic() - begun) / done * (every - done)
-            left = f", {about(max(seconds, 0.0))} left"
+            self._left = about(max(seconds, 0.0))
+        left = self._left and f", {self._left} left"
         feasible = sum(candidate.is_feasible for candidate in self._seen["screened"].values())
         self._tell(f"screening {shape}: {done} of {every} designs, {feasible} feasible{left}")
 
@@ -287,13 +287,13 @@ class SearchRun:
                 break  # it proposes nothing new
 
     def _say_solving(self, what: str) -> None:
-        self._stage, solved = f"solving {what}", len(self._plates_solved())
-        left = ""
+        self._stage, self._left, solved = f"solving {what}", "", len(self._plates_solved())
         # Nobody knows how many workers a cluster has.
         if solved and self._asked.scheduler is None:
             took = sum(candidate.seconds for candidate in self._seen["solved"].values()) / solved
             rest = (self._asked.solved - solved) * took / self._asked.jobs
-            left = f", {about(rest)} left at most"
+            self._left = about(rest)
+        left = self._left and f", {self._left} left at most"
         on_front = len(plates_of(evaluated.design for evaluated in self._front()))
         self._tell(
             f"solving {what}: {solved} of at most {self._asked.solved} plates, "
@@ -393,4 +393,5 @@ class SearchRun:
             provenance=stamp(requirements.base, self._asked.seed)
             | {"requirements_sha256": config_hash(requirements)},
             stage=self._stage,
+            left=self._left,
         )

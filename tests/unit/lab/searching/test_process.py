@@ -18,7 +18,7 @@ from squeezefilm.design.search.run import SearchRequest
 from squeezefilm.lab import own_process
 from squeezefilm.lab import search_process as process
 from squeezefilm.lab import search_process as shown
-from squeezefilm.lab.search_process import SearchProcess, StagePace, search
+from squeezefilm.lab.search_process import SearchProcess, search
 
 from .small import TEXT
 
@@ -113,7 +113,6 @@ def test_what_is_seen_is_told_a_few_times_a_second_and_each_stage_at_once(
     assert [(one["stage"], one["screened"]) for one in told] == [
         ("screening strips", 8), ("screening strips", 24), ("solving", 40),
     ]  # fmt: skip
-    assert told[1]["left"] == "less than 1 s"
 
 
 def test_a_long_front_is_told_less_often(
@@ -130,21 +129,6 @@ def test_a_long_front_is_told_less_often(
 
     told = [one["solved"] for one in searched(how) if one["type"] == "search found"]
     assert told == [0, 2, 4, 6, 8]
-
-
-def test_what_is_left_of_a_stage_follows_from_how_fast_it_went(clock: SimpleNamespace) -> None:
-    pace = StagePace(200, 16)
-    found = []
-    for after, seen in (
-        (0, glimpse("screening strips", 50)), (10, glimpse("screening strips", 100)),
-        (30, glimpse("screening strips", 150)), (1, glimpse("screening strips", 200)),
-        (1, glimpse("solving the best", 200, 0)), (8, glimpse("solving the best", 200, 4)),
-        (0, glimpse("solving beside", 203, 4)), (4, glimpse("solving beside", 204, 6)),
-        (1, glimpse("solving beside", 204, 16)),
-    ):  # fmt: skip
-        clock.now += after
-        found.append(pace.left(seen))
-    assert found == ["", "about 20 s", "about 20 s", "", "", "about 24 s", "", "about 20 s", ""]
 
 
 @pytest.mark.parametrize(

@@ -43,8 +43,9 @@ def test_a_plate_has_what_is_drawn_in_si_and_what_is_read_in_words() -> None:
 
 
 def test_a_glimpse_has_both_fronts_and_the_reference() -> None:
-    found = shown.glimpse(search(stage="solving"))
+    found = shown.glimpse(search(stage="solving", left="about 9 s"))
     assert (found["stage"], found["screened"], found["solved"]) == ("solving", 32, 2)
+    assert found["left"] == "about 9 s"
     assert found["screened_front"] == [[0.3, 0.4e-3], [0.4, 0.3e-3]]
     assert [one["name"] for one in found["front"]] == [
         one.design.address for one in (FIRST, SECOND)
