@@ -15,7 +15,7 @@ from squeezefilm.design.search.candidate import Evaluated, design_of, evaluate
 from squeezefilm.design.search.requirements import load_requirements
 from squeezefilm.design.search.run import search_designs
 from squeezefilm.design.search.worth_solving import learned
-from squeezefilm.design.sweep.tasks import Lost
+from squeezefilm.design.sweep.tasks import NoAnswer
 from squeezefilm.design.sweep.workers import workers
 
 JOBS = os.cpu_count() or 1
@@ -70,7 +70,7 @@ def _near(one: Evaluated) -> bool:
 def _all(pool, wanted, designs, level):  # type: ignore[no-untyped-def]
     tasks = {one: (wanted, one, level) for one in designs}
     found = dict(pool.answers(evaluate, tasks))
-    assert not any(isinstance(one, Lost) for one in found.values())
+    assert not any(isinstance(one, NoAnswer) for one in found.values())
     return found
 
 

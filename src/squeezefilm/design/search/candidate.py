@@ -1,20 +1,25 @@
-"""A design of a search: what was chosen, the display that follows, and what it does; and the
-display that the front is set beside, asked the same."""
+"""A design of a search: what was chosen, the display that follows, with the source of each of its
+numbers, and what it does; and the display that the front is set beside, asked the same."""
 
 from __future__ import annotations
 
 import hashlib
 import json
 import math
+import re
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.config.provenance import Provenance
+from squeezefilm.core.config.schema import leaves
+from squeezefilm.core.distributions import Normal
 from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.presets.materials import Kind
 from squeezefilm.design.search.criteria import (
     Breach,
     breaches,
@@ -22,16 +27,17 @@ from squeezefilm.design.search.criteria import (
     numbers_of_prediction,
     numbers_of_solved,
 )
-from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.sources import plate_sources, shared_sources
+from squeezefilm.design.search.requirements import Requirements, toleranced
 from squeezefilm.design.search.space import VOLTAGE, Setting
+from squeezefilm.design.search.stock import OWN, of_library
 from squeezefilm.design.sweep.tasks import NoAnswer, tried
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.beam_modes import timoshenko_frequency
 from squeezefilm.physics.plate.laminate import plate_laminate, section_with
-from squeezefilm.physics.plate.layout import RectangularPlate
+from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate
 from squeezefilm.physics.plate.working_mode import PlateTheory
+from squeezefilm.physics.uncertainty.parameters import value_at
 
 Level = Literal["screened", "solved"]
 
@@ -144,8 +150,7 @@ def sourced_display_of(requirements: Requirements, design: Design) -> Display:
     """Display of a design as by `display_of`, with every number's source and, where that is known,
     its range: what an interval of its friction rests on."""
     display = display_of(requirements, design)
-    sources = plate_sources(requirements, display, design.shape, design.settings)
-    return replace(display, provenance=sources)
+    return replace(display, provenance=_plate_sources(requirements, display, design))
 
 
 def evaluate(requirements: Requirements, design: Design, level: Level) -> Evaluated:
@@ -257,3 +262,98 @@ def reference_of(requirements: Requirements) -> Evaluated:
         return _solved(requirements, display, _NOT_CHOSEN, requirements.drive.voltage)
     except SqueezefilmError as error:
         return Evaluated(_NOT_CHOSEN, "solved", {}, reason=str(error))
+
+
+_PARTS: tuple[Kind, ...] = ("substrate", "ceramic")
+# Of the body, what the requirements say once for all plates.
+_GIVEN = ("glue", "supports")
+
+
+def _plate_sources(
+    requirements: Requirements, display: Display, design: Design
+) -> dict[str, Provenance]:
+    """Source of each number of a plate's display, by its dotted path: chosen by the search among
+    what the shape of a number allows, asked for or given by the requirements, of the library of
+    materials, or of the display that the search started from."""
+    sources, base = shared_sources(requirements), requirements.started_from
+    own = f"the requirements '{requirements.name}'"
+    chosen = Provenance(f"chosen by squeezefilm design for {own}", "derived")
+    given = Provenance(f"given by {own}", "assumed")
+    quality = given
+    if requirements.quality_factor is None:
+        start = f"that of {requirements.start_from}, taken for every assembly"
+        quality = Provenance(f"{start}: only a measurement says it", "assumed")
+    space = requirements.spaces[design.shape]
+    of_fixed = {variable.name for variable in space if variable.is_fixed}
+    sources["drive.voltage"] = given if VOLTAGE in of_fixed else chosen
+    for leaf in leaves(display.actuator, ("actuator",)):
+        if isinstance(leaf.value, str | bool) or leaf.value == leaf.field.default:
+            continue  # no number, or as everywhere
+        name = leaf.path[1]
+        path = ".".join(map(str, leaf.path))
+        if name in _GIVEN or name in of_fixed:
+            sources[path] = given
+        elif name == "quality_factor":
+            sources[path] = quality
+        elif name not in _PARTS:
+            sources[path] = chosen
+    sources |= dict(_tolerances(requirements, display, sources))
+    for part in _PARTS:
+        material, origins = str(design.settings[part]), base.provenance
+        if material != OWN:
+            library = of_library(material, part).provenance
+            origins = {f"actuator.{path}": source for path, source in library.items()}
+        at = f"actuator.{part}."
+        sources |= {path: source for path, source in origins.items() if path.startswith(at)}
+    # As a file has them: what is uncertain is drawn in this order.
+    order = {".".join(map(str, leaf.path)): n for n, leaf in enumerate(leaves(display))}
+    return {at: sources[at] for at in sorted(sources, key=lambda at: order.get(at, len(order)))}
+
+
+def shared_sources(requirements: Requirements) -> dict[str, Provenance]:
+    """Sources of all numbers but those of body and drive, which every plate of a search shares:
+    finger, gas, surfaces and cooling."""
+    base = requirements.started_from
+    sources = dict(_kept(requirements, base))
+    asked = Provenance(f"asked for by the requirements '{requirements.name}'", "assumed")
+    sources["finger.speed"] = asked
+    # Where the display does not say it, the contact's size is that at the display's own force.
+    own = base.provenance.get("finger.normal_force")
+    if requirements.base.finger.contact_area_force is not None and own is not None:
+        sources.setdefault("finger.contact_area_force", own)
+    if requirements.touch.normal_force is not None:
+        sources["finger.normal_force"] = asked
+    return sources
+
+
+def _kept(requirements: Requirements, base: Display) -> Iterator[tuple[str, Provenance]]:
+    """The sources of all but the body, of the display that the search started from; the surface
+    that was asked for stands first."""
+    first = base.surfaces.index(base.surface(requirements.touch.surface))
+    order = [first, *(k for k in range(len(base.surfaces)) if k != first)]
+    places = {str(old): str(new) for new, old in enumerate(order)}
+    for path, origin in base.provenance.items():
+        head, *rest = path.split(".")
+        if head in ("actuator", "measured", "joint", "calibration", "active_area"):
+            continue
+        if head == "surfaces":
+            rest[0] = places[rest[0]]
+        yield ".".join([head, *rest]), origin
+
+
+def _tolerances(
+    requirements: Requirements, display: Display, sources: Mapping[str, Provenance]
+) -> Iterator[tuple[str, Provenance]]:
+    """The sources of what a workshop makes, with how well it does."""
+    body = display.actuator
+    assert isinstance(body, RectangularPlate | DiscPlate), "shapes make no others"
+    names = toleranced(body)
+    for at, source in sources.items():
+        # A tolerance is of all ceramics, whatever their number.
+        path = re.sub(r"\.\d+\.", ".*.", at.removeprefix("actuator."))
+        if not at.startswith("actuator.") or path not in names:
+            continue
+        deviation, (value, _) = getattr(requirements.tolerances, names[path]), value_at(body, path)
+        # A description's value stays above 0 within three standard deviations.
+        if 0 < 3 * deviation < value:
+            yield at, replace(source, distribution=Normal(value, deviation))

@@ -8,8 +8,8 @@ from tests.unit.design.search.made_up import requirements
 
 from squeezefilm.core import presets
 from squeezefilm.core.errors import ConfigError, InputError
+from squeezefilm.design.search.candidate import shared_sources
 from squeezefilm.design.search.requirements import load_requirements
-from squeezefilm.design.search.sources import shared_sources
 from squeezefilm.design.search.stock import material_named
 from squeezefilm.design.search.store import asked_hash
 from squeezefilm.physics.display import DECAY_LENGTH
