@@ -12,8 +12,7 @@ from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.calibration_record import CalibrationRecord, JointSpread
-from squeezefilm.core.config.provenance import Provenance
-from squeezefilm.core.config.references import References
+from squeezefilm.core.config.provenance import Provenance, References
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.core.errors import InputError

@@ -12,8 +12,7 @@ from squeezefilm.core import hard_limits as hard
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.load import load
-from squeezefilm.core.config.provenance import Provenance
-from squeezefilm.core.config.references import References
+from squeezefilm.core.config.provenance import Provenance, References
 from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError
 from squeezefilm.core.results import Result
 from squeezefilm.physics.plate.layout import RectangularPlate

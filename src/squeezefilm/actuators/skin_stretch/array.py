@@ -28,8 +28,7 @@ from squeezefilm.actuators.skin_stretch.tissue import Tissue, influence_matrix, 
 from squeezefilm.core import hard_limits as hard
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
-from squeezefilm.core.config.provenance import Provenance
-from squeezefilm.core.config.references import References
+from squeezefilm.core.config.provenance import Provenance, References
 from squeezefilm.core.errors import ConvergenceError, GeometryError, InputError
 from squeezefilm.core.results import Result
 

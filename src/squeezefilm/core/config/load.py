@@ -15,6 +15,7 @@ from pydantic import BaseModel, ValidationError
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import (
     Provenance,
+    References,
     Spread,
     described,
     distribution_of,
@@ -24,7 +25,6 @@ from squeezefilm.core.config.provenance import (
     tree_values,
     value_at,
 )
-from squeezefilm.core.config.references import References
 from squeezefilm.core.config.schema import OWNERS, family, model_of, reads_from_file
 from squeezefilm.core.config.syntax import DEEPEST, explained, locate, require_quick_toml
 from squeezefilm.core.distributions import Distribution

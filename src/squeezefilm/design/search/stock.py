@@ -10,8 +10,7 @@ from typing import Annotated, Any, ClassVar
 from squeezefilm.core import config, presets
 from squeezefilm.core import hard_limits as hard
 from squeezefilm.core import quantities as si
-from squeezefilm.core.config.provenance import Provenance
-from squeezefilm.core.config.references import References
+from squeezefilm.core.config.provenance import Provenance, References
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import ElasticMaterial, Piezoceramic
 from squeezefilm.core.presets.materials import Kind

@@ -8,7 +8,7 @@ from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config import load_text
 from squeezefilm.core.config.load import written_values
-from squeezefilm.core.config.references import References
+from squeezefilm.core.config.provenance import References
 from squeezefilm.core.distributions import Uniform
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.presets import materials
