@@ -77,7 +77,7 @@ def test_one_that_is_stopped_says_so_and_ends_as_interrupted(
     def stopped(*_: object, **__: object) -> object:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(sweeps, "answered", stopped)
+    monkeypatch.setattr(sweeps, "workers", stopped)
     for options, hint in ((["--out", str(tmp_path)], "the same command goes on"),
                           ([], "add --out DIR to keep what is done")):  # fmt: skip
         done = CliRunner().invoke(app, [*ASKED, *options], catch_exceptions=False)
