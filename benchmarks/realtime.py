@@ -36,7 +36,7 @@ from tests.loop_runs import run_ticks
 
 from squeezefilm.instruments.session.loop import shared
 from squeezefilm.instruments.session.loop.lateness import Lateness
-from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.process import PRIORITY, LoopProcess, lateness_in
 from squeezefilm.instruments.session.loop.shared import ring_put_all, store_release, taken
 from squeezefilm.instruments.session.loop.worker import Orders, run_loop
@@ -58,7 +58,7 @@ def plan_at(rate: float) -> LoopPlan:
         program=lower(Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6), largest_amplitude=LIMIT),
         rate=rate,
         envelope=DrivenEnvelope(0.5e-3, 0.5e-3, LIMIT),
-        drive=LinearDrive(LIMIT / 100.0, 100.0),
+        amplitude_per_volt=LIMIT / 100.0,
         estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
         compensation="inverse",
         # The host's own lateness under load is not what is measured here.

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import DeviceError
-from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.play.plan import PlayPlan
 from squeezefilm.instruments.session.play.real_time import run_play
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
@@ -32,7 +32,7 @@ def own_plan() -> PlayPlan:
         program=lower(square, largest_amplitude=1e-6),
         rate=2e3,
         envelope=DrivenEnvelope(1e-3, 1e-3, 1e-6),
-        drive=LinearDrive(1e-7, 10.0),
+        amplitude_per_volt=1e-7,
         estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
         output_delay=8e-3,
     )

@@ -19,7 +19,7 @@ from squeezefilm.core.errors import InputError, LoopError, SqueezefilmWarning
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.pacing import MARGIN
-from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.instruments.session.loop.shared import ring_waiting
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
@@ -37,7 +37,7 @@ PLAN = LoopPlan(
     program=lower(Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6), largest_amplitude=1e-6),
     rate=RATE,
     envelope=DrivenEnvelope(1e-3, 1e-3, 1e-6),
-    drive=LinearDrive(1e-8, 100.0),
+    amplitude_per_volt=1e-8,
     estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
     host_timeout=1.0,
 )

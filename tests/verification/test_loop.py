@@ -18,7 +18,7 @@ from tests.simulated_loop import SimulatedLoop
 
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.lateness import CLASSES, lateness_class
-from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import (
@@ -72,7 +72,7 @@ def _both(
         program=lower(texture, largest_amplitude=LIMIT),
         rate=rate,
         envelope=envelope,
-        drive=LinearDrive(PER_VOLT, LIMIT / PER_VOLT),
+        amplitude_per_volt=PER_VOLT,
         estimator=MotionEstimator.for_sensor(sensor),
         compensation=compensation,
         relative_friction=FrictionTable(
@@ -121,7 +121,7 @@ def test_a_loop_moved_step_by_step_is_the_same_loop_to_the_bit() -> None:
     stream = sensor_stream(TOUCH_PANEL_240_HZ, stroke.position, stroke.duration, 5)
     plan = LoopPlan(
         lower(TEXTURES["moving"], largest_amplitude=LIMIT), 2e3, DrivenEnvelope(1e-3, 1e-3, LIMIT),
-        LinearDrive(PER_VOLT, 100.0), MotionEstimator.for_sensor(TOUCH_PANEL_240_HZ),
+        PER_VOLT, MotionEstimator.for_sensor(TOUCH_PANEL_240_HZ),
         "inverse", output_delay=2e-3,
     )  # fmt: skip
     samples = stream_samples(stream)
@@ -164,7 +164,7 @@ def test_the_loop_interpreted_is_the_loop_compiled(tmp_path: Path) -> None:
 def _plan(rate: float) -> LoopPlan:
     return LoopPlan(
         lower(TEXTURES["square"], largest_amplitude=LIMIT), rate, DrivenEnvelope(1e-3, 1e-3, LIMIT),
-        LinearDrive(PER_VOLT, 100.0), MotionEstimator.for_sensor(LVDT_10_KHZ),
+        PER_VOLT, MotionEstimator.for_sensor(LVDT_10_KHZ),
     )  # fmt: skip
 
 
@@ -224,7 +224,7 @@ def test_lost_ticks_leave_the_compensator_where_the_resonator_is() -> None:
     envelope = DrivenEnvelope(2e-3, 3e-3, LIMIT, braking=True)
     plan = LoopPlan(
         lower(Amplitude(SineWave(1e-3), 0.1e-6, 0.9e-6), largest_amplitude=LIMIT), 5e3, envelope,
-        LinearDrive(PER_VOLT, 100.0), MotionEstimator.for_sensor(LVDT_10_KHZ), "inverse",
+        PER_VOLT, MotionEstimator.for_sensor(LVDT_10_KHZ), "inverse",
         FrictionTable(np.array([0.0, LIMIT]), np.zeros(1), np.array([[1.0, 0.0]]), 0.0),
     )  # fmt: skip
     rng = np.random.default_rng(8)

@@ -148,7 +148,7 @@ def test_a_study_refuses_a_drive_that_does_not_stop_by_itself(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     from squeezefilm.core.drive_limits import Limits
-    from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
+    from squeezefilm.instruments.session.loop.plan import LoopPlan
     from squeezefilm.physics.render.motion.estimator import MotionEstimator
     from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
     from squeezefilm.physics.render.program.lowering import lower
@@ -172,7 +172,7 @@ def test_a_study_refuses_a_drive_that_does_not_stop_by_itself(
         program=lower(Amplitude(SquareWave(2e-3), 0.5e-6, 1e-6), largest_amplitude=1e-6),
         rate=1e3,
         envelope=DrivenEnvelope(1e-3, 1e-3, 1e-6),
-        drive=LinearDrive(1e-7, 10.0),
+        amplitude_per_volt=1e-7,
         estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
     )
     plan = PlayPlan(loop, Limits(15.0, 15e3, 15.0, 2e4, 30e3, 36e3), 33.5e3)

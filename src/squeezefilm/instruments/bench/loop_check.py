@@ -12,7 +12,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.instruments.session.loop.lateness import Lateness
-from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
@@ -87,7 +87,7 @@ def loop_lateness(rate: si.Hertz, duration: si.Second) -> Lateness:
         program=lower(square, largest_amplitude=1e-6),
         rate=rate,
         envelope=DrivenEnvelope(1e-3, 1e-3, 1e-6),
-        drive=LinearDrive(1e-6, 1.0),
+        amplitude_per_volt=1e-6,
         estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
     )
     with LoopProcess(plan) as loop:
@@ -133,8 +133,8 @@ def loop_result(lateness: Lateness, stolen: si.Second) -> CheckResult:
     passed = lateness.share_made >= LEAST_MADE
     measured = (
         f"{100 * lateness.share_made:.2f} % of {lateness.made + lateness.lost} ticks at "
-        f"{lateness.rate:g} Hz; late {1e6 * lateness.p50:.3g} µs median, "
-        f"{1e6 * lateness.p99:.3g} µs at 99 %"
+        f"{lateness.rate:g} Hz; late {1e6 * lateness.quantile(0.5):.3g} µs median, "
+        f"{1e6 * lateness.quantile(0.99):.3g} µs at 99 %"
     )
     if stolen > 0:
         measured += f"; its host took {1e3 * stolen:.0f} ms from this virtual computer meanwhile"

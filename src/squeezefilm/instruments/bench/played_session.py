@@ -116,7 +116,7 @@ class PlayedSession(Result):
             "rate_Hz": plan.loop.rate,
             "compensation": plan.loop.compensation,
             "output_delay_s": plan.loop.output_delay,
-            "largest_amplitude_m": plan.loop.drive.largest_amplitude,
+            "largest_amplitude_m": plan.loop.envelope.amplitude_limit,
             "envelope_time_constant_s": plan.loop.envelope.rise_time_constant,
             "limits": to_json(plan.limits),
             "assumed_limits": list(self.setup.assumed_limits),

@@ -11,7 +11,7 @@ from squeezefilm.core.compiled import announce
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims
-from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.tick import make_tick
 from squeezefilm.instruments.session.play.plan import NOTHING_KNOWN, KnownDevice, PlayPlan, tile_of
 from squeezefilm.physics.chain.played_texture import lowered
@@ -120,7 +120,7 @@ def play_setup(
         program=lowered(texture, p, p.inverse),
         rate=how.rate,
         envelope=DrivenEnvelope(tau, tau, largest),
-        drive=LinearDrive(per_volt, largest / per_volt),
+        amplitude_per_volt=per_volt,
         estimator=MotionEstimator.for_sensor(device.sensor),
         compensation=how.compensation,  # type: ignore[arg-type] # checked with a message by LoopPlan
         relative_friction=p.inverse,

@@ -107,7 +107,7 @@ def amplitude(session: PlayedSession) -> Figure:
     middle = float(time[len(time) // 2])
     inside = np.abs(time - middle) <= 0.5 * _WINDOW
     t = time[inside]
-    largest = plan.drive.largest_amplitude
+    largest = plan.envelope.amplitude_limit
     figure = style.new_figure(
         f"The display reaches {shown(largest, M, 3)}; the plate follows its commands with "
         f"τ = {shown(plan.envelope.rise_time_constant, S, 2)}",
@@ -116,7 +116,7 @@ def amplitude(session: PlayedSession) -> Figure:
         5.0,
     )
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=[2, 1])
-    commanded = plan.drive.amplitude_per_volt * np.abs(rows[inside, column.VOLTAGE])
+    commanded = plan.amplitude_per_volt * np.abs(rows[inside, column.VOLTAGE])
     above.step(
         t + plan.output_delay,
         1e6 * commanded,

@@ -104,7 +104,7 @@ def play_rows(result: PlayResult) -> list[tuple[str, str, str]]:
     session, outcome = result.session, result.outcome
     plan = session.setup.plan
     ended = outcome.ending.value
-    volts = plan.loop.drive.voltage_limit
+    volts = plan.loop.voltage_limit
     rows = [
         ("Ended", ended, outcome.message),
         ("Usable", "yes" if outcome.usable else "NO", _usable_because(result)),

@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from squeezefilm.core.errors import DeviceError, InputError, SqueezefilmError
 from squeezefilm.physics.perception.stimuli import Stimulus
@@ -31,25 +31,13 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
-class LabDevice(StudyDevice, Protocol):
-    """A study's device that can be stopped from any thread, and let go."""
-
-    def halt(self) -> None:
-        """Silence it now, from any thread."""
-        ...
-
-    def close(self) -> None:
-        """Let it go."""
-        ...
-
-
-Maker = Callable[[str, str, Path], LabDevice]
+Maker = Callable[[str, str, Path], StudyDevice]
 """Function from a display, a kind ("twin", "serial:PORT") and a folder for traces to a device."""
 
 
 @dataclass(frozen=True)
-class MeasuredDevice(NoDevice):
-    """A `StudyDevice` that was identified and verified already; it plays nothing."""
+class MeasuredDevice(StudyDevice):
+    """A device that was identified and verified already; it plays nothing."""
 
     who: DeviceIdentity
     verification: DeviceVerification
@@ -69,7 +57,7 @@ class _HeldDevice:
 
     sitting: str
     kind: str
-    device: LabDevice
+    device: StudyDevice
     thread: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(1, "device"))
     token: str = ""
     playing: int | None = None
@@ -260,7 +248,7 @@ class StudyDevices:
             raise
 
 
-def _silenced(device: LabDevice) -> None:
+def _silenced(device: StudyDevice) -> None:
     with contextlib.suppress(SqueezefilmError):
         device.stop()
 
@@ -279,7 +267,7 @@ def require_device(kind: str, display: str) -> None:
     load_display(display).require_insulation(twin=kind == "twin")
 
 
-def _session_device(display: str, kind: str, traces: Path) -> LabDevice:
+def _session_device(display: str, kind: str, traces: Path) -> StudyDevice:
     from squeezefilm.study.conduct.played_device import SessionDevice
     from squeezefilm.study.conduct.playing_process import WorkerOrders
 

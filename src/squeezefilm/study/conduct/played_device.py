@@ -24,7 +24,12 @@ from squeezefilm.core.interrupts import interrupts_held
 from squeezefilm.core.results import config_hash
 from squeezefilm.physics.display import load_display
 from squeezefilm.study.conduct.playing_process import Surface, WorkerOrders, serve
-from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
+from squeezefilm.study.conduct.study_device import (
+    DeviceIdentity,
+    DeviceVerification,
+    StudyDevice,
+    TrialMotion,
+)
 
 START_LIMIT: si.Second = 300.0
 """A first start solves the plate and compiles, which may take a minute on a busy computer."""
@@ -42,8 +47,8 @@ def require_study_drive(drive: str) -> None:
         )
 
 
-class SessionDevice:
-    """A `StudyDevice` that plays each surface in a session of its own. Close it in the end.
+class SessionDevice(StudyDevice):
+    """A device that plays each surface in a session of its own. Close it in the end.
 
     One thread at a time, except `halt`, which any thread may call at any moment.
 

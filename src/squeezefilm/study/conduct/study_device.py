@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.perception.stimuli import Stimulus
@@ -105,46 +104,37 @@ class TrialMotion:
     unusable: str = ""
 
 
-class StudyDevice(Protocol):
-    """The seam between a study and what presents its surfaces: a device, its twin, or nothing."""
+class StudyDevice:
+    """The seam between a study and what presents its surfaces: a device, its twin, or, where none
+    of this is overridden, nothing: surfaces come by hand, or not at all."""
 
     def identity(self) -> DeviceIdentity:
-        """Identity of the device."""
-        ...
-
-    def verify_device(self) -> DeviceVerification:
-        """Measure amplitude and resonance against what they should be. May take seconds."""
-        ...
-
-    def present(self, stimulus: Stimulus, seed: int) -> None:
-        """Begin to play a surface; returns at once. Raises `SqueezefilmError` if it cannot."""
-        ...
-
-    def stop(self) -> TrialMotion:
-        """Silence the device; returns how the finger explored since `present`."""
-        ...
-
-
-class NoDevice:
-    """Stand-in for a device: surfaces come by hand, or not at all, and nothing can be verified."""
-
-    def identity(self) -> DeviceIdentity:
-        """The name "none" and no hashes."""
+        """Identity of the device; without one the name "none" and no hashes."""
         return DeviceIdentity("none")
 
     def verify_device(self) -> DeviceVerification:
-        """Verification that says that there is nothing to measure."""
+        """Measure amplitude and resonance against what they should be. May take seconds."""
         return DeviceVerification(measurable=False, remark="no device: nothing was verified")
 
     def present(self, stimulus: Stimulus, seed: int) -> None:
-        """Present nothing."""
+        """Begin to play a surface; returns at once. Raises `SqueezefilmError` if it cannot."""
 
     def stop(self) -> TrialMotion:
-        """Motion of which nothing is known."""
+        """Silence the device; returns how the finger explored since `present`, if it knows."""
         return TrialMotion()
 
+    def halt(self) -> None:
+        """Silence it now, from any thread; `stop` is still to be called."""
 
-class ByHand(NoDevice):
+    def close(self) -> None:
+        """Let it go."""
+
+
+class NoDevice(StudyDevice):
+    """Nothing that plays, and nothing to verify."""
+
+
+class ByHand(StudyDevice):
     """Stand-in for a device: the experimenter puts each surface under the finger as told.
 
     Args:

@@ -17,7 +17,7 @@ from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.bench import played_session as played
 from squeezefilm.instruments.bench.played_session import PlayedWay, judge_session, recorded_way
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.record.trace import Damage, Trace, TraceEvent
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
@@ -42,7 +42,7 @@ def friction_of(amplitude: Any, speed: Any = None) -> Any:
 def setup() -> Any:
     plan = LoopPlan(
         program=lower(SQUARE, largest_amplitude=REACH), rate=1e3,
-        envelope=DrivenEnvelope(0.5e-3, 0.7e-3, 1e-6), drive=LinearDrive(1e-8, 100.0),
+        envelope=DrivenEnvelope(0.5e-3, 0.7e-3, 1e-6), amplitude_per_volt=1e-8,
         estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
     )  # fmt: skip
     return SimpleNamespace(

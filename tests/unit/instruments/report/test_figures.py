@@ -43,11 +43,9 @@ def session(**changes: Any) -> Any:
     rows[:, column.VOLTAGE] = 8 * TIME * np.where(np.arange(901) % 2, -1, 1)
     rows[100:, column.LAG] = np.linspace(0, 0.6e-3, 801)
     loop = SimpleNamespace(
-        drive=SimpleNamespace(
-            largest_amplitude=LARGEST, amplitude_per_volt=0.2e-6,
-        ),
-        envelope=SimpleNamespace(rise_time_constant=1.5e-3), output_delay=6e-3,
-        compensation="inverse",
+        amplitude_per_volt=0.2e-6,
+        envelope=SimpleNamespace(rise_time_constant=1.5e-3, amplitude_limit=LARGEST),
+        output_delay=6e-3, compensation="inverse",
     )  # fmt: skip
     judged = SimpleNamespace(way=way(), fidelity=report([np.nan, 0.8, 0.3], 0.25e-3))
     seen = SimpleNamespace(way=way(time=TIME + 0.0005, source="the record"), fidelity=None)

@@ -134,7 +134,7 @@ def played(**changes: Any) -> Any:
         mode="stream", frequency=40e3, tile=None,
         loop=SimpleNamespace(
             rate=1e3, compensation="inverse",
-            drive=SimpleNamespace(voltage_limit=16.0),
+            voltage_limit=16.0,
         ),
     )  # fmt: skip
     values: dict[str, Any] = {

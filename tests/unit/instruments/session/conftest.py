@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.physics.render.program.inverse import FrictionTable
@@ -27,7 +27,7 @@ def plan_of() -> Callable[..., LoopPlan]:
             "program": lower(Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6), largest_amplitude=2e-6),
             "rate": 5e3,
             "envelope": DrivenEnvelope(0.5e-3, 0.7e-3, 1e-6),
-            "drive": LinearDrive(1e-8, 100.0),
+            "amplitude_per_volt": 1e-8,
             "estimator": MotionEstimator.for_sensor(LVDT_10_KHZ),
             "relative_friction": FrictionTable(
                 np.array([0.0, 2e-6]), np.zeros(1), np.array([[1.0, 0.0]]), 0.0

@@ -8,7 +8,6 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.session.loop.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUMNS
 from squeezefilm.physics.render.motion import kernel as motion_kernel
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
@@ -31,21 +30,6 @@ MEMORY_SIZE = 7
 
 
 @si.checked_numbers
-@dataclass(frozen=True, slots=True)
-class LinearDrive:
-    """A resonator's amplitude per volt (m/V), up to a voltage (V), both zero-to-peak. Raises
-    `InputError` for one that is not above 0."""
-
-    amplitude_per_volt: Annotated[si.MetrePerVolt, si.Above(0.0)]
-    voltage_limit: Annotated[si.Volt, si.Above(0.0)]
-
-    @property
-    def largest_amplitude(self) -> si.Metre:
-        """The amplitude at the highest voltage (m, zero-to-peak)."""
-        return self.amplitude_per_volt * self.voltage_limit
-
-
-@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False)
 class LoopPlan:
     """All that a loop needs; it can be pickled and does not change while the loop runs.
@@ -55,7 +39,7 @@ class LoopPlan:
         rate: of the ticks (Hz), 10 Hz to 50 kHz.
         envelope: the resonator and the limits of its drive; may brake only where the drive can
             invert the carrier's phase (commands are negative then).
-        drive: volts for amplitudes; must reach the envelope's limit.
+        amplitude_per_volt: of the resonator (m/V, both zero-to-peak).
         estimator: of the finger's motion; one runs along x and one along y.
         compensation: "none" or "inverse". (A preview needs the way ahead, which a loop that knows
             only samples has to guess; it is offered offline.)
@@ -68,33 +52,28 @@ class LoopPlan:
             past it, to have come to rest.
 
     Raises:
-        InputError: a value outside its range, an unknown compensation, or a drive that does not
-            reach the envelope's limit.
+        InputError: a value outside its range, or an unknown compensation.
     """
 
     program: Program
     rate: Annotated[si.Hertz, si.AtLeast(LEAST_RATE), si.AtMost(HIGHEST_RATE)]
     envelope: DrivenEnvelope
-    drive: LinearDrive
+    amplitude_per_volt: Annotated[si.MetrePerVolt, si.Above(0.0)]
     estimator: MotionEstimator
     compensation: LoopCompensation = "none"
     relative_friction: FrictionTable | None = None
     output_delay: Annotated[si.Second, si.AtLeast(0.0), si.Below(1.0)] = 0.0
     host_timeout: Annotated[si.Second, si.Above(0.0), si.AtMost(60.0)] = 50e-3
 
-    def __post_init__(self) -> None:
-        if self.envelope.amplitude_limit > self.drive.largest_amplitude * (1 + 1e-9):
-            raise InputError(
-                f"the envelope's limit is {self.envelope.amplitude_limit * 1e6:.4g} µm and the "
-                f"drive reaches {self.drive.largest_amplitude * 1e6:.4g} µm; lower the "
-                "limit, or extend the table",
-                quantity="envelope",
-            )
-
     @property
     def period(self) -> si.Second:
         """Time from a tick to the next (s)."""
         return 1 / self.rate
+
+    @property
+    def voltage_limit(self) -> si.Volt:
+        """The most that it commands (V, zero-to-peak): for the envelope's largest amplitude."""
+        return self.envelope.amplitude_limit / self.amplitude_per_volt
 
     @property
     def lead(self) -> si.Second:
@@ -133,7 +112,7 @@ def tick_arrays(plan: LoopPlan) -> TickArrays:
     settings[OUTPUT_DELAY] = plan.output_delay
     settings[INVERSE] = float(plan.compensation == "inverse")
     settings[LONGEST_GAP] = plan.host_timeout
-    settings[PER_VOLT] = plan.drive.amplitude_per_volt
+    settings[PER_VOLT] = plan.amplitude_per_volt
     memory = np.zeros(MEMORY_SIZE)
     memory[[REPORTED_LEVEL, REPORTED_AMPLITUDE, STAMP]] = np.nan
     law = plan.relative_friction

@@ -20,7 +20,7 @@ from squeezefilm.instruments.control.plate_loop import LOCKED
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
-from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan
+from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.rows import COLUMNS
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.render.fidelity.rendered_stroke import RelativeFriction
@@ -129,15 +129,6 @@ class TextureTile:
     pitch: si.Metre
     amplitude: si.MetreArray
     made_for: MadeForSpeed | None
-
-    def voltage(self, drive: LinearDrive) -> si.VoltArray:
-        """The tile's levels (V, zero-to-peak), shape (size,).
-
-        Raises:
-            InputError: an amplitude above the drive's largest.
-        """
-        si.require("amplitude", self.amplitude, si.Unit("m"), at_most=drive.largest_amplitude)
-        return np.asarray(self.amplitude / drive.amplitude_per_volt)
 
 
 def tile_of(
@@ -272,7 +263,7 @@ class PlayPlan:
         )
         if (self.mode == "tile") != (self.tile is not None):
             raise InputError("mode tile needs a tile, and mode stream has none")
-        highest = self.loop.drive.voltage_limit
+        highest = self.loop.voltage_limit
         if highest > limits.voltage * (1 + 1e-9):
             raise InputError(
                 f"the loop may command {highest:.4g} V and the limits allow {limits.voltage:.4g} "

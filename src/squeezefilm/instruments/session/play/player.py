@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
@@ -85,21 +84,12 @@ class Player:
         self._fed = self._heard = self._commanded = self._stepped = -math.inf
         self._faded = math.nan
         self._ticks = TickCount(plan.loop.period)
-        self._gap, self._gap_at = 0.0, -math.inf
+        # The longest time between two steps of late (s), and when it was.
+        self.held_up, self._held_up_at = 0.0, -math.inf
         self._sending = False
         self.unheld = ""
         self._row: si.FloatArray = np.full(len(column.COLUMNS), math.nan)
         self._row[[column.TICK, column.FLAGS]] = 0.0
-
-    @property
-    def faulted(self) -> bool:
-        """True where the device has faulted."""
-        return self.ending is Ending.FAULT
-
-    @property
-    def held_up(self) -> si.Second:
-        """The longest time between two steps of late (s)."""
-        return self._gap
 
     def begin(self) -> None:
         """Give the device its limits and the texture's tile, arm it and start the carrier.
@@ -111,9 +101,9 @@ class Player:
         host.open(plan.limits)
         if plan.hold is not None:
             self.unheld = host.hold(*plan.hold)
-            self._note("loops", {"held": not self.unheld, "message": self.unheld})
+            self.writer.event("loops", {"held": not self.unheld, "message": self.unheld})
         if plan.tile is not None:
-            levels = plan.tile.voltage(plan.loop.drive)
+            levels = plan.tile.amplitude / plan.loop.amplitude_per_volt
             host.load_tile(plan.tile.origin, plan.tile.pitch, levels)
         host.report(plan.report_period)
         host.arm()
@@ -121,7 +111,7 @@ class Player:
         if plan.mode == "tile":
             host.follow()
         self._heard = self._commanded = self.clock()
-        self._note("begin", {"mode": plan.mode, "frequency_Hz": plan.frequency})
+        self.writer.event("begin", {"mode": plan.mode, "frequency_Hz": plan.frequency})
 
     def step(self) -> None:
         """Hear the device, feed the loop, send its commands, write its rows; never waits.
@@ -135,15 +125,15 @@ class Player:
         """
         now = self.clock()
         gap = now - self._stepped
-        if math.isfinite(gap) and (gap >= self._gap or now - self._gap_at > DEAF_LIMIT):
-            self._gap, self._gap_at = gap, now
+        if math.isfinite(gap) and (gap >= self.held_up or now - self._held_up_at > DEAF_LIMIT):
+            self.held_up, self._held_up_at = gap, now
         samples = self._hear(now)
         if self.sensor is not None:
             samples = self._sensed(self.sensor)
         if samples:
             self.loop.feed(np.array(samples))
         self._send(now)
-        self._write()
+        self.drain()
         if now - self._heard > DEAF_LIMIT:
             raise DeviceError(
                 f"the device has said nothing for {now - self._heard:.2g} s; it stops by its own "
@@ -174,7 +164,7 @@ class Player:
             self.host.report(0.0)
         except DeviceError as error:
             message = message or str(error)
-        self._write()
+        self.drain()
         fields = {
             "why": why.value,
             "message": message,
@@ -187,16 +177,12 @@ class Player:
             "late_commands": self.late_commands,
             "device_late_ticks": self.device_late_ticks,
         }
-        self._note("end", fields)
-
-    def drain(self) -> None:
-        """Write the rows that the loop has made since, also after it ended."""
-        self._write()
+        self.writer.event("end", fields)
 
     def judge(self) -> Usability:
         """Verdict on whether what was played can be used; it goes into the record."""
         usability = self._ticks.judged(self.late_commands)
-        self._note("usability", usability.to_json())
+        self.writer.event("usability", usability.to_json())
         return usability
 
     @property
@@ -284,7 +270,7 @@ class Player:
         state, fault = State(reading.state), Fault(reading.fault)
         if (state, fault) != (self.state, self.fault):
             self.state, self.fault = state, fault
-            self._note(
+            self.writer.event(
                 "device",
                 {
                     "state": state.name.lower(),
@@ -320,7 +306,8 @@ class Player:
                 self.host.play(np.abs(part[:, column.COMMAND_VOLTAGE]), period, start)
         self.host.pump()
 
-    def _write(self) -> None:
+    def drain(self) -> None:
+        """Write the rows that the loop has made since, also after it ended."""
         made = self.loop.take_rows()
         if len(made):
             held = None if self.plan.hold is None else held_columns(self._held, len(made))
@@ -330,9 +317,6 @@ class Player:
             if self.tap is not None:
                 self.tap(made)
             self._row = made[-1]
-
-    def _note(self, kind: str, fields: dict[str, Any]) -> None:
-        self.writer.event(kind, fields)
 
 
 def _blocks(commands: si.FloatArray) -> list[si.FloatArray]:

@@ -130,9 +130,9 @@ def run_play(
         eyes = None if sensor is None else sensor(clock)
         player = Player(plan, loop, host, writer, clock, eyes, tap)
         _compile()
-        with _collected():
-            loop.start()
-            try:
+        collect_garbage_first()
+        try:
+            with loop:
                 with contextlib.nullcontext() if plan.device.twin else _preferred():
                     with _stopping(host):
                         ending, message = played(
@@ -140,8 +140,9 @@ def run_play(
                         )
                     player.end(ending, time.sleep, message)
                 silent = time.monotonic()
-            finally:
-                report = loop.stop()
+        finally:
+            gc.unfreeze()
+        report = loop.report()
         player.drain()
         writer.event("loop", {**to_json(report), "lateness": report.lateness.to_json()})
         writer.event("link", to_json(link.statistics))
@@ -182,9 +183,8 @@ def played(
             if show is not None and (now - shown >= SHOW_PERIOD or player.state is not state):
                 shown, state = now, player.state
                 show(player.view())
-        if player.faulted:
-            return Ending.FAULT, fault_sentence(player)
-        player.fade()
+        if player.ending is None:
+            player.fade()
         faded = clock()
         while player.ending is None and clock() < faded + FADE:
             wait()
@@ -193,7 +193,7 @@ def played(
         return Ending.LINK, str(error)
     except LoopError as error:
         return Ending.LOOP, str(error)
-    if player.faulted:
+    if player.ending is not None:
         return Ending.FAULT, fault_sentence(player)
     return (Ending.INTERRUPTED if interrupted() else Ending.DURATION), player.unheld
 
@@ -234,16 +234,6 @@ def _stopping(host: DeviceHost) -> Iterator[None]:
         with contextlib.suppress(DeviceError):
             host.stop()
         raise
-
-
-@contextlib.contextmanager
-def _collected() -> Iterator[None]:
-    """`collect_garbage_first`, and everything again afterwards."""
-    collect_garbage_first()
-    try:
-        yield
-    finally:
-        gc.unfreeze()
 
 
 @contextlib.contextmanager

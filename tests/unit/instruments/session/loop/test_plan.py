@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.instruments.session.loop.plan import LinearDrive, LoopPlan, tick_arrays
+from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
 from squeezefilm.physics.render.program.inverse import FrictionTable
 
 PlanOf = Callable[..., LoopPlan]
@@ -24,7 +24,7 @@ PlanOf = Callable[..., LoopPlan]
         ({"output_delay": -1e-3}, "output_delay"),
         ({"host_timeout": 0.0}, "host_timeout"),
         ({"compensation": "preview"}, "Allowed: none, inverse"),
-        ({"drive": LinearDrive(1e-8, 50.0)}, "1 µm and the drive reaches 0.5 µm"),
+        ({"amplitude_per_volt": 0.0}, "amplitude_per_volt = 0 m/V"),
     ],
 )
 def test_a_plan_refuses_what_it_cannot_do(

@@ -419,7 +419,6 @@ def test_what_the_devices_state_does_is_noted_once(play_of: PlayOf) -> None:
         "device_time_us": round((bench.now - OFFSET) * 1e6),
     }  # fmt: skip
     assert bench.player.ending is Ending.FAULT
-    assert bench.player.faulted
     count = len(bench.notes)
     bench.step(state=State.FAULT, fault=Fault.DUTY)
     assert len(bench.notes) == count + 1

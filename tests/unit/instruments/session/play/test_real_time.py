@@ -97,11 +97,13 @@ class Bench:
             def time(self) -> float:
                 return bench.now
 
-            def start(self) -> None:
+            def __enter__(self) -> None:
                 bench.note("loop start")
 
-            def stop(self) -> Any:
+            def __exit__(self, *_: object) -> None:
                 bench.note("loop stop")
+
+            def report(self) -> Any:
                 return SimpleNamespace(lateness=LATENESS)
 
         return Loop()
@@ -111,10 +113,6 @@ class Bench:
         return self
 
     # The player.
-    @property
-    def faulted(self) -> bool:
-        return self.ending is Ending.FAULT
-
     def begin(self) -> None:
         self.note("begin")
         if self.begins_with is not None:

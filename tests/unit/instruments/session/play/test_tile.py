@@ -9,7 +9,6 @@ from squeezefilm.core.errors import InputError, UnreachableError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.device.machine.playing import Tile
 from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
-from squeezefilm.instruments.session.loop.plan import LinearDrive
 from squeezefilm.instruments.session.play.plan import tile_of
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, lower
@@ -45,7 +44,7 @@ def test_a_tile_holds_the_textures_own_amplitudes() -> None:
 def test_a_device_reads_from_it_what_the_texture_wants() -> None:
     square = Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6)
     tile = tile_of(_program(square), (0.0, 10e-3))
-    volts = tile.voltage(LinearDrive(1e-8, 100.0))
+    volts = tile.amplitude / 1e-8
     device = Tile(0, 20, volts.size, [round(v * 1e6) for v in volts])
     for x in range(0, 10_000, 20):
         wanted = float(square(x * 1e-6 + 1e-9, 0.0, 0.0, 0.0))
@@ -89,12 +88,6 @@ def test_a_tile_covers_the_way_as_finely_as_it_can(way: tuple[float, float]) -> 
 def test_a_way_to_nowhere_has_no_tile(way: tuple[float, float]) -> None:
     with pytest.raises(InputError, match="covers nothing"):
         tile_of(_program(Amplitude(SquareWave(2e-3), 0.0, 1e-6)), way)
-
-
-def test_a_drive_that_is_too_weak_for_a_tile_is_refused() -> None:
-    program = _program(Amplitude(SquareWave(2e-3), 0.0, 1e-6))
-    with pytest.raises(InputError, match="amplitude"):
-        tile_of(program, WAY).voltage(LinearDrive(1e-8, 10.0))
 
 
 def _law(amplitude: FloatArray, speed: FloatArray) -> FloatArray:
