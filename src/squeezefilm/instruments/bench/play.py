@@ -10,6 +10,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import KW_ONLY, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -260,32 +261,27 @@ def check_drive(
             window=(limits.lowest_frequency, limits.highest_frequency),
             sensor=eyes,
             watch=WATCHED if twin else _STROKED,
-            truth=_Truth(Path(folder) / TRUTH_NAME).place if twin else None,
+            truth=partial(_true_place, Path(folder) / TRUTH_NAME) if twin else None,
             loop=lambda: check_loop(rate),
             progress=tell,
         )
 
 
-@dataclass(frozen=True, slots=True)
-class _Truth:
-    """A running twin's truth, which it writes in blocks of seconds."""
-
-    file: Path
-
-    def place(self, when: si.SecondArray) -> si.MetreArray:
-        """Places of the finger (m) at times of the twin (s); waits for them to be written."""
-        end = time.monotonic() + _TRUTH_LIMIT
-        while True:
-            text = read_regular_text(self.file, TABLE_BYTES, "the twin's truth")
-            lines = text[: text.rfind("\n")].splitlines()[1:]
-            rows = np.array([line.split(",") for line in lines], dtype=float, ndmin=2)
-            late = time.monotonic() > end
-            if late and not lines:
-                raise DeviceError("the twin did not write where its finger was; check it again")
-            if lines and (late or rows[-1, 0] >= when.max()):
-                place: si.MetreArray = np.interp(when, rows[:, 0], rows[:, COLUMNS.index("x_m")])
-                return place
-            time.sleep(0.1)
+def _true_place(file: Path, when: si.SecondArray) -> si.MetreArray:
+    """Places of the finger (m) at times of a running twin (s), by the truth that it writes in
+    blocks of seconds; waits for them to be written."""
+    end = time.monotonic() + _TRUTH_LIMIT
+    while True:
+        text = read_regular_text(file, TABLE_BYTES, "the twin's truth")
+        lines = text[: text.rfind("\n")].splitlines()[1:]
+        rows = np.array([line.split(",") for line in lines], dtype=float, ndmin=2)
+        late = time.monotonic() > end
+        if late and not lines:
+            raise DeviceError("the twin did not write where its finger was; check it again")
+        if lines and (late or rows[-1, 0] >= when.max()):
+            place: si.MetreArray = np.interp(when, rows[:, 0], rows[:, COLUMNS.index("x_m")])
+            return place
+        time.sleep(0.1)
 
 
 @contextlib.contextmanager

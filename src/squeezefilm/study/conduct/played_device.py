@@ -23,7 +23,7 @@ from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.core.interrupts import interrupts_held
 from squeezefilm.core.results import config_hash
 from squeezefilm.physics.display import load_display
-from squeezefilm.study.conduct.playing_process import Surface, WorkerOrders, serve
+from squeezefilm.study.conduct.playing_process import TWIN, Surface, WorkerOrders, serve
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
     DeviceVerification,
@@ -91,7 +91,7 @@ class SessionDevice(StudyDevice):
         orders = self._orders
         calibration = ""
         if orders.drive == "twin":
-            calibration = config_hash(orders.settings)
+            calibration = config_hash(TWIN)
         elif orders.amplitude_per_pickup is not None:
             calibration = config_hash({"amplitude_per_pickup": orders.amplitude_per_pickup})
         kind = orders.drive.partition(":")[0]

@@ -43,7 +43,6 @@ from squeezefilm.instruments.session.play.real_time import PlayOutcome, run_play
 from squeezefilm.instruments.session.record.trace import Trace, read_trace
 from squeezefilm.instruments.twin.hand import EXPLORING
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
-from squeezefilm.instruments.twin.working_point import working_point
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.perception.stimuli import Stimulus
@@ -68,15 +67,16 @@ Surface = Stimulus | TextureFile
 """Something to play: a study's stimulus, or any texture with what it is called."""
 
 
-_TWIN = TwinSettings(sensor=LVDT_10_KHZ, pickup=PickupModel(kind="sensing_patch"))
+TWIN = TwinSettings(sensor=LVDT_10_KHZ, pickup=PickupModel(kind="sensing_patch"))
+"""A twin, all assumed. Its pickup hears the amplitude itself: no plate is to be solved for it."""
 
 
 @dataclass(frozen=True)
 class WorkerOrders:
     """Orders to the process: what plays, and on what, as `study.conduct.playback.play` says.
 
-    `target` is the display; raw records go to the folder `traces`. The pickup of a twin, whose
-    `settings` are all assumed, needs no `amplitude_per_pickup`: it is known.
+    `target` is the display; raw records go to the folder `traces`. The pickup of a twin (`TWIN`)
+    needs no `amplitude_per_pickup`: it is known.
     """
 
     target: str | Path
@@ -84,7 +84,6 @@ class WorkerOrders:
     traces: Path
     _: KW_ONLY
     amplitude_per_pickup: si.MetrePerVolt | None = None
-    settings: TwinSettings = _TWIN
     stroke: str = EXPLORING
     rate: si.Hertz = 5e3
 
@@ -210,18 +209,10 @@ class Bench:
         )
         return _failure(outcome, trace), felt
 
-    @cached_property
+    @property
     def _amplitude_per_pickup(self) -> si.MetrePerVolt | None:
-        if self._orders.drive != "twin":
-            return self._orders.amplitude_per_pickup
-        pickup = self._orders.settings.pickup
-        if pickup.kind == "none":
-            return None
-        if pickup.kind == "sensing_patch":
-            # It hears the amplitude itself: no plate is to be solved for it.
-            return 1 / pickup.sensitivity
-        point = working_point(self._display, self._orders.settings)
-        return point.pickup_calibration(pickup)
+        twin = self._orders.drive == "twin"
+        return 1 / TWIN.pickup.sensitivity if twin else self._orders.amplitude_per_pickup
 
     @cached_property
     def _display(self) -> Display:
@@ -237,7 +228,7 @@ class Bench:
         orders = self._orders
         if not self._stream or (orders.drive == "twin" and self._finger != finger):
             self._twin.close()
-            stream = device_stream(orders.drive, orders.target, orders.settings, finger, None)
+            stream = device_stream(orders.drive, orders.target, TWIN, finger, None)
             self._stream = self._twin.enter_context(stream)
             self._finger = finger
         return self._stream

@@ -260,7 +260,7 @@ def test_a_twin_that_wrote_no_truth_is_told(
     monkeypatch.setattr(module, "_TRUTH_LIMIT", 0.0)
     (tmp_path / "truth.csv").write_text("time_s,x_m\n0.0")
     with pytest.raises(DeviceError, match="did not write where its finger was"):
-        module._Truth(tmp_path / "truth.csv").place(np.array([0.1]))
+        module._true_place(tmp_path / "truth.csv", np.array([0.1]))
 
 
 def test_a_twins_truth_is_waited_for_until_it_reaches_the_time(
@@ -286,18 +286,18 @@ def test_a_twins_truth_is_waited_for_until_it_reaches_the_time(
     file.write_text(head)
     monkeypatch.setattr(module.time, "sleep", sleep)
     monkeypatch.setattr(module.time, "monotonic", lambda: clock)
-    place = module._Truth(file).place(np.array([0.5, 2.25]))
+    place = module._true_place(file, np.array([0.5, 2.25]))
     assert place == pytest.approx([5e-3, 22.5e-3])
     assert slept == 3
     # One that comes to an end before is told as far as it goes; one that never begins is no truth.
     monkeypatch.setattr(module.time, "sleep", lambda _: None)
     times = iter([0.0, module._TRUTH_LIMIT + 1.0])
     monkeypatch.setattr(module.time, "monotonic", lambda: next(times))
-    assert module._Truth(file).place(np.array([1.0, 77.0])) == pytest.approx([0.01, 0.03])
+    assert module._true_place(file, np.array([1.0, 77.0])) == pytest.approx([0.01, 0.03])
     file.write_text(head)
     times = iter([0.0, module._TRUTH_LIMIT + 1.0])
     with pytest.raises(DeviceError, match="did not write where its finger was"):
-        module._Truth(file).place(np.array([1.0]))
+        module._true_place(file, np.array([1.0]))
 
 
 @pytest.mark.parametrize(

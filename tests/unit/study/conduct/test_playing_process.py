@@ -19,8 +19,6 @@ from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.play.plan import Ending
 from squeezefilm.instruments.session.play.real_time import PlayOutcome
 from squeezefilm.instruments.session.record.trace import Damage, Trace, TraceEvent
-from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
-from squeezefilm.instruments.twin.working_point import WorkingPoint
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.physics.texture_files.texture_file import TextureFile
@@ -28,6 +26,7 @@ from squeezefilm.study.conduct import playing_process
 from squeezefilm.study.conduct.playing_process import (
     LONGEST_PRESENTATION,
     PATH_PERIOD,
+    TWIN,
     Bench,
     WorkerOrders,
     explored,
@@ -132,8 +131,7 @@ class Around:
         self, drive: str = "serial:/dev/ttyACM0", pickup: float | None = 2e-6
     ) -> WorkerOrders:
         """Of a display by name, to a folder."""
-        own = TwinSettings(pickup=PickupModel(kind="sensing_patch"))
-        how: dict[str, Any] = {"settings": own, "stroke": "a stroke", "rate": 4e3}
+        how: dict[str, Any] = {"stroke": "a stroke", "rate": 4e3}
         return WorkerOrders(
             "biet2008-plate", drive, self.folder, amplitude_per_pickup=pickup, **how
         )
@@ -209,9 +207,7 @@ def test_a_surface_is_played_until_an_order_comes(around: Around) -> None:
     assert texture.texture == GRATING.surface()
     assert (settings["rate"], settings["amplitude_per_pickup"]) == (4e3, 2e-6)
     assert settings["twin"] is False
-    assert around.streams == [
-        ("serial:/dev/ttyACM0", "biet2008-plate", around.orders().settings, "a stroke", None)
-    ]
+    assert around.streams == [("serial:/dev/ttyACM0", "biet2008-plate", TWIN, "a stroke", None)]
 
 
 def test_what_is_prepared_needs_no_solving_when_it_is_played(around: Around) -> None:
@@ -277,41 +273,15 @@ def test_a_twin_has_a_finger_for_each_work_and_a_port_has_none(around: Around) -
         assert [how[3] for how in around.streams] == ["none", "a stroke", "none"]
         assert around.ended == ["stream 1", "stream 2"]
         assert around.setups[0][1]["twin"] is True
-        sensitivity = around.orders().settings.pickup.sensitivity
-        assert around.setups[0][1]["amplitude_per_pickup"] == pytest.approx(1 / sensitivity)
+        assert TWIN.pickup.kind == "sensing_patch"
+        per_pickup = around.setups[0][1]["amplitude_per_pickup"]
+        assert per_pickup == pytest.approx(1 / TWIN.pickup.sensitivity)
     assert around.ended[-1] == "stream 3"
     around.streams.clear()
     with Bench(Pipe(), around.orders()) as bench:  # type: ignore[arg-type]
         bench.done(("verify",))
         bench.done(("present", GRATING, 5, NAME))
     assert len(around.streams) == 1
-
-
-@pytest.mark.parametrize(
-    ("pickup", "calibration"),
-    [
-        (PickupModel(kind="sensing_patch", sensitivity=4e5), 1 / 4e5),
-        # A current of ω α z over the shunt.
-        (PickupModel(shunt=20.0), 1 / (2 * math.pi * 30e3 * 0.5 * 20.0)),
-        (PickupModel(kind="none"), None),
-    ],
-)
-def test_a_twins_pickup_is_read_as_what_it_is(
-    around: Around, monkeypatch: pytest.MonkeyPatch, pickup: PickupModel, calibration: float | None
-) -> None:
-    none, mode = np.zeros((1, 1)), SimpleNamespace(resonance_frequency=30e3)
-    settings = TwinSettings(pickup=pickup)
-
-    def solved(display: Any, given: TwinSettings) -> WorkingPoint:
-        assert given is settings
-        return WorkingPoint(display, mode, none, none, 1e-6, none, none, 20e-9, 0.5, ())  # type: ignore[arg-type]
-
-    monkeypatch.setattr(playing_process, "working_point", solved)
-    orders = dataclasses.replace(around.orders("twin"), settings=settings)
-    with Bench(Pipe(), orders) as bench:  # type: ignore[arg-type]
-        bench.done(("present", GRATING, 5, NAME))
-    given = around.setups[0][1]["amplitude_per_pickup"]
-    assert given == (None if calibration is None else pytest.approx(calibration))
 
 
 def test_the_carrier_is_swept_about_the_prediction_at_a_quarter_of_the_voltage(
