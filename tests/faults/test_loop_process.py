@@ -18,10 +18,10 @@ import pytest
 from squeezefilm.core.errors import InputError, LoopError, SqueezefilmWarning
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.pacing import MARGIN
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.instruments.session.loop.shared import ring_waiting
+from squeezefilm.instruments.session.loop.worker import MARGIN
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
 from squeezefilm.physics.render.program.lowering import lower

@@ -135,8 +135,8 @@ class LoopProcess:
             process = subprocess.Popen(
                 [
                     sys.executable,
-                    "-m",
-                    "squeezefilm.instruments.session.loop.worker",
+                    "-c",
+                    "from squeezefilm.instruments.session.loop.worker import main; main()",
                     str(descriptor),
                 ],
                 stdin=subprocess.PIPE,

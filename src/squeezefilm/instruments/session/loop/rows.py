@@ -1,7 +1,7 @@
 """Rows that the loop takes in and writes down: columns of its rings, and the flags of a tick.
 
 All rows are 64-bit floats. Times are seconds since the loop began (its tick 0), on the clock of
-`pacing`; whole numbers in them are exact to 2^53.
+`worker`; whole numbers in them are exact to 2^53.
 """
 
 from __future__ import annotations

@@ -9,8 +9,8 @@ import time
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop import pacing
-from squeezefilm.instruments.session.loop.pacing import (
+from squeezefilm.instruments.session.loop import worker
+from squeezefilm.instruments.session.loop.worker import (
     monotonic_ns,
     new_timespec,
     parent_id,
@@ -18,17 +18,17 @@ from squeezefilm.instruments.session.loop.pacing import (
     thread_cpu_ns,
 )
 
-needs_compiled_clock = pytest.mark.skipif(not pacing.COMPILED_CLOCK, reason="no compiled clock")
+needs_compiled_clock = pytest.mark.skipif(not worker.COMPILED_CLOCK, reason="no compiled clock")
 
 
 def test_linux_has_a_compiled_clock() -> None:
-    assert pacing.COMPILED_CLOCK is (sys.platform == "linux" and sys.maxsize > 2**32)
+    assert worker.COMPILED_CLOCK is (sys.platform == "linux" and sys.maxsize > 2**32)
 
 
 def test_every_symbol_must_be_there() -> None:
-    assert pacing._has_symbols("malloc", "free")
-    assert not pacing._has_symbols("malloc", "no_such_function_anywhere")
-    assert not pacing._has_symbols("no_such_function_anywhere", "malloc")
+    assert worker._has_symbols("malloc", "free")
+    assert not worker._has_symbols("malloc", "no_such_function_anywhere")
+    assert not worker._has_symbols("no_such_function_anywhere", "malloc")
 
 
 def test_a_timespec_is_two_words() -> None:

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop import pacing, shared
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.loop import shared, worker
 from squeezefilm.instruments.session.loop.lateness import lateness_class
-from squeezefilm.instruments.session.loop.pacing import (
+from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
+from squeezefilm.instruments.session.loop.shared import ring_take
+from squeezefilm.instruments.session.loop.worker import (
     compiled_loop,
     due_ns,
     make_due_tick,
@@ -21,8 +23,6 @@ from squeezefilm.instruments.session.loop.pacing import (
     portable_loop,
     silence,
 )
-from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.instruments.session.loop.shared import ring_take
 from squeezefilm.physics.render.resonator import kernel as compensation_kernel
 
 PlanOf = Callable[..., LoopPlan]
@@ -168,14 +168,14 @@ def looped(
     """One of the loops, interpreted, on that clock; it takes a host silent for 3 ms for gone."""
     arrays, timeout = tick_arrays(plan), 3_000_000
     if which == "portable":
-        monkeypatch.setattr(pacing, "time", clock)
-        monkeypatch.setattr(pacing, "os", clock)
+        monkeypatch.setattr(worker, "time", clock)
+        monkeypatch.setattr(worker, "os", clock)
         portable_loop(arrays, memory, timeout, parent)
         return
-    monkeypatch.setattr(pacing, "monotonic_ns", clock.monotonic_ns)
-    monkeypatch.setattr(pacing, "thread_cpu_ns", clock.thread_time_ns)
-    monkeypatch.setattr(pacing, "sleep_until_ns", clock.sleep_until_ns)
-    monkeypatch.setattr(pacing, "parent_id", clock.getppid)
+    monkeypatch.setattr(worker, "monotonic_ns", clock.monotonic_ns)
+    monkeypatch.setattr(worker, "thread_cpu_ns", clock.thread_time_ns)
+    monkeypatch.setattr(worker, "sleep_until_ns", clock.sleep_until_ns)
+    monkeypatch.setattr(worker, "parent_id", clock.getppid)
     compiled_loop.py_func(arrays, memory, None, margin, timeout, parent)  # type: ignore[attr-defined]
 
 

@@ -22,7 +22,7 @@ from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.instruments.session.loop.shared import ring_put_all, ring_take
 
 Plans = Callable[..., LoopPlan]
-# Called as the worker is: -m MODULE DESCRIPTOR, with the orders on standard input.
+# Called as the worker is: -c CODE DESCRIPTOR, with the orders on standard input.
 WORKER = f"""#!{sys.executable} -SE
 import mmap, sys, time
 words = memoryview(mmap.mmap(int(sys.argv[3]), 0)).cast("q")

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop import pacing, shared, worker
 from squeezefilm.instruments.session.loop import rows as column
+from squeezefilm.instruments.session.loop import shared, worker
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.shared import ring_take
 from squeezefilm.instruments.session.loop.worker import Orders, main, memory_locked, run_loop
@@ -27,7 +27,7 @@ PlanOf = Callable[..., LoopPlan]
 # Of no process: whoever has this parent is an orphan.
 NOBODY = 2**22 + 1
 
-needs_compiled_clock = pytest.mark.skipif(not pacing.COMPILED_CLOCK, reason="no compiled clock")
+needs_compiled_clock = pytest.mark.skipif(not worker.COMPILED_CLOCK, reason="no compiled clock")
 BOTH_CLOCKS = [pytest.param(True, marks=needs_compiled_clock), False]
 
 
