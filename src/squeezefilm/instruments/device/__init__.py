@@ -2,6 +2,6 @@
 
 `wire`: bytes, frames and messages, and the host's side of the line. `machine`: the device itself,
 pure, time is passed in; the state machine that `firmware/` writes in C, with its limits, what it
-plays, its heat and its readings. Above them `host` (commands in SI), `device_clock` and `ports`,
-the seams of a session: a sensor and a drive, each one method wide. Imports no physics.
+plays, its heat and its readings. Above them `host` (commands in SI) and `ports`, the
+seams of a session: a sensor and a drive, each one method wide. Imports no physics.
 """

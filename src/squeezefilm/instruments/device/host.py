@@ -22,7 +22,6 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE, Limits
 from squeezefilm.core.errors import DeviceError, InputError, RefusedError
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
-from squeezefilm.instruments.device.device_clock import DeviceClock
 from squeezefilm.instruments.device.machine.limits import level_of
 from squeezefilm.instruments.device.machine.playing import CLOCK, LONGEST_REPORT, SHORTEST_REPORT
 from squeezefilm.instruments.device.wire import messages as m
@@ -33,7 +32,7 @@ from squeezefilm.instruments.device.wire.arguments import (
     whole_number,
 )
 from squeezefilm.instruments.device.wire.frames import Fault, Reason, State
-from squeezefilm.instruments.device.wire.link import Link, refusal
+from squeezefilm.instruments.device.wire.link import DeviceClock, Link, refusal
 
 MOST_READINGS = 10_000
 """Readings kept for those who have not read them yet."""

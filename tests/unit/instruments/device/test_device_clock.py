@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.device.device_clock import WORST_DRIFT, DeviceClock
+from squeezefilm.instruments.device.wire.link import WORST_DRIFT, DeviceClock
 
 TURN = 2**32
 

@@ -1,4 +1,5 @@
-"""The host's side of the wire: numbers frames, matches answers, counts what went wrong.
+"""The host's side of the wire: numbers frames, matches answers, and by them knows the device's
+clock; counts what went wrong.
 
 Not thread-safe: one thread owns a link and all that is built on it. Nothing waits but `request`.
 Answers may come late, out of order, twice or never. A status is matched by the number of the frame
@@ -16,11 +17,90 @@ from dataclasses import dataclass
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import DeviceError, RefusedError
-from squeezefilm.instruments.device.device_clock import DeviceClock
-from squeezefilm.instruments.device.machine.playing import until
+from squeezefilm.instruments.device.machine.playing import CLOCK, until
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Deframer, Fault, Frame, Reason, State
 from squeezefilm.instruments.device.wire.streams import SerialStream
+
+WORST_DRIFT: si.Dimensionless = 200e-6
+"""Relative rate between the clocks that is allowed for; a quartz has below 100e-6."""
+# The device counts whole µs: bounds may cross by that much and contradict nothing.
+_RESOLUTION: si.Second = 2e-6
+
+
+@dataclass(slots=True)
+class DeviceClock:
+    """Estimate of the offset host − device: 32 bits of µs that wrap, against seconds.
+
+    A status says when the device answered; that was after the host sent the frame and before it
+    heard the answer. Each round trip so bounds the offset from both sides (the method of NTP, RFC
+    5905 §8, without its assumption that both ways take equally long: that is only the middle of
+    the bounds). A reading bounds it from one side. Bounds loosen with time, as quartzes drift.
+
+    Times of the device are unwrapped: seconds since the first message, on from the device's own
+    clock then. They may come out of order by less than 35 minutes.
+    """
+
+    lowest: si.Second = -math.inf
+    highest: si.Second = math.inf
+    _unwrapped: int = 0
+    _last: int | None = None
+    _widened: si.Second = -math.inf
+
+    @property
+    def known(self) -> bool:
+        """True where a round trip has been seen."""
+        return math.isfinite(self.lowest) and math.isfinite(self.highest)
+
+    @property
+    def error(self) -> si.Second:
+        """Largest error of the offset (s); infinite before a round trip."""
+        return (self.highest - self.lowest) / 2
+
+    @property
+    def offset(self) -> si.Second:
+        """Host minus device (s), the middle of its bounds; not finite before a round trip."""
+        return (self.highest + self.lowest) / 2
+
+    def unwrapped(self, device: int) -> si.Second:
+        """The device's time (s) of a stamp (µs, 32 bits), which never wraps."""
+        last = self._last
+        self._unwrapped = device if last is None else self._unwrapped + until(device, last)
+        self._last = device
+        return self._unwrapped * 1e-6
+
+    def answered(self, sent: si.Second, device: int, heard: si.Second) -> None:
+        """A frame sent at `sent` (s) was answered at `device` (µs); heard at `heard` (s)."""
+        self.heard(device, heard)
+        at = self._unwrapped * 1e-6
+        self.lowest = max(self.lowest, sent - at)
+        if self.highest < self.lowest <= self.highest + _RESOLUTION:
+            self.lowest = self.highest
+        if self.lowest > self.highest:
+            # The clocks drift faster than allowed, or one was set: believe the newest alone.
+            self.lowest, self.highest = sent - at, heard - at
+
+    def heard(self, device: int, heard: si.Second) -> None:
+        """A message stamped `device` (µs) was heard at `heard` (s)."""
+        at = self.unwrapped(device)
+        if heard > self._widened:
+            if math.isfinite(self._widened):
+                drift = WORST_DRIFT * (heard - self._widened)
+                self.lowest, self.highest = self.lowest - drift, self.highest + drift
+            self._widened = heard
+        self.highest = min(self.highest, heard - at)
+        if self.lowest > self.highest + _RESOLUTION:
+            self.lowest = -math.inf
+        self.lowest = min(self.lowest, self.highest)
+
+    def device_time(self, host: si.Second) -> si.Second:
+        """The device's unwrapped time (s) at a time of the host (s)."""
+        return host - self.offset
+
+    def stamp(self, device: si.Second) -> int:
+        """The 32 bits of µs of an unwrapped time of the device (s)."""
+        return round(device * 1e6) & CLOCK
+
 
 KEEP_ALIVE_PERIOD: si.Second = 15e-3
 """Silence of the host after which a keep alive is due; the watchdog waits 50 ms."""
