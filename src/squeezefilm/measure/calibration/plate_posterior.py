@@ -114,11 +114,6 @@ class PlateProblem:
         """`unit_covariances` of the emulator's answers, shape (kinds, asked, asked)."""
         return unit_covariances([answer.name for answer in self.asked])
 
-    @property
-    def names(self) -> list[str]:
-        """Names of what was observed, with the recording where there is one."""
-        return [seen.in_words(asked_by(seen).said) for seen in self.observations]
-
     def answers(self, scores: si.DimensionlessArray) -> si.FloatArray:
         """Logarithms of all answers at scores (points, parameters), shape (points, asked)."""
         return self.bound(self.emulator(self.scores.coordinates(scores)))
@@ -274,11 +269,12 @@ def sampled_posterior(
     kept = flat[random.choice(len(flat), min(_DRAWS, len(flat)), replace=False)]
     off = problem.residuals(best[None, :])[0] / np.sqrt(np.diag(problem.covariance))
     squares = best @ best + np.sum(problem.whitened(best[None, :]) ** 2)
+    names = [seen.in_words(asked_by(seen).said) for seen in problem.observations]
     return PlatePosterior(
         kept[:, : best.size],
         scales_of(kept[:, best.size :]),
         best,
-        misfit_of(float(squares), problem.names, off),
+        misfit_of(float(squares), names, off),
         len(flat) / max(time, 1.0),
     )
 

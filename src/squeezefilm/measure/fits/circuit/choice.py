@@ -91,7 +91,14 @@ def _chosen(
             else:
                 since += 1
     if best is None:
-        raise _no_resonance(sweep, branches or 1)
+        f = sweep.frequency
+        wanted = f"{branches} resonances" if branches and branches > 1 else "a resonance"
+        raise InputError(
+            f"{wanted} could not be found between {f[0] / 1e3:.5g} and {f[-1] / 1e3:.5g} kHz; give "
+            "a sweep that holds the conductance's maximum and the parallel resonance above it, "
+            "with some points within the maximum's width",
+            quantity="admittance",
+        )
     return best
 
 
@@ -172,17 +179,6 @@ def _better(more: Fitted, best: Fitted) -> bool:
     # Under much noise a neighbour takes less, and leaves nothing but noise.
     explains = fit.left < _LESS_LEFT * best[0].left or fit.correlation == 1.0
     return _criterion(best) - _criterion(more) > _EVIDENCE and explains
-
-
-def _no_resonance(sweep: ImpedanceSweep, branches: int) -> InputError:
-    f = sweep.frequency
-    wanted = "a resonance" if branches == 1 else f"{branches} resonances"
-    return InputError(
-        f"{wanted} could not be found between {f[0] / 1e3:.5g} and {f[-1] / 1e3:.5g} kHz; give a "
-        "sweep that holds the conductance's maximum and the parallel resonance above it, with "
-        "some points within the maximum's width",
-        quantity="admittance",
-    )
 
 
 def _one_more(sweep: ImpedanceSweep, layout: Layout, best: Fitted | None) -> Fitted | None:

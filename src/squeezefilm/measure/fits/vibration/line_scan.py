@@ -16,6 +16,7 @@ from squeezefilm.measure.fits.estimate import (
     adequacy_of,
     amplitude_over,
     guarded_fit,
+    inverse_of,
 )
 from squeezefilm.measure.fits.least_squares import SeparableFit, fit_separable
 from squeezefilm.measure.fits.vibration.line_points import LinePoints, LineWaves
@@ -298,11 +299,8 @@ def _ratio(fit: SeparableFit) -> Estimate:
 
     inverted = fit.estimate(inverse, "1")
     low, high = inverted.interval
-    largest = max(abs(low), abs(high))
-    smallest = 0.0 if low <= 0 <= high else min(abs(low), abs(high))
-    value = 1 / abs(inverted.value) if inverted.value else float("inf")
-    ends = 1 / largest, 1 / smallest if smallest else float("inf")
-    return Estimate(value, inverted.standard_error * value**2, ends, "1")
+    ends = 0.0 if low <= 0 <= high else min(abs(low), abs(high)), max(abs(low), abs(high))
+    return inverse_of(replace(inverted, value=abs(inverted.value), interval=ends))
 
 
 def _best_antinode(x: si.MetreArray, size: si.FloatArray, nodes: si.MetreArray) -> float:
