@@ -55,7 +55,7 @@ def assembled(description: Description, table: RawTable) -> tuple[kinds.Recordin
         )
     reading = Reading(description, table, columns)
     reading.doubts += table.doubts
-    return _OF_KIND[description.kind](reading), reading
+    return _OF_KIND[said.kind](reading), reading
 
 
 def _own_columns(description: Description, table: RawTable) -> ImpedanceColumns:

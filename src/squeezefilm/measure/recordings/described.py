@@ -61,11 +61,12 @@ class Band:
 @si.checked_numbers
 @dataclass(frozen=True, kw_only=True)
 class Described(Told):
-    """Keys that every description may have. `file` is the data's file, where it has another name;
-    `decimal` and `delimiter` are how its numbers are written, `header` the line of the columns'
-    names (0 for none), where that is not to be found out; `points` is how many rows there must
-    be."""
+    """Keys that every description may have. `kind` is one of `KINDS`, empty where a file describes
+    itself; `file` is the data's file, where it has another name; `decimal` and `delimiter` are how
+    its numbers are written, `header` the line of the columns' names (0 for none), where that is not
+    to be found out; `points` is how many rows there must be."""
 
+    kind: str
     decimal: Literal[".", ","] | None = None
     delimiter: Literal["tab", "comma", "semicolon", "blank"] | None = None
     header: Annotated[int, si.AtLeast(0)] | None = None
@@ -96,7 +97,6 @@ class DescribedBench(Described):
     """Strokes of a finger or probe; `frequency` is the vibration's, `speed` that of a finger whose
     place was not recorded."""
 
-    kind: Literal["friction bench"]
     columns: BenchColumns
     speed: Annotated[si.MetrePerSecond, FINGER_SPEED] | None = None
     frequency: Annotated[si.Hertz, FREQUENCY] | None = None
@@ -127,7 +127,6 @@ class DescribedCurve(Described):
     touched what; curves of one `finger` and one `source` count once. `reading_error` is that of
     numbers read off a figure, as a share of the largest friction."""
 
-    kind: Literal["friction curve"]
     columns: CurveColumns
     frequency: Annotated[si.Hertz, FREQUENCY] | None = None
     normal_force: Annotated[si.Newton, FORCE] | None = None
@@ -152,7 +151,6 @@ class DecayColumns:
 class DescribedDecays(Described):
     """Friction curves of which a fit alone was published: µ = µ0 exp(−a²/2τ²), one row a stroke."""
 
-    kind: Literal["friction decays"]
     columns: DecayColumns
     frequency: Annotated[si.Hertz, FREQUENCY]
     normal_force: Annotated[si.Newton, FORCE] | None = None
@@ -173,7 +171,6 @@ class TouchColumns:
 class DescribedTouches(Described):
     """Impedances of fingertips that press and do not slide, one row a touch."""
 
-    kind: Literal["fingertip impedances"]
     columns: TouchColumns
     frequency: Annotated[si.Hertz, FREQUENCY]
     normal_force: Annotated[si.Newton, FORCE]
@@ -194,7 +191,6 @@ class DescribedDetection(Described):
     """Medians over so many `people` of the least modulation of friction that is detected, one row
     a spatial period."""
 
-    kind: Literal["detection thresholds"]
     columns: DetectionColumns
     normal_force: Annotated[si.Newton, FORCE]
     speed: Annotated[si.MetrePerSecond, FINGER_SPEED]

@@ -71,7 +71,6 @@ class DescribedImpedance(Described):
     in the fixture and with its ends joined.
     """
 
-    kind: Literal["impedance"]
     columns: ImpedanceColumns | None = None
     bar: CeramicBar | None = None
     disc: CeramicDisc | None = None
@@ -111,7 +110,6 @@ class DescribedResponse(Described):
     """Motion at one place (`x`, `y`) against frequency; per volt, or with the voltage of the
     drive."""
 
-    kind: Literal["frequency response"]
     columns: ResponseColumns
     voltage: Given | None = None
     x: Annotated[si.Metre, PLACE] | None = None
@@ -132,7 +130,6 @@ class LineColumns(Motion):
 class DescribedLine(Described):
     """Motion along a line at one frequency."""
 
-    kind: Literal["line scan"]
     columns: LineColumns
     frequency: Annotated[si.Hertz, FREQUENCY]
     voltage: Given | None = None
@@ -151,7 +148,6 @@ class GridColumns(Motion):
 class DescribedGrid(Described):
     """Motion at places on the face at one frequency."""
 
-    kind: Literal["grid scan"]
     columns: GridColumns
     frequency: Annotated[si.Hertz, FREQUENCY]
     voltage: Given | None = None
@@ -180,7 +176,6 @@ class RingDownColumns(TimeColumns):
 class DescribedRingDown(Described):
     """Motion against time after the drive was switched off, or a signal that follows it."""
 
-    kind: Literal["ring-down"]
     columns: RingDownColumns
 
 
@@ -189,7 +184,6 @@ class DescribedRingDown(Described):
 class DescribedSignals(Described):
     """Voltage and motion against time."""
 
-    kind: Literal["raw signals"]
     columns: TimeColumns
 
 
@@ -209,16 +203,15 @@ class DescribedSweeps(Described):
     as the voltage changes or the frequency turns around, or each in a file of its own
     (`sweeps`)."""
 
-    kind: Literal["voltage sweeps"]
     columns: ResponseColumns
     sweeps: tuple[SweepFile, ...] = ()
 
     def responses(self) -> tuple[DescribedResponse, ...]:
         """The descriptions of the sweeps that have files of their own."""
         common = {entry.name: getattr(self, entry.name) for entry in dataclasses.fields(Described)}
+        common["kind"] = "frequency response"
         return tuple(
             DescribedResponse(
-                kind="frequency response",
                 columns=self.columns,
                 voltage=entry.voltage,
                 **common | {"file": entry.file},
@@ -249,7 +242,6 @@ class Description:
     """A description with the text that it was read from, for messages; no `path` and no text where
     a file describes itself."""
 
-    kind: str
     said: Described
     path: Path | None = None
     text: str = field(default="", repr=False)
@@ -272,7 +264,7 @@ def load_description(path: str | Path) -> Description:
     require_quick_toml(text, path)
     kind = _kind(text, Path(path))
     said = load_text(KINDS[kind], text, file=path)
-    return Description(kind, said, Path(path), text)
+    return Description(said, Path(path), text)
 
 
 def _kind(text: str, path: Path) -> str:

@@ -153,7 +153,7 @@ class Reading:
         column, place = self._column(name), self._place(name)
         count = self.table.values.shape[0]
         # At rest and vibrating: the least that compares friction.
-        if count < (2 if self.description.kind == "friction curve" else _LEAST_ROWS):
+        if count < (2 if self.said.kind == "friction curve" else _LEAST_ROWS):
             raise self.table.error(
                 f"has {count} rows, too few for a recording; give the whole file"
             )

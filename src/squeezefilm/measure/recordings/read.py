@@ -186,7 +186,7 @@ def check_recording(path: str | Path, described: str | Path | None = None) -> Re
     as it does."""
     file, description = _found(Path(path), None if described is None else Path(described))
     recording, readings = _read(file, description)
-    facts = [("kind", description.kind)]
+    facts = [("kind", description.said.kind)]
     for reading in readings:
         table = reading.table
         if len(readings) > 1:
@@ -201,7 +201,7 @@ def check_recording(path: str | Path, described: str | Path | None = None) -> Re
         facts.append(("temperature", f"{told.temperature:.4g} K"))
     return RecordingCheck(
         recording=recording,
-        kind=description.kind,
+        kind=description.said.kind,
         file=file,
         description=description.path,
         points=sum(reading.table.values.shape[0] for reading in readings),
@@ -231,7 +231,7 @@ def _read(file: Path, description: Description) -> tuple[Recording, list[Reading
         return recording, [reading]
     parts: list[tuple[FrequencyResponse, Reading]] = []
     for response in said.responses():
-        sweep = dataclasses.replace(description, kind="frequency response", said=response)
+        sweep = dataclasses.replace(description, said=response)
         sweep_read, reading = assembled(sweep, _table(file.parent / response.file, sweep))
         parts.append((cast(FrequencyResponse, sweep_read), reading))
     readings = [reading for _, reading in parts]
@@ -302,7 +302,7 @@ def _found(path: Path, described: Path | None) -> tuple[Path, Description]:
         described = path.with_suffix(".toml")
     if described is not None:
         return path, load_description(described)
-    table = _table(path, Description("", Described()))
+    table = _table(path, Description(Described(kind="")))
     proposal = proposed(table)
     if proposal.to_confirm:
         columns = table.columns_in_words
@@ -312,7 +312,7 @@ def _found(path: Path, described: Path | None) -> tuple[Path, Description]:
             proposal.text,
             f"(confirm {proposal.to_confirm}; columns of the file: {columns}; {kept})",
         )
-    return path, Description(proposal.kind, load_text(KINDS[proposal.kind], proposal.text))
+    return path, Description(load_text(KINDS[proposal.kind], proposal.text))
 
 
 def propose_description(path: str | Path) -> Proposal:
@@ -320,7 +320,7 @@ def propose_description(path: str | Path) -> Proposal:
 
     Raises `ConfigError` for a file that cannot be read, or of which neither says what it holds.
     """
-    return proposed(_table(Path(path), Description("", Described())))
+    return proposed(_table(Path(path), Description(Described(kind=""))))
 
 
 def write_description(path: str | Path) -> Path:
@@ -361,7 +361,7 @@ def _table(file: Path, description: Description) -> RawTable:
     with errors_of(file):
         if suffix in SUFFIXES:
             at = getattr(description.said, "frequency", None)
-            return read_universal(file, at if description.kind in _SCANS else None)
+            return read_universal(file, at if description.said.kind in _SCANS else None)
         if suffix == ".mat":
             return read_matlab(file)
         if suffix in (".xls", ".xlsx", ".ods"):
