@@ -20,8 +20,8 @@ import tomlkit
 
 from predict_disc import sealed
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.perception.felt import MEAN_FRICTION
 from squeezefilm.physics.perception.observer import load_observer
+from squeezefilm.physics.perception.senses import MEAN_FRICTION
 from squeezefilm.validation.populations import (
     RIVALS,
     detection_medians,

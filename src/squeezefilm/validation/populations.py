@@ -33,8 +33,8 @@ from squeezefilm.physics.chain.pad_law import MODEL_KINDS
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.perception.felt import MEAN_FRICTION, Rubbed, detected_share
 from squeezefilm.physics.perception.observer import Observer, load_observer
+from squeezefilm.physics.perception.senses import MEAN_FRICTION, Rubbed, detected_share
 
 _POINTS, _MOST_DECAY = 9, 10.0
 # A publication of fingertip impedances does not tell it; what was measured is impossible at 1 µm
@@ -204,7 +204,7 @@ def detection_threshold(
 ) -> si.DimensionlessArray:
     """The amplitude (zero-to-peak) of the friction coefficient (1) about its mean that has d′ = 1,
     of sines of periods (m), shape (n,), under the published pad that slides at a speed (m/s) and a
-    force (N). Raises `InputError` for a value out of range. Source: `physics.perception.felt`."""
+    force (N). Raises `InputError` for a value out of range. Source: `physics.perception.senses`."""
     pad = FingerpadDynamics.pressed(normal_force)
     rubbed = Rubbed(friction_coefficient * normal_force, pad, speed)
     wave = np.sin(2 * math.pi * np.arange(_SAMPLES) / _SAMPLES) * np.ones((period.size, 1))

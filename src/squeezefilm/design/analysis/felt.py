@@ -20,14 +20,14 @@ from squeezefilm.core.kept.store import Kept
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.contact.finger.fingertip import rest_friction_factor
 from squeezefilm.physics.display import DECAY_LENGTH, Display
-from squeezefilm.physics.perception.felt import (
+from squeezefilm.physics.perception.observer import Observer, load_observer
+from squeezefilm.physics.perception.senses import (
     Rubbed,
     finest_felt,
     grating_evidence,
     switched_amplitude,
     tried_periods,
 )
-from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.physics.render.program.inverse import FrictionTable
 from squeezefilm.physics.render.resonator.envelope import (
     envelope_time_constant,

@@ -18,13 +18,13 @@ from squeezefilm.design.search.requirements import Limits, Requirements
 from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.perception.felt import (
+from squeezefilm.physics.perception.observer import Observer, load_observer
+from squeezefilm.physics.perception.senses import (
     Rubbed,
     grating_evidence,
     switched_amplitude,
     tried_periods,
 )
-from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.physics.plate.beam_response import patch_capacitance
 from squeezefilm.physics.plate.electronics import load_of_mode
 from squeezefilm.physics.plate.laminate import (
@@ -249,9 +249,9 @@ def _observer() -> Observer:
 
 
 def finest_period_felt(display: Display, p: Prediction) -> si.Metre:
-    """The finest square grating (m) that is felt at the finger's speed, by the senses of
-    `physics.perception.felt`; between the periods tried by a line in logarithms, so that it changes
-    smoothly. Infinite where none is felt."""
+    """The finest square grating (m) that is felt at the finger's speed, by
+    `physics.perception.senses`; between the periods tried by a line in logarithms, so that it
+    changes smoothly. Infinite where none is felt."""
     if p.vibration_amplitude == 0 or p.relative_friction >= 1:
         return math.inf
     senses, period = _observer(), tried_periods(_PERIODS)

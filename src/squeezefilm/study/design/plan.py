@@ -20,9 +20,13 @@ from squeezefilm.core.regular_file import read_toml_text
 from squeezefilm.core.results import Result, write_named
 from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.perception.felt import MEAN_FRICTION, Rubbed, detected_share
 from squeezefilm.physics.perception.observer import NamedObserver, Observer, load_observer
-from squeezefilm.physics.perception.senses import D_PRIME_OF_75
+from squeezefilm.physics.perception.senses import (
+    D_PRIME_OF_75,
+    MEAN_FRICTION,
+    Rubbed,
+    detected_share,
+)
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.study_design import NamedDesign, StudyDesign
 from squeezefilm.study.design.trials import (
@@ -239,7 +243,7 @@ def predicted_depth(design: StudyDesign, observer: Observer) -> si.Dimensionless
     """Change of relative friction (1) of a square grating with the period of a design's first
     textured stimulus that the observer tells from a flat surface in 75 % of two intervals, by a
     display without limits; infinite where no depth is felt; None without such a stimulus.
-    Source: `physics.perception.felt`."""
+    Source: `physics.perception.senses`."""
     textured = [stimulus for stimulus in design.stimuli if stimulus.name != design.reference]
     if not textured or math.isnan(textured[0].period):
         return None

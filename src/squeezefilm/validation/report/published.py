@@ -37,8 +37,8 @@ from squeezefilm.measure.report.page import (
     number_words,
 )
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL
-from squeezefilm.physics.perception.felt import MEAN_FRICTION
 from squeezefilm.physics.perception.observer import TUNED_AT, load_observer
+from squeezefilm.physics.perception.senses import MEAN_FRICTION
 from squeezefilm.validation.populations import (
     RIVALS,
     DetectionComparison,

@@ -11,13 +11,6 @@ import pytest
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.perception.felt import (
-    Rubbed,
-    finest_felt,
-    grating_evidence,
-    switched_amplitude,
-    tried_periods,
-)
 from squeezefilm.physics.perception.observer import (
     FingerClass,
     Observer,
@@ -25,7 +18,14 @@ from squeezefilm.physics.perception.observer import (
     load_observer,
 )
 from squeezefilm.physics.perception.percepts import Apparatus, percept
-from squeezefilm.physics.perception.senses import SETTLING
+from squeezefilm.physics.perception.senses import (
+    SETTLING,
+    Rubbed,
+    finest_felt,
+    grating_evidence,
+    switched_amplitude,
+    tried_periods,
+)
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
 

@@ -13,7 +13,7 @@ from squeezefilm.design.analysis.published_claims import missed_by
 from squeezefilm.physics.chain.active_area import CRITERIA, percent
 from squeezefilm.physics.chain.pad_place import place_words
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.perception.felt import FINEST_TRIED
+from squeezefilm.physics.perception.senses import FINEST_TRIED
 
 if TYPE_CHECKING:
     from rich.console import Console
