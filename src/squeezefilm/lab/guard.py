@@ -123,7 +123,11 @@ class Guard:
             return await refuse(
                 "session", 401, _UNPAIRED if self.places.participants_only else _WITHOUT_LINK
             )
-        if session is not None and session.role == "participant" and not _open_to(path):
+        if (
+            session is not None
+            and session.role == "participant"
+            and not path.startswith(_PARTICIPANT)
+        ):
             text = "This station is paired for participants; that page is the experimenter's."
             return await refuse("role", 403, text)
         scope["lab_session"] = session
@@ -219,10 +223,6 @@ class Guard:
             await send(message)
 
         return forward
-
-
-def _open_to(path: str) -> bool:
-    return any(path == allowed or path.startswith(allowed) for allowed in _PARTICIPANT)
 
 
 def _bounded(receive: Receive) -> Receive:

@@ -146,13 +146,9 @@ class Keys:
             self._sessions.pop(next(iter(self._sessions)))
         session = Session(secrets.token_urlsafe(32), role, station, now + SESSION_LIFE)
         self._sessions[session.secret] = session
-        self._keep()
+        if self.file is not None:
+            text = json.dumps([asdict(known) for known in self._sessions.values()])
+            # The file only lets pages go on after a crash: on a full disk nobody is turned away.
+            with contextlib.suppress(OSError):
+                write_secret(self.file, text.encode())
         return session
-
-    def _keep(self) -> None:
-        if self.file is None:
-            return
-        text = json.dumps([asdict(session) for session in self._sessions.values()])
-        # The file only lets pages go on after a crash: on a full disk nobody is turned away.
-        with contextlib.suppress(OSError):
-            write_secret(self.file, text.encode())

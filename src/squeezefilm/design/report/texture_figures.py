@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -51,7 +51,7 @@ def friction(result: RenderAnalysis) -> Figure:
     )
     left, right = figure.subplots(1, 2, sharey=True, width_ratios=[1.6, 1])
     total = float(stroke.time[-1])
-    middle = 0.5 * total / _passes(result)
+    middle = 0.5 * total / int(getattr(result.motion, "passes", 1))
     near = (middle - 0.5 * _ZOOM * middle, middle + 0.5 * _ZOOM * middle)
     least = result.least_friction
     for axes, (low, high) in ((left, (0.0, total)), (right, near)):
@@ -68,10 +68,6 @@ def friction(result: RenderAnalysis) -> Figure:
     right.set_title("its first pass's middle, enlarged")
     style.legend_below(left, columns=3)
     return figure
-
-
-def _passes(result: RenderAnalysis) -> int:
-    return int(getattr(result.motion, "passes", 1))
 
 
 @style.drawn
@@ -123,7 +119,10 @@ def way(result: RenderAnalysis) -> Figure:
         4.2,
     )
     axes = figure.subplots()
-    picture = _picture(result, low, high, speed)
+    rows = max(2, round(_MAP_POINTS * (high[1] - low[1]) / (high[0] - low[0])))
+    x, y = np.linspace(low[0], high[0], _MAP_POINTS), np.linspace(low[1], high[1], rows)
+    values = result.texture.texture(x[None, :], y[:, None], speed, 0.0)
+    picture = friction_of(result, values, speed)
     seen = style.seen_from_above(axes, picture, low, high)
     seen.set_clim(0.0, max(1.0, float(np.max(picture))))
     figure.colorbar(seen, ax=axes, label="µ′/µ asked for", shrink=0.9)
@@ -134,14 +133,6 @@ def way(result: RenderAnalysis) -> Figure:
     axes.plot(x[:1], y[:1], "o", color=style.INK, mec=style.PAPER, label="start")
     style.legend_below(axes, columns=2)
     return figure
-
-
-def _picture(
-    result: RenderAnalysis, low: tuple[float, float], high: tuple[float, float], speed: float
-) -> Any:
-    rows = max(2, round(_MAP_POINTS * (high[1] - low[1]) / (high[0] - low[0])))
-    x, y = np.linspace(low[0], high[0], _MAP_POINTS), np.linspace(low[1], high[1], rows)
-    return friction_of(result, result.texture.texture(x[None, :], y[:, None], speed, 0.0), speed)
 
 
 def friction_of(result: RenderAnalysis, values: FloatArray, speed: float) -> FloatArray:

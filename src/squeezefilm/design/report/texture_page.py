@@ -66,9 +66,12 @@ def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
         ("Friction rendered", f"{np.mean(rendered):.3f} ± {np.std(rendered):.3f}", ""),
         ("RMS error of µ′/µ", f"{result.rms_error:.3f}", "rendered − asked for"),
     ]
-    saturated = stroke.saturated_top + stroke.saturated_bottom
+    saturated, judged = stroke.saturated_top + stroke.saturated_bottom, result.fidelity
+    if judged is None:
+        rows.append(("Contrast, lag", "–", result.unjudged or ""))
+    else:
+        rows += contrast_rows(judged, "Contrast kept at") + lag_rows(judged)
     rows += [
-        *_judged_rows(result),
         ("Drive at a limit", f"{100 * saturated:.3g} %", "of the time"),
         (
             "Beyond the display",
@@ -88,14 +91,6 @@ def render_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
         period = shown(p.mode.half_wavelength, M, 3)
         rows.append(("Standing wave", f"{low:.3g}–{high:.3g} %", f"{said} {period}"))
     return rows
-
-
-def _judged_rows(result: RenderAnalysis) -> list[tuple[str, str, str]]:
-    """Contrast and lag of what was rendered, or why there are none."""
-    judged = result.fidelity
-    if judged is None:
-        return [("Contrast, lag", "–", result.unjudged or "")]
-    return contrast_rows(judged, "Contrast kept at") + lag_rows(judged)
 
 
 def show_render(result: RenderAnalysis) -> None:

@@ -101,7 +101,8 @@ def grating_percept(grating: Grating, observer: Observer, finger: FingerClass) -
     """Percept of a real grating by a finger, with the same exploration and channels."""
     stroke = exploration(observer, finger)
     way: si.MetreArray = np.arange(SETTLING, observer.stroke_length, SPACING)
-    depth = indentation(grating, _pressure(finger), observer.skin_modulus)
+    pressure = finger.normal_force / finger.contact_length**2
+    depth = indentation(grating, pressure, observer.skin_modulus)
     # Grooves from 0 to groove_width of each period, edges shared between samples.
     profile = depth * _share_in_groove(way, grating)
     fine = np.linspace(0.0, stroke.pass_duration, 4001)
@@ -168,10 +169,6 @@ def rendered(
         control_rate=_CONTROL_RATE,
         seed=_SEED,
     )
-
-
-def _pressure(finger: FingerClass) -> si.Pascal:
-    return finger.normal_force / finger.contact_length**2
 
 
 def _share_in_groove(way: si.MetreArray, grating: Grating) -> si.MetreArray:

@@ -244,11 +244,8 @@ class Bump(_Along):
 
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)
-        assembler.emit(BUMP, self.centre, self.width, self._sign)
-
-    @property
-    def _sign(self) -> float:
-        return 1.0 if self.kind == "bump" else -1.0
+        sign = 1.0 if self.kind == "bump" else -1.0
+        assembler.emit(BUMP, self.centre, self.width, sign)
 
 
 _SPEED = si.Unit("m/s")
