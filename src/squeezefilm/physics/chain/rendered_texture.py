@@ -241,12 +241,12 @@ class RenderRequest:
             )
         return at_largest_amplitude(
             self.display,
-            self.voltage,
-            self.normal_force,
-            self.surface,
-            self.model,
-            self.place,
             cast(Wave, self.wave),
+            voltage=self.voltage,
+            normal_force=self.normal_force,
+            surface=self.surface,
+            model=self.model,
+            place=self.place,
         )
 
 

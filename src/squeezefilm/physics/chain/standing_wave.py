@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, FrictionModel
-from squeezefilm.physics.chain.pad_place import FacePlace
+from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL
 from squeezefilm.physics.chain.played_texture import FingerMotion
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.contact.sliding.march import SpeedFriction
@@ -33,9 +32,8 @@ _BETTER = 1.5
 
 def resonance_with_finger(p: Prediction) -> tuple[si.Dimensionless, si.Hertz]:
     """Quality factor and resonance (Hz) with the finger on the mode, where that is known."""
-    if p.touch.mode is None:
-        return p.mode.quality_factor, p.mode.resonance_frequency
-    return p.touch.mode.quality_factor, p.touch.mode.resonance_frequency
+    mode = p.touch.mode or p.mode
+    return mode.quality_factor, mode.resonance_frequency
 
 
 def wave_factors(display: Display, p: Prediction) -> WaveCompensation:
@@ -139,25 +137,10 @@ class UnderPad:
 
 # A study plays many textures under one finger of one display, and all need the same.
 @functools.lru_cache(maxsize=8)
-def at_largest_amplitude(
-    display: Display,
-    voltage: si.Volt | None,
-    normal_force: si.Newton | None,
-    surface: str | None,
-    model: FrictionModel | None,
-    place: FacePlace | None,
-    wave: Wave,
-) -> tuple[Prediction, UnderPad]:
-    """Prediction of a display at its largest amplitude, arguments as of `predict`, and what the pad
-    meets of it. Raises `InputError` where it changes no friction."""
-    p = predict(
-        display,
-        voltage=voltage,
-        normal_force=normal_force,
-        surface=surface,
-        model=model,
-        place=place,
-    )
+def at_largest_amplitude(display: Display, wave: Wave, **point: Any) -> tuple[Prediction, UnderPad]:
+    """Prediction of a display at its largest amplitude, at a working `point` as of `predict`, and
+    what the pad meets of it. Raises `InputError` where it changes no friction."""
+    p = predict(display, **point)
     if p.vibration_amplitude <= 0.0 or p.relative_friction >= 1.0:
         raise InputError(
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so "
