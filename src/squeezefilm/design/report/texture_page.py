@@ -213,7 +213,7 @@ def write_render(
         raise InputError(f"a table cannot be '{table}'; it may be csv or parquet")
     folder = require_folder(folder)
     tell("figures")
-    figures = render_figures(result)
+    figures = drawn_figures(draw.FIGURES, result, "render-")
     files = picture_files(figures)
     tell("trace")
     trace = trace_table(result)
@@ -236,11 +236,6 @@ def write_render(
     files["index.html"] = _page(result, figures, sorted({*files, "index.html"}))
     write_folder(folder, files)
     return folder / "index.html"
-
-
-def render_figures(result: RenderAnalysis) -> dict[str, tuple[str, Figure]]:
-    """The figures by the name of their file: heading and drawing."""
-    return drawn_figures(draw.FIGURES, result, "render-")
 
 
 def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:

@@ -123,17 +123,12 @@ def covered_words(compared: FolderComparison) -> str:
 def coverage_rows(compared: FolderComparison) -> list[tuple[str, ...]]:
     """Rows by finger or paper of the share of points in two central intervals of the default."""
     at = [LEVELS.index(level) for level in (0.5, 0.9)]
+    # A finger or paper goes by the name of its first curve.
+    names = {item.curve.unit: item.curve.told.name for item in reversed(compared.curves)}
     return [
-        (unit_name(compared, unit), str(points), *(si.percent(inside[k] / points) for k in at))
+        (printable(names[unit]), str(points), *(si.percent(inside[k] / points) for k in at))
         for unit, (inside, points) in compared.coverage.items()
     ]
-
-
-def unit_name(compared: FolderComparison, unit: str) -> str:
-    """The name of the first curve of a finger or paper."""
-    return next(
-        printable(curve.curve.told.name) for curve in compared.curves if curve.curve.unit == unit
-    )
 
 
 def people_words(compared: PopulationComparison) -> str:

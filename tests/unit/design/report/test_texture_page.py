@@ -234,7 +234,7 @@ def test_what_cannot_be_written_is_refused_before_anything_is(
 def test_a_failure_half_way_leaves_the_folder_as_it_was(
     felt: RenderAnalysis, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(texture_page, "render_figures", lambda _: {})
+    monkeypatch.setattr(texture_page, "drawn_figures", lambda *_: {})
     (tmp_path / "trace.csv").write_text("old")
     # The last file cannot be put in a folder's place.
     (tmp_path / "index.html").mkdir()
