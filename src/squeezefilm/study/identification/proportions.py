@@ -40,18 +40,12 @@ def resampled_counts(counts: ArrayLike, resamples: int, seed: int) -> si.IntArra
             "people needs at least 2"
         )
     si.require("resamples", resamples, at_least=1)
-    people = whole.shape[0]
+    people, random = whole.shape[0], np.random.default_rng(seed)
     cells = whole.reshape(people, -1).astype(float)
-    random = np.random.default_rng(seed)
     pooled = np.empty((resamples, cells.shape[1]))
-    # A block of weights at a time: 10 000 people times 2 000 resamples would be 160 MB.
-    block = max(1, 2_000_000 // people)
-    for first in range(0, resamples, block):
-        last = min(first + block, resamples)
-        weights = np.empty((last - first, people))
-        for row in weights:
-            row[:] = np.bincount(random.integers(people, size=people), minlength=people)
-        pooled[first:last] = weights @ cells
+    for resample in pooled:
+        often = np.bincount(random.integers(people, size=people), minlength=people)
+        resample[:] = often @ cells
     return np.asarray(np.rint(pooled).reshape(resamples, *whole.shape[1:]), dtype=np.int64)
 
 

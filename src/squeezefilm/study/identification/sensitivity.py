@@ -275,7 +275,6 @@ Bit = Annotated[float, si.Unit("bit")]
 
 METHOD = "jackknife by stimulus"
 _LN2 = float(np.log(2.0))
-_BLOCK = 4096
 
 
 def jackknife(counts: ArrayLike) -> si.FloatArray:
@@ -286,39 +285,32 @@ def jackknife(counts: ArrayLike) -> si.FloatArray:
     Quenouille 1956, 10.1093/biomet/43.3-4.353, by strata). NaN where a presented stimulus has a
     single trial.
     """
-    n = whole_counts(counts)
-    flat = n.reshape(-1, *n.shape[-2:])
-    blocks = [_jackknife(flat[k : k + _BLOCK]) for k in range(0, flat.shape[0], _BLOCK)]
-    return np.concatenate(blocks).reshape(n.shape[:-2])
-
-
-def _jackknife(whole: si.IntArray) -> si.FloatArray:
-    n = whole.astype(float)
+    n = whole_counts(counts).astype(float)
     column = n.sum(axis=-2)
     share = column / column.sum(axis=-1, keepdims=True)
     divisor = np.where(column > 0, column, 1.0)
     within = np.log(divisor) + entr(n).sum(axis=-2) / divisor
-    p = n / divisor[:, None, :]
-    answer = (p * share[:, None, :]).sum(axis=-1)
+    p = n / divisor[..., None, :]
+    answer = (p * share[..., None, :]).sum(axis=-1)
     entropy = entr(answer).sum(axis=-1)
     transfer = entropy - (share * within).sum(axis=-1)
     less = np.where(column > 1, column - 1, 1.0)
     # Without one trial of cell (i, j): the column's own entropy, then the answers'.
-    changed = entr(n).sum(axis=-2)[:, None, :] - entr(n) + entr(np.maximum(n - 1, 0))
-    within_less = np.log(less)[:, None, :] + changed / less[:, None, :]
-    grown = p * (column / less)[:, None, :]
-    moved = answer[:, :, None] + share[:, None, :] * (grown - p)
+    changed = entr(n).sum(axis=-2)[..., None, :] - entr(n) + entr(np.maximum(n - 1, 0))
+    within_less = np.log(less)[..., None, :] + changed / less[..., None, :]
+    grown = p * (column / less)[..., None, :]
+    moved = answer[..., None] + share[..., None, :] * (grown - p)
     removed = share / less
     others = entr(moved).sum(axis=-2)
-    own = entr(np.maximum(moved - removed[:, None, :], 0.0)) - entr(moved)
-    entropy_less = others[:, None, :] + own
+    own = entr(np.maximum(moved - removed[..., None, :], 0.0)) - entr(moved)
+    entropy_less = others[..., None, :] + own
     transfer_less = (
         entropy_less
-        - (share * within).sum(axis=-1)[:, None, None]
-        + share[:, None, :] * (within[:, None, :] - within_less)
+        - (share * within).sum(axis=-1)[..., None, None]
+        + share[..., None, :] * (within[..., None, :] - within_less)
     )
-    weight = n * (less / divisor)[:, None, :]
-    change = np.where(n > 0, transfer[:, None, None] - transfer_less, 0.0)
+    weight = n * (less / divisor)[..., None, :]
+    change = np.where(n > 0, transfer[..., None, None] - transfer_less, 0.0)
     estimate = transfer + (weight * change).sum(axis=(-2, -1))
     return np.asarray(np.where(np.any(column == 1, axis=-1), np.nan, estimate) / _LN2)
 
