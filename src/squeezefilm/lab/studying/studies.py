@@ -229,9 +229,7 @@ class Studies:
             "study": sitting.study,
             "state": "trial",
             "token": following.token,
-            "phase": "practice"
-            if trial.phase == "practice"
-            else trial.phase.replace("catch", "main"),
+            "phase": trial.phase.replace("catch", "main"),
             "question": self.store(sitting.study).design.spoken_question,
             "alternatives": list(trial.alternatives),
             "numeric": trial.asks and not trial.alternatives,
