@@ -15,7 +15,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from squeezefilm.core.errors import DeviceError, InputError, SqueezefilmError
+from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
@@ -244,13 +244,8 @@ class StudyDevices:
         except asyncio.CancelledError:
             # The page went away while the device was at work: silence is next in its turn.
             held.halted = True
-            held.thread.submit(_silenced, held.device)
+            held.thread.submit(held.device.stop)
             raise
-
-
-def _silenced(device: StudyDevice) -> None:
-    with contextlib.suppress(SqueezefilmError):
-        device.stop()
 
 
 def require_device(kind: str, display: str) -> None:

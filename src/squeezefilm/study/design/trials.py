@@ -13,7 +13,7 @@ import dataclasses
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from functools import cache, lru_cache, partial
+from functools import cache, lru_cache
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -163,7 +163,12 @@ class _Planned(NamedTuple):
 @lru_cache(maxsize=256)
 def _trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Trial, ...]:
     found: list[Trial] = []
-    names, right = design.answers, cache(partial(_right_answer, design))
+    names = design.answers
+
+    @cache
+    def right(condition: Condition) -> str:
+        return design.answer_to(*(design.stimulus(name) for name in condition))
+
     sequence = orders(len(design.displays), 1, participant_number, seed)[0]
     for place, index in enumerate(sequence):
         matching = _random(seed, _MATCHING, participant_number, place)
@@ -189,10 +194,6 @@ def _trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Tr
                 )
             )
     return tuple(found)
-
-
-def _right_answer(design: StudyDesign, condition: Condition) -> str:
-    return design.answer_to(*(design.stimulus(name) for name in condition))
 
 
 def trial_count(design: StudyDesign) -> int:

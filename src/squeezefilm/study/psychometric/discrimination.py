@@ -11,9 +11,10 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.optimize import brentq
-from scipy.special import ndtr, ndtri
+from scipy.special import ndtri
 
 from squeezefilm.core import quantities as si
+from squeezefilm.study.design.tasks.same_different import called_different
 from squeezefilm.study.psychometric.estimate import Estimate, holding
 
 
@@ -60,11 +61,6 @@ def two_interval_d_prime(
     return yes_no_d_prime(hit_rate, false_alarm_rate) / math.sqrt(2)
 
 
-def _hits(d_prime: float, criterion: float) -> float:
-    root = math.sqrt(2.0)
-    return float(ndtr((d_prime - criterion) / root) + ndtr((-d_prime - criterion) / root))
-
-
 def differencing_d_prime(
     hit_rate: si.Dimensionless, false_alarm_rate: si.Dimensionless
 ) -> si.Dimensionless:
@@ -86,7 +82,7 @@ def differencing_d_prime(
     if hit_rate <= false_alarm_rate:
         return 0.0
     highest = k + math.sqrt(2) * (abs(float(ndtri(hit_rate))) + 10.0)
-    return float(brentq(lambda d: _hits(d, k) - hit_rate, 0.0, highest))
+    return float(brentq(lambda d: float(called_different(d, k)) - hit_rate, 0.0, highest))
 
 
 MODELS: dict[str, Callable[[si.Dimensionless, si.Dimensionless], si.Dimensionless]] = {

@@ -274,18 +274,10 @@ def _texts(text: str) -> bool:
     return isinstance(found, list) and all(isinstance(item, str) for item in found)
 
 
-def _traces(text: str) -> bool:
-    return _texts(text) and all(_TRACE.fullmatch(load) for load in json.loads(text))
-
-
 def _fields(text: str) -> bool:
     """True where a text is an object of plain values."""
     found = _json(text)
     return isinstance(found, dict) and all(isinstance(value, _PLAIN) for value in found.values())
-
-
-def _fields_or_none(text: str) -> bool:
-    return _json(text) is None or _fields(text)
 
 
 def _verification(text: str) -> bool:
@@ -325,10 +317,10 @@ _CHECKS: dict[str, Check] = {
     "alternatives": _texts,
     "pause_s": _not_negative,
     "conditions": _fields,
-    "exposure": _fields_or_none,
+    "exposure": lambda text: _json(text) is None or _fields(text),
     "moment": lambda moment: moment in ("before", "after"),
     "result": _verification,
-    "traces": _traces,
+    "traces": lambda text: _texts(text) and all(map(_TRACE.fullmatch, json.loads(text))),
     "correct": lambda flag: flag in (0, 1),
     "response_time_s": _not_negative,
     **dict.fromkeys(

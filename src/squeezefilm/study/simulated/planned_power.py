@@ -168,7 +168,11 @@ def planned_power(asked: PairAsked) -> PlannedPower:
     alone = on_one_display(design, asked.display)
     a, b = (design.stimuli.index(alone.stimulus(name)) for name in (first, second))
     if design.task == "match-to-sample":
-        _require_own_answers(alone)
+        if right_answers(alone).tolist() != list(range(len(alone.stimuli))):
+            raise InputError(
+                f"power needs each stimulus of '{alone.name}' to have its own right answer, in the "
+                "order of the stimuli"
+            )
     else:
         require_pair(alone, first, second)
     tables = chain_tables(alone, asked.observer, finger=asked.finger, progress=asked.tell)
@@ -254,11 +258,3 @@ def on_one_display(design: StudyDesign, display: str | None) -> StudyDesign:
     if where not in design.displays:
         load_display(where)
     return dataclasses.replace(design, displays=(where,))
-
-
-def _require_own_answers(alone: StudyDesign) -> None:
-    if right_answers(alone).tolist() != list(range(len(alone.stimuli))):
-        raise InputError(
-            f"power needs each stimulus of '{alone.name}' to have its own right answer, in the "
-            "order of the stimuli"
-        )

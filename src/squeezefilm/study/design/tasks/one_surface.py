@@ -2,20 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.design.tasks.task import (
     CLEARER,
     FELT,
     POPULATION,
-    Condition,
     Decision,
     DifferenceModel,
-    Judged,
-    Percepts,
     StudyTask,
     alone,
     from_reference,
@@ -77,28 +71,17 @@ MAGNITUDE_ESTIMATION = StudyTask(
 # "Yes" comes from a percept above the person's criterion, P(yes | x) = Φ((x − b)/σ), so that d′ =
 # x/σ grows with the amount x, and b is the amount at which half of the answers are "yes" (Macmillan
 # and Creelman 2005, chapter 1). The threshold has d′ = 0.954, whatever the criterion.
-
-
-def _conditions(reference: str, others: Sequence[str]) -> tuple[Condition, ...]:
-    return (*((other,) for other in others), *((reference,) for _ in others))
-
-
-def _right(surfaces: Sequence[Stimulus], judged: Judged) -> str:
-    return "yes" if judged(surfaces[0]) > 0 else "no"
-
-
-def _decides(given: Percepts) -> Decision:
-    return Decision.by_sign(given.level[0] / given.deviation - given.criterion)
-
-
 YES_NO = StudyTask(
     name="yes-no",
     surfaces=1,
     reference="flat",
     answers=("yes", "no"),
     question=lambda _: "Was there anything to feel on the surface?",
-    conditions=_conditions,
-    right=_right,
+    conditions=lambda reference, others: (
+        *((other,) for other in others),
+        *((reference,) for _ in others),
+    ),
+    right=lambda surfaces, judged: "yes" if judged(surfaces[0]) > 0 else "no",
     presents=(
         "On each trial one surface was presented, in half of the trials a flat one ({reference}), "
         "and the participant said whether there was anything to feel"
@@ -115,7 +98,7 @@ YES_NO = StudyTask(
     series=lambda k, method: (False, "no" if method == "bayesian" and k % 2 else "yes"),
     arranges=alone,
     in_amounts=True,
-    decides=_decides,
+    decides=lambda given: Decision.by_sign(given.level[0] / given.deviation - given.criterion),
     model=DifferenceModel(
         difference=from_reference,
         criteria=np.linspace(-0.5, 1.5, 41),

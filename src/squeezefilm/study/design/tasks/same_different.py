@@ -51,9 +51,11 @@ def _decides(given: Percepts) -> Decision:
     return Decision(different.astype(np.int64), doubt, np.ones(both.shape, dtype=bool))
 
 
-def _rate(d_prime: si.FloatArray, criteria: si.FloatArray) -> si.DimensionlessArray:
-    root = math.sqrt(2.0)
-    return np.asarray(ndtr((d_prime - criteria) / root) + ndtr((-d_prime - criteria) / root))
+def called_different(d_prime: si.FloatLike, criterion: si.FloatLike) -> si.DimensionlessArray:
+    """Share of "different" (1) to two surfaces that differ by d′, by the differencing model of
+    somebody who calls so what differs by more than a criterion (deviations of a percept)."""
+    far, root = np.asarray(d_prime), math.sqrt(2.0)
+    return np.asarray(ndtr((far - criterion) / root) + ndtr((-far - criterion) / root))
 
 
 SAME_DIFFERENT = StudyTask(
@@ -91,7 +93,7 @@ SAME_DIFFERENT = StudyTask(
     model=DifferenceModel(
         difference=widest,
         criteria=_LARGEST_CRITERION * (np.arange(_CRITERIA) + 0.5) / _CRITERIA,
-        rate=_rate,
+        rate=called_different,
         counts=1,
         sensitivity="differencing",
         criterion="criterion (standard deviations of a percept)",

@@ -36,18 +36,15 @@ BIASES: si.DimensionlessArray = np.linspace(-0.5, 0.5, 41)
 """Biases for an answer that are held possible, in parts of the greatest difference (1)."""
 
 
-def _question(judged: str) -> str:
-    more = "coarser" if judged == "spatial_period" else "more strongly felt"
-    return f"Which of the two surfaces was {more}?"
-
-
 def _conditions(reference: str, others: Sequence[str]) -> tuple[Condition, ...]:
     return tuple(pair for other in others for pair in ((reference, other), (other, reference)))
 
 
 def _right(surfaces: Sequence[Stimulus], judged: Judged) -> str:
     first, second = map(judged, surfaces)
-    return "" if first == second else "first" if first > second else "second"
+    # Surfaces that are ranked may have no amount.
+    alike = first == second or math.isnan(first) or math.isnan(second)
+    return "" if alike else "first" if first > second else "second"
 
 
 def _decides(given: Percepts) -> Decision:
@@ -60,7 +57,10 @@ TWO_INTERVAL = StudyTask(
     surfaces=2,
     reference="presented",
     answers=("first", "second"),
-    question=_question,
+    question=lambda judged: (
+        "Which of the two surfaces was "
+        f"{'coarser' if judged == 'spatial_period' else 'more strongly felt'}?"
+    ),
     conditions=_conditions,
     right=_right,
     presents=(
@@ -93,10 +93,6 @@ TWO_INTERVAL = StudyTask(
 
 # d′ grows with the amount x: P(first) = Φ((x₁ − x₂ − b)/s), with the person's bias b for an
 # interval (Macmillan and Creelman 2005, chapter 7). The threshold is told in 75 % of the trials.
-def _detection_decides(given: Percepts) -> Decision:
-    return Decision.by_sign((given.level[0] - given.level[1]) / given.deviation)
-
-
 DETECTION = dataclasses.replace(
     TWO_INTERVAL,
     name="detection",
@@ -113,7 +109,7 @@ DETECTION = dataclasses.replace(
     ),
     assumed=("The surface is named whose clearest rhythm is the more evident.", FELT),
     in_amounts=True,
-    decides=_detection_decides,
+    decides=lambda given: Decision.by_sign((given.level[0] - given.level[1]) / given.deviation),
 )
 """Two surfaces, one of them flat: which had something to feel?"""
 
@@ -127,10 +123,6 @@ _QUESTIONS = {
     "ridge_share": "made of wider ridges than the reference (more) or narrower ones (less)",
     "orientation": "turned to the left from the reference (more) or to the right (less)",
 }
-
-
-def _direction_decides(given: Percepts) -> Decision:
-    return Decision.by_sign((given.level[0] - given.reference) / given.deviation, given.felt[0])
 
 
 DIRECTION = StudyTask(
@@ -156,7 +148,9 @@ DIRECTION = StudyTask(
     adaptive=("limits", "bayesian"),
     series=lambda *_: (False, ""),
     arranges=alone,
-    decides=_direction_decides,
+    decides=lambda given: Decision.by_sign(
+        (given.level[0] - given.reference) / given.deviation, given.felt[0]
+    ),
     model=DifferenceModel(
         difference=from_reference,
         criteria=BIASES,
@@ -176,18 +170,11 @@ def _paired_comparison_conditions(catch: str, others: Sequence[str]) -> Iterator
     return (pair for pair in itertools.permutations(every, 2) if every is others or catch in pair)
 
 
-def _paired_comparison_right(surfaces: Sequence[Stimulus], judged: Judged) -> str:
-    first, second = map(judged, surfaces)
-    alike = first == second or math.isnan(first) or math.isnan(second)
-    return "" if alike else "first" if first > second else "second"
-
-
 PAIRED_COMPARISON = dataclasses.replace(
     TWO_INTERVAL,
     name="paired-comparison",
     reference="",
     conditions=_paired_comparison_conditions,
-    right=_paired_comparison_right,
     presents=(
         "On each trial two surfaces were presented one after the other, each with each other in "
         "either order, and the participant said which had the greater {judged}"
