@@ -71,8 +71,9 @@ def share_load(
 
     Without a `skin` the finger is rigid at the ultrasonic frequency. Raises `InputError` for
     values that cannot be used, `OutOfRangeError` where the asperities are pressed through (the gap
-    would close beyond 99.3 % of its mean, or below nothing), `ConvergenceError` where no balance
-    is found. Warns `OutOfRangeWarning` of a pressure above the law's `largest_pressure`.
+    would close beyond 99.3 % of its mean, or below nothing) or the skin resonates, so that it goes
+    along with the plate, `ConvergenceError` where no balance is found. Warns `OutOfRangeWarning` of
+    a pressure above the law's `largest_pressure`.
     """
     from squeezefilm.physics.contact.sharing import kernel
 
@@ -123,6 +124,12 @@ def _swings(
         return swing * abs(1 + moved(swing)) - amplitude
 
     low, high = 1e-6 * amplitude, 0.6 * amplitude
+    if excess(low) > 0:
+        raise OutOfRangeError(
+            f"a skin of {abs(D):.3g} Pa/m at {table.frequency:.5g} Hz goes along with the plate: "
+            "its gap swings by less than a millionth of the amplitude. Give it more damping, or a "
+            "mass and a stiffness that resonate at another frequency"
+        )
     while excess(high) < 0:
         low, high = high, 1.15 * high
     swing = float(brentq(excess, low, high, xtol=1e-14 * amplitude, rtol=1e-14))

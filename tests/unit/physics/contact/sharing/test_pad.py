@@ -80,6 +80,12 @@ def test_panels_are_built_as_balances_ask_for_them(table: Any) -> None:
     assert table.asked == before
 
 
+def test_a_skin_that_resonates_goes_along_and_is_refused(table: Any) -> None:
+    stiffness = 1.2 * (2 * math.pi * table.frequency) ** 2
+    with pytest.raises(OutOfRangeError, match="goes along with the plate"):
+        share_load(table, LAW, 1e-6, 3e3, skin=Skin(1.2, stiffness, 1e-3))
+
+
 def test_one_ridge_tied_is_that_ridge_and_many_mean_their_pressures(table: FilmTable) -> None:
     own = share_load(table, LAW, 1e-6, 3e3)
     tied = share_load_tied(table, LAW, np.array([1e-6]), 3e3)
