@@ -10,7 +10,10 @@ import functools
 import importlib
 import inspect
 import pkgutil
+import sys
+import types
 import typing
+from collections import ChainMap
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -260,6 +263,9 @@ def annotations_of(function: Callable[..., Any], home: object) -> dict[str, Any]
 
 def _calls_of_class(cls: type[Any], home: object) -> Iterator[PublicCall]:
     name = f"{cls.__module__}.{cls.__qualname__}".removeprefix("squeezefilm.")
+    # A base may be a record of another module, and names what that imports.
+    homes = [vars(sys.modules[base.__module__]) for base in reversed(cls.__mro__[:-1])]
+    home = types.SimpleNamespace(**dict(ChainMap(vars(home), *homes)))
     if "__init__" in vars(cls) and not getattr(cls, "_is_protocol", False):
         yield PublicCall(name, cls, None, annotations_of(cls.__init__, home))
     for key, member in vars(cls).items():

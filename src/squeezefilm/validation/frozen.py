@@ -15,25 +15,20 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import Gas
+from squeezefilm.physics.chain.friction import LAWS, FrictionLaw
+from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.contact.asperities import AsperityLaw
 from squeezefilm.physics.contact.finger.fingertip import Finger, Skin
-from squeezefilm.physics.contact.rough_contact import ContactLaw
 from squeezefilm.physics.contact.sharing.balance import share_load
-from squeezefilm.physics.contact.sharing.gas_table import FilmTable, film_table
-from squeezefilm.physics.contact.sharing.levitation import (
-    levitation_friction,
-    levitation_scale,
-    ridge_films,
-    ridge_friction,
-)
-from squeezefilm.physics.contact.sharing.pad import pad_friction, pad_points
+from squeezefilm.physics.contact.sharing.gas_table import film_table
+from squeezefilm.physics.display import Surface
 from squeezefilm.validation.values import ClaimValue, Computes, value_of
 
 Kind = Literal["balance", "closed form", "ridges"]
@@ -42,7 +37,7 @@ MODELS: Mapping[str, Kind] = MappingProxyType(
     {"partial-levitation": "balance", "levitation": "closed form", "levitation-ridges": "ridges"}
 )
 """The models that published directions are asked of, and what each solves: the balance of a film
-with asperities of `FrozenContact.law`, or a film that lifts the contact off over a length fitted to
+with separate asperities, or a film that lifts the contact off over a length fitted to
 people, in closed form or solved over a ridge."""
 
 WORDS: Mapping[Kind, str] = MappingProxyType(
@@ -79,7 +74,14 @@ class FrozenContact:
 
     finger: Finger = field(
         default_factory=lambda: Finger(
-            10e-3, 50e-6, 350e-6, 0.5, plateau_width=250e-6, skin_roughness=0.6e-6
+            10e-3,
+            50e-6,
+            350e-6,
+            0.5,
+            plateau_width=250e-6,
+            skin_roughness=0.6e-6,
+            contact_area_exponent=0.0,
+            asperities=AsperityLaw(),
         )
     )
     gas: Gas = field(default_factory=lambda: Gas(1.85e-5, 1e5, 1.2, 67e-9))
@@ -92,13 +94,27 @@ class FrozenContact:
     speed: si.MetrePerSecond = 0.08
     evidence: Mapping[str, str] = field(default_factory=_evidence)
 
-    @property
-    def law(self) -> ContactLaw:
-        """The law of contact on the frozen roughness: its heights grow with those of skin and face
-        together."""
-        skin = self.finger.skin_roughness
-        factor = math.hypot(skin, self.roughness) / math.hypot(skin, FROZEN.roughness)
-        return AsperityLaw().scaled(factor)
+    def law(self, model: str) -> FrictionLaw:
+        """The friction law of a model at these parameters, the pad over an antinode. Raises
+        `InputError` for a model that published directions are not asked of."""
+        if model not in MODELS:
+            raise InputError(
+                f"published directions are not asked of a model '{model}'."
+                f"{si.did_you_mean(model, MODELS)} Models: {', '.join(MODELS)}"
+            )
+        finger, asked = self.finger, cast(FrictionModel, model)
+        share = finger.plateau_width / finger.ridge_period
+        return LAWS[asked](
+            surface=Surface("", self.roughness, 1.0),
+            finger=finger,
+            gas=self.gas,
+            half_wavelength=self.half_wavelength,
+            frequency=self.frequency,
+            normal_force=self.plateau_pressure * share * finger.contact_length**2,
+            model=asked,
+            speed=self.speed,
+            slip=self.slip,
+        )
 
     def relative_friction(
         self,
@@ -109,55 +125,23 @@ class FrozenContact:
         **changes: Any,
     ) -> si.Dimensionless:
         """µ′/µ by a model, with what is given changed (`changes` by the names above) and all else
-        as it is frozen. Raises `InputError` for a model that is not known."""
+        as it is frozen. Raises as `law`."""
         here = replace(self, **changes)
-        if _kind(model) != "balance":
-            met = np.array([here.amplitude])
-            return float(here._lifted(model, met, ambient_pressure)[0])
-        table = here._films(ambient_pressure)
-        shared = share_load(table, here.law, here.amplitude, here.plateau_pressure, skin=skin)
+        if ambient_pressure is not None:
+            here = replace(here, gas=here.gas.at_pressure(ambient_pressure))
+        law = here.law(model)
+        if skin is None or MODELS[model] != "balance":
+            return float(law.ridge_friction(np.array([here.amplitude]))[0])
+        films = film_table(here.frequency, here.finger.plateau_width, here.gas, here.slip)
+        pressure = here.plateau_pressure
+        shared = share_load(films, law.asperities, here.amplitude, pressure, skin=skin)
         return float(shared.relative_friction)
 
     def pad_friction(self, model: str, ridge_angle: si.Radian) -> si.Dimensionless:
         """µ′/µ by a model of a whole pad over an antinode, its ridges turned by an angle (rad) out
-        of the nodal lines, each place at its own balance. Raises as `relative_friction`."""
-        points = pad_points(replace(self.finger, ridge_angle=ridge_angle))
-        wave = np.abs(np.cos(np.pi * points.along / self.half_wavelength))
-        if _kind(model) != "balance":
-            return float(self._lifted(model, self.amplitude * wave, None) @ points.shares)
-        films, pressure = self._films(None), self.plateau_pressure
-        found = pad_friction(films, self.law, self.amplitude, wave, points.shares, pressure)
-        return float(found.relative_friction[0])
-
-    def _lifted(
-        self, model: str, amplitude: si.MetreArray, ambient_pressure: si.Pascal | None
-    ) -> si.DimensionlessArray:
-        """µ′/µ at the amplitudes that a contact meets (m), lifted over a length fitted to people.
-        Neither asperities nor the skin's vibration enter."""
-        finger, load = self.finger, self.plateau_pressure
-        if _kind(model) == "ridges":
-            films = ridge_films(*self._film_of(ambient_pressure))
-            return ridge_friction(films, amplitude, load, float(finger.ridge_length_at(self.speed)))
-        pressure = load * finger.plateau_width / finger.ridge_period
-        ambient = ambient_pressure or self.gas.ambient_pressure
-        length = float(finger.decay_length_at(self.speed))
-        return levitation_friction(amplitude / levitation_scale(length, pressure, ambient))
-
-    def _film_of(self, ambient_pressure: si.Pascal | None) -> tuple[si.Hertz, si.Metre, Gas, str]:
-        gas = self.gas if ambient_pressure is None else self.gas.at_pressure(ambient_pressure)
-        return self.frequency, self.finger.plateau_width, gas, self.slip
-
-    def _films(self, ambient_pressure: si.Pascal | None) -> FilmTable:
-        return film_table(*self._film_of(ambient_pressure))
-
-
-def _kind(name: str) -> Kind:
-    if name not in MODELS:
-        raise InputError(
-            f"published directions are not asked of a model '{name}'."
-            f"{si.did_you_mean(name, MODELS)} Models: {', '.join(MODELS)}"
-        )
-    return MODELS[name]
+        of the nodal lines, each place at its own balance. Raises as `law`."""
+        turned = replace(self, finger=replace(self.finger, ridge_angle=ridge_angle))
+        return turned.law(model).at(self.amplitude)
 
 
 FROZEN = FrozenContact()

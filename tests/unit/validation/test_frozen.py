@@ -57,9 +57,13 @@ def test_what_is_not_given_is_frozen() -> None:
 
 
 def test_heights_grow_with_those_of_both_faces() -> None:
-    rough, smooth = FROZEN.law, dataclasses.replace(FROZEN, roughness=0.0).law
+    rough, smooth = (
+        dataclasses.replace(FROZEN, roughness=roughness).law(BALANCE).asperities
+        for roughness in (0.6e-6, 1e-9)
+    )
     assert rough == AsperityLaw()
-    assert smooth.decay_length == pytest.approx(rough.decay_length / np.sqrt(2))
+    assert isinstance(smooth, AsperityLaw)
+    assert smooth.decay_length == pytest.approx(rough.decay_length / np.sqrt(2), rel=1e-5)
 
 
 def test_each_change_acts() -> None:
