@@ -95,6 +95,7 @@ NOT_CALLED = {
     measure.fits.circuit.branches.circuit_curve measure.fits.circuit.branches.relative_motion
     measure.fits.circuit.branches.start_at
     physics.contact.asperities.cubics physics.contact.sharing.balance.require_balanced
+    physics.chain.friction.where_known
     physics.plate.solid.forecast.SolveSize.require_within
     actuators.motor.in_time.resting
     physics.plate.elements.slabs.require_countable

@@ -14,7 +14,7 @@ from squeezefilm.core.called_with import called_with
 from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left
 from squeezefilm.core.results import Result, stamp
 from squeezefilm.design.analysis.area_odds import JudgedArea, judged_area
-from squeezefilm.design.analysis.curves import ModelCurve, as_far_as_it_goes, model_curves
+from squeezefilm.design.analysis.curves import ModelCurve, model_curves
 from squeezefilm.design.analysis.published_claims import missed_by
 from squeezefilm.design.analysis.verdict import (
     Finding,
@@ -24,6 +24,7 @@ from squeezefilm.design.analysis.verdict import (
     why_not_good,
 )
 from squeezefilm.design.analysis.wanted import Wanted, wanted_friction
+from squeezefilm.physics.chain.friction import where_known
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.wanted_voltage import WantedFriction, WorkingPoint
@@ -214,7 +215,7 @@ def friction_map(prediction: Prediction, points: int = 40) -> FrictionMap:
     rows = np.empty((points, points))
     for number, newtons in enumerate(force):
         at = dataclasses.replace(law, normal_force=float(newtons))
-        rows[number] = as_far_as_it_goes(at, amplitude)
+        rows[number] = where_known(at.curve, amplitude)
     return FrictionMap(amplitude, force, rows, law.model)
 
 

@@ -21,7 +21,6 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import to_json
-from squeezefilm.measure.fits.friction.friction_curve import relative_friction
 from squeezefilm.measure.fits.friction.friction_scores import fitted_shape
 from squeezefilm.measure.recordings.kinds import (
     DetectionThresholds,
@@ -29,6 +28,7 @@ from squeezefilm.measure.recordings.kinds import (
     FrictionDecays,
     Told,
 )
+from squeezefilm.physics.chain.friction import where_known
 from squeezefilm.physics.chain.pad_law import MODEL_KINDS
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
@@ -93,7 +93,7 @@ def compare_decays(
     models: list[tuple[str, float | None]] = []
     for model in MODEL_KINDS:
         tell(f"{decays.told.name}: {model}")
-        curve = relative_friction(prediction.law.by(model), amplitude)
+        curve = where_known(prediction.law.by(model).curve, amplitude)
         known = np.isfinite(curve)
         tau = None
         if known.sum() > 2:

@@ -3,7 +3,6 @@ model and wavelength."""
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import functools
 from dataclasses import dataclass
@@ -13,12 +12,12 @@ import numpy as np
 
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import SqueezefilmError, UnreachableError
+from squeezefilm.core.errors import UnreachableError
 from squeezefilm.core.materials import Gas
 from squeezefilm.design.analysis.paper_procedure import PAPER_HALF_WAVELENGTHS, friction_criterion
 from squeezefilm.measure.recordings import kinds as recordings
 from squeezefilm.measure.recordings.read import check_folder
-from squeezefilm.physics.chain.friction import FrictionLaw
+from squeezefilm.physics.chain.friction import FrictionLaw, where_known
 from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Surface, load_display
@@ -249,18 +248,5 @@ def model_curves(prediction: Prediction) -> tuple[ModelCurve, ...]:
         law = p.law.by(model)
         # Denser at small amplitudes, where a smooth film lifts the finger off.
         amplitude = np.union1d(top * np.linspace(0, 1, points) ** 1.5, p.vibration_amplitude)
-        curves.append(ModelCurve(model, amplitude, as_far_as_it_goes(law, amplitude)))
+        curves.append(ModelCurve(model, amplitude, where_known(law.curve, amplitude)))
     return tuple(curves)
-
-
-def as_far_as_it_goes(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArray:
-    """µ′/µ at rising amplitudes (m), NaN from the first that the law refuses."""
-    with contextlib.suppress(SqueezefilmError):
-        return law.curve(amplitude)
-    friction = np.full(amplitude.size, np.nan)
-    for at in range(amplitude.size):
-        try:
-            friction[at] = law.at(float(amplitude[at]))
-        except SqueezefilmError:
-            break
-    return friction

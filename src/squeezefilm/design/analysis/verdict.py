@@ -15,12 +15,12 @@ from squeezefilm.design.analysis.curves import (
     COMPARED,
     PAPER_CRITERION,
     FrictionCurve,
-    as_far_as_it_goes,
 )
 from squeezefilm.design.analysis.ears import AUDIBLE, EarExposure
 from squeezefilm.design.analysis.felt import GratingsLeft
 from squeezefilm.design.plate.listed_modes import mode_doubts, why_undriven
 from squeezefilm.physics.chain.active_area import CRITERIA
+from squeezefilm.physics.chain.friction import where_known
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
@@ -255,7 +255,7 @@ def rival_frictions(p: Prediction) -> dict[str, si.Dimensionless]:
     frictions = {}
     for model, _ in COMPARED:
         if model != p.model:
-            (friction,) = as_far_as_it_goes(p.law.by(model), np.array([p.vibration_amplitude]))
+            (friction,) = where_known(p.law.by(model).curve, np.array([p.vibration_amplitude]))
             if np.isfinite(friction):
                 frictions[str(model)] = float(friction)
     return frictions

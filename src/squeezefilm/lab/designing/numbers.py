@@ -29,6 +29,7 @@ from squeezefilm.lab.designing.form import (
 from squeezefilm.lab.wire import Name, Text
 from squeezefilm.lab.worker import tell
 from squeezefilm.physics.chain.area_map import active_area
+from squeezefilm.physics.chain.friction import where_known
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.electronics import load_of_mode
@@ -130,7 +131,7 @@ def designed(point: DesignPoint, quality: str) -> dict[str, Any]:
         "friction_curve": {
             "amplitude_m": amplitude.tolist(),
             "relative_friction": to_json(p.law.curve(amplitude)),
-            "paper2008": to_json(_paper(p, amplitude)),
+            "paper2008": to_json(where_known(p.law.by("paper2008").curve, amplitude)),
         },
         "response": {
             "frequency_Hz": frequency.tolist(),
@@ -229,13 +230,6 @@ def _area(display: Display, p: Prediction) -> dict[str, Any] | None:
             "relative_friction": to_json(np.round(thin.ravel(), 4)),
         }
     return shown
-
-
-def _paper(p: Prediction, amplitude: si.FloatArray) -> si.FloatArray:
-    try:
-        return p.law.by("paper2008").curve(amplitude)
-    except SqueezefilmError:
-        return np.full(amplitude.size, np.nan)
 
 
 def _shape(p: Prediction) -> dict[str, Any] | None:

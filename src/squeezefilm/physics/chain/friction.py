@@ -6,6 +6,8 @@ curves, textures. Each law names its model.
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Callable
 from dataclasses import fields, replace
 from functools import cached_property
 from typing import Annotated, NamedTuple
@@ -13,7 +15,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError
+from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.physics.chain.pad_law import (
     DEFAULT_MODEL,
     MODEL_KINDS,
@@ -306,6 +308,19 @@ LAWS: dict[FrictionModel, type[FrictionLaw]] = {
     "levitation": FittedLaw,
 }
 """The law of each model."""
+
+
+def where_known(
+    friction: Callable[[si.MetreArray], si.DimensionlessArray], amplitude: si.MetreArray
+) -> si.DimensionlessArray:
+    """What a `friction` gives (1) at amplitudes (m), both of shape (n,); NaN where it refuses."""
+    with contextlib.suppress(SqueezefilmError):
+        return friction(amplitude)
+    known = np.full(amplitude.size, np.nan)
+    for k in range(amplitude.size):
+        with contextlib.suppress(SqueezefilmError):
+            known[k] = friction(amplitude[k : k + 1])[0]
+    return known
 
 
 @si.checked_numbers

@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import OutOfRangeError, SqueezefilmError
+from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Interval, to_json
+from squeezefilm.physics.chain.friction import where_known
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.uncertainty.drawn import evaluate, hash_of_draws, require_samples
@@ -366,17 +367,10 @@ def _drawn_curves(
     """Relative friction µ′/µ of each draw at each amplitude, shape (draws, n); NaN where
     refused."""
     samples = len(points)
-    rows = np.full((samples, amplitude.size), np.nan)
+    rows = np.empty((samples, amplitude.size))
     for number, draw in enumerate(mixture.draws(points)):
         if progress is not None:
             progress(f"draw {number + 1} of {samples}", number / samples)
-        law = mixture.law(draw)
-        try:
-            rows[number] = between_limits(law, draw, amplitude)
-        except SqueezefilmError:
-            for column, at in enumerate(amplitude):
-                try:
-                    rows[number, column] = between_limits(law, draw, np.array([at]))[0]
-                except SqueezefilmError:
-                    continue
+        friction = functools.partial(between_limits, mixture.law(draw), draw)
+        rows[number] = where_known(friction, amplitude)
     return rows

@@ -15,6 +15,7 @@ from squeezefilm.lab.designing import numbers
 from squeezefilm.lab.designing.form import display_of, edited, form, preset_text
 from squeezefilm.lab.designing.numbers import DesignPoint, designed, opened, outline, predicted
 from squeezefilm.physics.chain.area_map import active_area
+from squeezefilm.physics.chain.friction import where_known
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.uncertainty.uncertainty import FrictionBand
 
@@ -207,13 +208,11 @@ def test_a_quality_is_a_theory_for_plates_only(
 
 
 def test_a_curve_of_the_papers_model_is_left_out_where_it_does_not_hold() -> None:
-    law = predict(display_of(STATOR)).law
-    amplitude = np.array([0.0, 1e-6])
-    found = numbers._paper(SimpleNamespace(law=law), amplitude)  # type: ignore[arg-type]
-    assert found.shape == (2,)
+    law = predict(display_of(STATOR)).law.by("paper2008")
     # No law stands for an amplitude that is none.
-    broken = numbers._paper(SimpleNamespace(law=law), np.array([-1e-6, 1e-6]))  # type: ignore[arg-type]
-    assert np.all(np.isnan(broken))
+    known = where_known(law.curve, np.array([0.0, -1e-6, 1e-6]))
+    assert np.isfinite(known).tolist() == [True, False, True]
+    assert known[2] == law.at(1e-6)
 
 
 def test_a_solved_plate_is_told_of_while_it_is_solved(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError, SqueezefilmError
+from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress, said_with_time_left, within
 from squeezefilm.core.results import to_json
 from squeezefilm.measure.fits.estimate import Adequacy, FitResult, Observation
@@ -22,7 +21,7 @@ from squeezefilm.measure.fits.friction.friction_scores import (
     shape_scores,
 )
 from squeezefilm.measure.recordings.kinds import FrictionCurve
-from squeezefilm.physics.chain.friction import FrictionLaw
+from squeezefilm.physics.chain.friction import where_known
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, MODEL_KINDS
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
@@ -212,7 +211,7 @@ def compare_friction_curve(
         )
         for k, model in enumerate(MODEL_KINDS):
             part(f"{curve.told.name}: {model}", 0.2 + 0.3 * k / len(MODEL_KINDS))
-            friction[model][here] = relative_friction(prediction.law.by(model), amplitude[here])
+            friction[model][here] = where_known(prediction.law.by(model).curve, amplitude[here])
         bands = friction_bands(
             display,
             prediction,
@@ -243,17 +242,6 @@ def compare_friction_curve(
         adequacy=_adequacy(curve, default, at_rest),
         inside_levels=inside_levels,
     )
-
-
-def relative_friction(law: FrictionLaw, amplitude: si.MetreArray) -> si.DimensionlessArray:
-    """µ′/µ of a law at each amplitude (m), NaN where it refuses one."""
-    with contextlib.suppress(SqueezefilmError):
-        return law.curve(amplitude)
-    friction = np.full(amplitude.size, np.nan)
-    for k, size in enumerate(amplitude):
-        with contextlib.suppress(SqueezefilmError):
-            friction[k] = law.at(float(size))
-    return friction
 
 
 def _adequacy(curve: FrictionCurve, default: ModelScore, at_rest: float) -> Adequacy:
