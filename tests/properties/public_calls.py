@@ -11,7 +11,6 @@ import importlib
 import inspect
 import pkgutil
 import sys
-import types
 import typing
 from collections import ChainMap
 from collections.abc import Callable, Iterator
@@ -244,10 +243,15 @@ def is_kernel(item: Any) -> bool:
     return hasattr(item, "py_func") or type(item).__module__.startswith("numba")
 
 
-def annotations_of(function: Callable[..., Any], home: object) -> dict[str, Any]:
-    """The annotations of what a function takes, by name; `home` is its module."""
+def annotations_of(
+    function: Callable[..., Any], home: object, made: type[Any] = object
+) -> dict[str, Any]:
+    """The annotations of what a function takes, by name; `home` is its module. What is `made` by
+    it, or called with a record's fields, may inherit those of another module."""
+    bases = getattr(function, "record", made).__mro__[:-1]
+    homes = [vars(sys.modules[base.__module__]) for base in bases]
     # What a module imports for types only is not there at run time; it is no number either.
-    names = typing.cast(dict[str, Any], dict(vars(home)))
+    names = dict(ChainMap(vars(home), *homes))
     for _ in range(20):
         try:
             hints = typing.get_type_hints(function, names, include_extras=True)
@@ -264,11 +268,8 @@ def annotations_of(function: Callable[..., Any], home: object) -> dict[str, Any]
 
 def _calls_of_class(cls: type[Any], home: object) -> Iterator[PublicCall]:
     name = f"{cls.__module__}.{cls.__qualname__}".removeprefix("squeezefilm.")
-    # A base may be a record of another module, and names what that imports.
-    homes = [vars(sys.modules[base.__module__]) for base in reversed(cls.__mro__[:-1])]
-    home = types.SimpleNamespace(**dict(ChainMap(vars(home), *homes)))
     if "__init__" in vars(cls) and not getattr(cls, "_is_protocol", False):
-        yield PublicCall(name, cls, None, annotations_of(cls.__init__, home))
+        yield PublicCall(name, cls, None, annotations_of(cls.__init__, home, cls))
     for key, member in vars(cls).items():
         if key.startswith("_") and key != "__call__":
             continue

@@ -33,7 +33,7 @@ def _inputs() -> Iterator[tuple[str, type[Any], list[str]]]:
             if getattr(item, "__module__", None) != module.name or not key.endswith(INPUTS):
                 continue
             if inspect.isclass(item) and dataclasses.is_dataclass(item):
-                hints = annotations_of(item.__init__, home)
+                hints = annotations_of(item.__init__, home, item)
                 yield key, item, [name for name, hint in hints.items() if is_number(hint)]
 
 
