@@ -16,16 +16,16 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
-from squeezefilm.core.errors import InputError
+from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.hard_limits import NODAL_LINES, require_within
-from squeezefilm.core.progress import Deadline, Pace, SayProgress, said_with_time_left
+from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left
 from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring
 from squeezefilm.design.plate.solved import ALONE, ModeRow, Remarks, SolvedBody
-from squeezefilm.physics.display import Display, NamedDisplay
+from squeezefilm.physics.display import NamedDisplay
 from squeezefilm.physics.plate.beam_response import BeamResponse, beam_response
 from squeezefilm.physics.plate.elements.nodal_lines import line_distance
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.solid.forecast import band_seconds, estimated_frequency, solve_size
+from squeezefilm.physics.plate.solid.forecast import band_seconds
 from squeezefilm.physics.plate.solid.modes import Label, PlateModes, check_band
 from squeezefilm.physics.plate.solid.resonances import antinode, label_name
 from squeezefilm.physics.plate.solid.response import HarmonicResponse
@@ -94,26 +94,44 @@ class PlateRequest:
     budget: si.Second | None = None
 
 
+@reads_text
 @called_with(PlateRequest)
-def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
-    """The modes of a display's plate in a band, and the response around the working mode.
+def solve_plate(asked: PlateRequest) -> PlateAnalysis | RingAnalysis:
+    """The modes of a display's plate, disc or stator in a band (Hz), and its working mode's
+    response at `points` frequencies.
 
-    `mode` defaults to the display's own, (nodal lines, 0); `band` to ±8 % around it. The mode and
-    its response are those of `solid_mode`, which every other verb reads too. Within a `budget` (s)
+    `mode` is by nodal lines across length and width, of a disc or stator (nodal circles, nodal
+    diameters). It defaults to the display's own, `band` to ±8 % around it. A plate's mode and its
+    response are those of `solid_mode`, which every other verb reads too. Within a `budget` (s)
     meshes are left coarser, with larger errors, and the other modes of the band left out, as time
     asks.
 
-    Raises `InputError` for a display without a rectangular plate or one that cannot be right (see
-    `require_plausible`), `OutOfTimeError` for a budget that allows no solve, and what `solve_modes`
-    raises: a band with no mode, a mode that is not found.
+    Raises `InputError` for a display that cannot be right (see `require_plausible`) or that nothing
+    drives, `OutOfTimeError` for a budget that allows no solve, and what `solve_modes` raises: a
+    band with no mode, a mode that is not found. Of discs and stators those of `analyze_ring`.
     """
-    display, band = asked.display, asked.band
-    plate = _driven_plate(display)
-    if band is not None:
-        check_band(band)
-    tell = asked.progress or (lambda _: None)
+    doubts, actuator = require_plausible(asked.display), asked.display.actuator
+    if isinstance(actuator, RectangularPlate):
+        return _of_rectangle(asked, actuator, doubts)
+    given = dict(vars(asked))
+    pace = Pace(given.pop("budget"))
+    return analyze_ring(**given, pace=pace)
+
+
+def _of_rectangle(
+    asked: PlateRequest, plate: RectangularPlate, doubts: tuple[str, ...]
+) -> PlateAnalysis:
+    """The analysis of a rectangular plate; `doubts` are those about its description."""
+    if not any(patch.electrode == "driven" for patch in plate.patches):
+        raise InputError(
+            "no electrode is driven; give at least one patch electrode = 'driven'",
+            quantity="patches",
+        )
+    if asked.band is not None:
+        check_band(asked.band)
+    display, tell = asked.display, asked.progress or (lambda _: None)
     label = asked.mode or plate.working_label
-    solved = solved_plate(plate, label, band, _Teller(asked.budget, tell))
+    solved = solved_plate(plate, label, asked.band, _Teller(asked.budget, tell))
     solid = solved.solid
     response, at = _resampled(solid, asked.points)
     tell("airborne sound")
@@ -139,7 +157,7 @@ def analyze_plate(asked: PlateRequest) -> PlateAnalysis:
         beam_frequency=solved.beam.mode.frequency,
         beam_amplitude_per_volt=solved.beam.amplitude_per_volt,
         sound=sound_field(solid.radiating(display.drive.voltage, solid.frequency)),
-        objections=(*require_plausible(display), *solved.left_out),
+        objections=(*doubts, *solved.left_out),
     )
 
 
@@ -179,10 +197,20 @@ def solved_plate(
     band: tuple[si.Hertz, si.Hertz] | None,
     teller: _Teller,
 ) -> SolvedPlate:
-    """The solves behind `analyze_plate`; those of the last two plates are kept."""
-    tell, deadline = teller.tell, _deadline(plate, label, Pace(teller.budget))
+    """The solves of a rectangular plate; those of the last two are kept.
+
+    Raises `OutOfTimeError`, with the answer of a closed estimate, where the budget does not allow
+    the coarse meshes.
+    """
+    tell, deadline = teller.tell, Pace(teller.budget).deadline()
     tell(f"mode ({label[0]},{label[1]}) and its response")
-    solid = solid_mode(plate, label, pace=Pace(teller.budget, said_with_time_left(tell)))
+    try:
+        solid = solid_mode(plate, label, pace=Pace(teller.budget, said_with_time_left(tell)))
+    except OutOfTimeError as error:
+        if (seen := expectation(plate)) is None:
+            raise
+        said = f"{error}. Without a solve: {seen.sentence}."
+        raise OutOfTimeError(said, quantity="budget") from error
     frequency, modes = solid.frequency, solid.modes
     left_out = [modes.coarseness] if modes.coarseness else []
     wanted = band or (0.92 * frequency, 1.08 * frequency)
@@ -195,53 +223,6 @@ def solved_plate(
     else:
         left_out.append(ALONE)
     return SolvedPlate(solid, modes, beam_response(plate), tuple(left_out))
-
-
-def _deadline(plate: RectangularPlate, label: Label, pace: Pace) -> Deadline | None:
-    """Time at which all of a plate's analysis must be there; None without a budget.
-
-    Raises `OutOfTimeError`, with the answer of a closed estimate, where the budget does not allow
-    the coarse meshes.
-    """
-    deadline = pace.deadline()
-    if deadline is None or pace.budget is None:
-        return None
-    size, seen = solve_size(plate, label, estimated_frequency(plate, label)), expectation(plate)
-    instead = "" if seen is None else f". Without a solve: {seen.sentence}."
-    size.require_within(deadline, pace.budget, instead)
-    return deadline
-
-
-@reads_text
-@called_with(PlateRequest)
-def solve_plate(asked: PlateRequest) -> PlateAnalysis | RingAnalysis:
-    """The modes of a display's plate, disc or stator in a band (Hz), and its working mode's
-    response at `points` frequencies.
-
-    Arguments and errors are those of `analyze_plate` and `analyze_ring`.
-    """
-    given, actuator = dict(vars(asked)), asked.display.actuator
-    require_plausible(asked.display)
-    if isinstance(actuator, RectangularPlate):
-        return analyze_plate(**given)
-    pace = Pace(given.pop("budget"))
-    return analyze_ring(**given, pace=pace)
-
-
-def _driven_plate(display: Display) -> RectangularPlate:
-    """The display's rectangular plate, refused where it has none, or one that nothing drives."""
-    plate = display.actuator
-    if not isinstance(plate, RectangularPlate):
-        raise InputError(
-            f"display '{display.name}' has a {plate.type} and no rectangular plate; analyze_ring "
-            "solves discs and stators"
-        )
-    if not any(patch.electrode == "driven" for patch in plate.patches):
-        raise InputError(
-            "no electrode is driven; give at least one patch electrode = 'driven'",
-            quantity="patches",
-        )
-    return plate
 
 
 def mode_row(modes: PlateModes, index: int) -> ModeRow:

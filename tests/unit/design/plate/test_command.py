@@ -13,11 +13,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.plate import command
-from squeezefilm.design.plate.command import (
-    analyze_plate,
-    parse_band,
-    parse_mode,
-)
+from squeezefilm.design.plate.command import PlateAnalysis, parse_band, parse_mode, solve_plate
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.layout import RectangularPlate
@@ -95,6 +91,13 @@ def solid(plate: RectangularPlate, label: Any) -> Any:
     )  # fmt: skip
 
 
+def solved_plate(display: Display, **asked: Any) -> PlateAnalysis:
+    """The analysis of a rectangular plate."""
+    result = solve_plate(display, **asked)
+    assert isinstance(result, PlateAnalysis)
+    return result
+
+
 @pytest.fixture
 def display() -> Display:
     return load_display("biet2008-plate")
@@ -140,7 +143,7 @@ def parts(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, Any]]:
 
 def test_an_analysis_is_around_the_mode_asked_for(display: Display, parts: dict[str, Any]) -> None:
     told: list[str] = []
-    one = analyze_plate(display, mode=(4, 0), points=21, progress=told.append)
+    one = solved_plate(display, mode=(4, 0), points=21, progress=told.append)
     plate = display.actuator
     assert parts["solid"] == [(plate, (4, 0))]
     assert parts["modes"] == [(plate, pytest.approx((0.92 * 30e3, 1.08 * 30e3)))]
@@ -172,16 +175,16 @@ def test_a_plate_is_solved_once_for_all_voltages(display: Display, parts: dict[s
         driven = dataclasses.replace(
             display, drive=dataclasses.replace(display.drive, voltage=volts)
         )
-        analyze_plate(driven, mode=(4, 0), progress=lambda _: None)
+        solved_plate(driven, mode=(4, 0), progress=lambda _: None)
         assert parts["sound_field"][0][0][0] == volts
     assert len(parts["modes"]) == 1
     thicker = dataclasses.replace(display.actuator, thickness=2.1e-3)
-    analyze_plate(dataclasses.replace(display, actuator=thicker), mode=(4, 0))
+    solved_plate(dataclasses.replace(display, actuator=thicker), mode=(4, 0))
     assert len(parts["modes"]) == 2
 
 
 def test_the_table_has_each_mode_of_the_band(display: Display, parts: dict[str, Any]) -> None:
-    one = analyze_plate(display, mode=(4, 0), band=(25e3, 35e3))
+    one = solved_plate(display, mode=(4, 0), band=(25e3, 35e3))
     assert parts["modes"][0][1] == (25e3, 35e3)
     first, second, third = one.rows
     assert [row.label for row in one.rows] == ["(4,0)", "in plane", "(0,3)"]
@@ -206,12 +209,10 @@ def test_what_cannot_be_is_refused_before_anything_is_solved(
     shorted = tuple(dataclasses.replace(p, electrode="shorted") for p in plate.patches)
     still = dataclasses.replace(display, actuator=dataclasses.replace(plate, patches=shorted))
     with pytest.raises(InputError, match="no electrode is driven"):
-        analyze_plate(still)
+        solved_plate(still)
     for band in ((35e3, 25e3), (25e3, 25e3)):
         with pytest.raises(InputError, match="is none"):
-            analyze_plate(display, band=band)
-    with pytest.raises(InputError, match="has a annular_stator and no rectangular plate"):
-        analyze_plate(load_display("biet2008-stator"))
+            solved_plate(display, band=band)
     assert parts["modes"] == []
 
 

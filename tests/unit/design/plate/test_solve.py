@@ -18,26 +18,32 @@ DEFAULTS = {"mode": None, "band": None, "points": 200, "progress": None}
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str, dict[str, Any]]]:
     calls: list[tuple[str, str, dict[str, Any]]] = []
-    for name in ("analyze_plate", "analyze_ring"):
 
-        def solver(display: Any, *, _name: str = name, **arguments: Any) -> str:
-            calls.append((_name, display.name, arguments))
-            return f"solved by {_name}"
+    def of_rectangle(request: Any, plate: Any, doubts: Any) -> str:
+        assert (plate, doubts) == (request.display.actuator, ())
+        arguments = dict(vars(request))
+        calls.append(("a rectangle", arguments.pop("display").name, arguments))
+        return "solved as a rectangle"
 
-        monkeypatch.setattr(solve, name, solver)
+    def analyze_ring(display: Any, **arguments: Any) -> str:
+        calls.append(("analyze_ring", display.name, arguments))
+        return "solved by analyze_ring"
+
+    monkeypatch.setattr(solve, "_of_rectangle", of_rectangle)
+    monkeypatch.setattr(solve, "analyze_ring", analyze_ring)
     return calls
 
 
 def test_a_rectangle_is_solved_with_all_that_is_asked(asked: list[Any]) -> None:
-    assert solve_plate("biet2008-plate") == "solved by analyze_plate"
+    assert solve_plate("biet2008-plate") == "solved as a rectangle"
     given: dict[str, Any] = {
         "mode": (7, 0), "band": (30e3, 40e3), "points": 50,
         "progress": print, "budget": 60.0,
     }  # fmt: skip
     solve_plate(load_display("biet2008-plate"), **given)
     assert asked == [
-        ("analyze_plate", "biet2008-plate", {**DEFAULTS, "budget": None}),
-        ("analyze_plate", "biet2008-plate", given),
+        ("a rectangle", "biet2008-plate", {**DEFAULTS, "budget": None}),
+        ("a rectangle", "biet2008-plate", given),
     ]
 
 

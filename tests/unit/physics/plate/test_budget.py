@@ -5,13 +5,13 @@ from tests.verification.random_plates import random_plate
 
 from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.progress import Pace
-from squeezefilm.design.plate.command import _deadline, solve_plate
+from squeezefilm.design.plate.command import solve_plate
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.chain.touch import chosen_mode
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid import mesh
-from squeezefilm.physics.plate.solid.forecast import band_seconds, solve_size
+from squeezefilm.physics.plate.solid.forecast import solve_size
 from squeezefilm.physics.plate.solid.layers import COARSE, NORMAL
 from squeezefilm.physics.plate.solid.modes import COARSE_AMPLITUDE_ERROR, COARSE_ERROR
 from squeezefilm.physics.plate.solid.working import solid_mode
@@ -96,14 +96,6 @@ def test_a_coarse_answer_is_an_objection(display: Display) -> None:
 def test_a_plates_analysis_within_a_budget(display: Display) -> None:
     with pytest.raises(OutOfTimeError, match=r"Without a solve: about 33.7 kHz"):
         solve_plate(display, budget=1e-3)
-    plate = plate_of(display)
-    label = plate.working_label
-    assert _deadline(plate, label, Pace()) is None
-    seconds = band_seconds(plate, 36e3)
-    for budget, enough in ((frozen(1e6), True), (just_coarse(plate), False)):
-        deadline = _deadline(plate, label, budget)
-        assert deadline is not None
-        assert deadline.allows(seconds) == enough
 
 
 @pytest.mark.slow

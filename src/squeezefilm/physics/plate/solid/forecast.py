@@ -52,14 +52,14 @@ class SolveSize(NamedTuple):
         14 plates, and by how fast the machine is and what else it does."""
         return self.coarse + self.refined + self.response
 
-    def require_within(self, deadline: Deadline, budget: si.Second, instead: str = "") -> None:
+    def require_within(self, deadline: Deadline, budget: si.Second) -> None:
         """Raise `OutOfTimeError` where a deadline, that of a budget (s), does not allow the coarse
-        meshes; `instead` follows what is said."""
+        meshes."""
         least = self.coarse + self.coarse_response
         if not deadline.allows(least):
             raise OutOfTimeError(
                 f"the coarsest three-dimensional mesh takes about {least:.2g} s, more than the "
-                f"budget of {budget:.3g} s; allow more{instead}",
+                f"budget of {budget:.3g} s; allow more",
                 quantity="budget",
             )
 

@@ -9,7 +9,7 @@ import pytest
 
 from squeezefilm import subjects
 from squeezefilm.core.errors import InputError
-from squeezefilm.design.plate.command import PlateAnalysis, analyze_plate
+from squeezefilm.design.plate.command import PlateAnalysis, solve_plate
 from squeezefilm.design.plate.report import page
 from squeezefilm.design.plate.report.figures import (
     admittance,
@@ -23,7 +23,9 @@ from squeezefilm.physics.display import load_display
 
 @pytest.fixture(scope="module")
 def result() -> PlateAnalysis:
-    return analyze_plate(load_display("biet2008-plate"), points=60)
+    solved = solve_plate(load_display("biet2008-plate"), points=60)
+    assert isinstance(solved, PlateAnalysis)
+    return solved
 
 
 def _words(figure: object) -> str:
