@@ -236,7 +236,6 @@ def _of_ring(
             if row.alone_per_volt >= DRIVEN_SHARE * strongest
         ]
     )
-    driven = working.modal_force(body.drive) > 1e-9 * abs(working.modal_force_all_round)
     tell("the working mode's pair")
     return ModeList(
         display=display,
@@ -244,7 +243,7 @@ def _of_ring(
         modes=listed,
         working=working.label,
         forbidden=None
-        if driven
+        if body.drives(working)
         else f"the channel's sectors do not drive {working.label}: over them its waves cancel",
         rules=(),
         suggestion=suggested(listed, chosen(listed, working.label))

@@ -131,7 +131,7 @@ def analyze_ring(
     modes = modes_in_band(body, limits, tell) if whole else (working,)
     tell(f"response at {points} frequencies")
     response = _response(body, working, modes, points)
-    driven = working.modal_force(body.drive) > 1e-9 * abs(working.modal_force_all_round)
+    driven = body.drives(working)
     circuit = ring_circuit(body, working, response) if driven else None
     capacitance = static_capacitance(body, circuit)
     rows = tuple(mode_row(body, listed, capacitance) for listed in modes)

@@ -93,10 +93,8 @@ class SolvedBody(Result):
     @functools.cached_property
     def load(self) -> ElectricalLoad:
         """Load that the body is for its amplifier at its resonance, at the display's voltage."""
-        volts, circuit = self.display.drive.voltage, self.circuit
-        static = None if circuit is None else circuit.static_capacitance
-        at = self.mode.resonance_frequency
-        return electrical_load(self.response, volts, at, capacitance=static)
+        volts, at = self.display.drive.voltage, self.mode.resonance_frequency
+        return electrical_load(self.response, volts, at, circuit=self.circuit)
 
     @functools.cached_property
     def heat(self) -> Warming:

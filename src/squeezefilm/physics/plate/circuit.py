@@ -8,11 +8,13 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import OutOfRangeError
 
 LEAST_SHARE: si.Dimensionless = 0.01
 """A mode with less than this share of the conductance at its resonance has no circuit: what the
 terminals show there is its neighbours' and the losses of the materials."""
+
+# A circuit that has less of the conductance is told of with its share.
+_MOST_OF_IT = 0.8
 
 
 class DrivenResponse:
@@ -102,18 +104,20 @@ def conductance_share(branch: EquivalentCircuit, response: DrivenResponse) -> si
     return float(1 / (branch.motional_resistance * there))
 
 
-def resolved_circuit(branch: EquivalentCircuit, response: DrivenResponse) -> EquivalentCircuit:
-    """A mode's circuit: its motional branch, and the static capacitance that a response has beside
-    it.
+def resolved_circuit(
+    branch: EquivalentCircuit, response: DrivenResponse
+) -> tuple[EquivalentCircuit | None, str]:
+    """A mode's circuit, its motional branch and the static capacitance that a response has beside
+    it, and a sentence where its neighbours draw most of the power.
 
-    Raises `OutOfRangeError` for a branch with less than `LEAST_SHARE` of the conductance at its
-    resonance.
+    None, and why, for a branch with less than `LEAST_SHARE` of the conductance at its resonance.
     """
     share = conductance_share(branch, response)
     if share < LEAST_SHARE:
-        raise OutOfRangeError(
-            f"of the conductance at {si.format_quantity(branch.frequency, si.Unit('Hz'))} the mode "
-            f"has {100 * share:.1g} %, less than {100 * LEAST_SHARE:g} %: the rest is of other "
-            "modes and of losses, so that no circuit describes this one"
+        return None, (
+            f"none: of the conductance at {si.format_quantity(branch.frequency, si.Unit('Hz'))} "
+            f"the mode has {100 * share:.1g} %, less than {100 * LEAST_SHARE:g} %: the rest is of "
+            "other modes and of losses, so that no circuit describes this one"
         )
-    return with_static_capacitance(branch, response)
+    said = f"the mode has {si.percent(share)} of the conductance at its resonance"
+    return with_static_capacitance(branch, response), said if share < _MOST_OF_IT else ""

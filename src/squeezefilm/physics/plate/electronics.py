@@ -117,10 +117,11 @@ def electrical_load(
     voltage: Annotated[si.Volt, si.AtLeast(0)],
     frequency: Annotated[si.Hertz, si.Above(0)],
     *,
-    capacitance: si.Farad | None = None,
+    circuit: EquivalentCircuit | None = None,
     channels: Annotated[int, si.AtLeast(1)] = 1,
 ) -> ElectricalLoad:
-    """The load of a body at a voltage amplitude (V) and a frequency (Hz) of its response.
+    """The load of a body at a voltage amplitude (V) and a frequency (Hz) of its response; `circuit`
+    is that of its mode, where it is known.
 
     The admittance Y is interpolated between the response's frequencies. I = |Y| V; L parallel =
     1 / (ω Im Y), L series = −Im(1/Y) / ω; a sine's steepest slope is ω V. Raises `OutOfRangeError`
@@ -139,6 +140,7 @@ def electrical_load(
     Z = 1 / Y
     current, slew = abs(Y) * voltage, omega * voltage
     capacitive = Y.imag > 0
+    capacitance = None if circuit is None else circuit.static_capacitance
     return ElectricalLoad(
         frequency=frequency,
         voltage=voltage,
@@ -177,7 +179,7 @@ def load_of_mode(
     if isinstance(actuator, AnnularStator | DiscPlate):
         try:
             ring = ring_admittance(actuator)
-            load = electrical_load(ring, voltage, frequency, capacitance=_beside(ring.circuit))
+            load = electrical_load(ring, voltage, frequency, circuit=ring.circuit)
         except (OutOfRangeError, UnreachableError):
             return None
         return replace(load, assumed=ring.assumed)
@@ -189,16 +191,11 @@ def load_of_mode(
             solid.response,
             voltage,
             frequency,
-            capacitance=_beside(solid.circuit),
+            circuit=solid.circuit,
             channels=driven_ceramics(actuator),
         )
     except OutOfRangeError:
         return None
-
-
-def _beside(circuit: EquivalentCircuit | None) -> si.Farad | None:
-    """The capacitance beside a mode (F), where its circuit is known."""
-    return None if circuit is None else circuit.static_capacitance
 
 
 _FITTED = (
@@ -235,25 +232,24 @@ def ring_admittance(actuator: AnnularStator | DiscPlate) -> RingAdmittance:
         harmonics=_driven_harmonics(body, mode.harmonic),
         quality_factor=body.quality_factor,
     )
-    if mode.modal_force(body.drive) <= 1e-9 * abs(mode.modal_force_all_round):
+    if not body.drives(mode):
         return RingAdmittance(f, admittance, None)
-    fitted, bare = modal_circuit(body, mode), RingAdmittance(f, admittance, None)
-    if isinstance(actuator, DiscPlate):
-        return replace(bare, circuit=with_static_capacitance(fitted, bare))
-    measured = actuator.reference_amplitude / actuator.reference_voltage
-    # The current of motion is in proportion to the force squared, and the motion to the force: a
-    # ceramic that moves the ring less takes so much less current for it, in all modes alike.
-    share = (measured / mode.amplitude_per_volt(body.drive)) ** 2
-    moved = replace(
-        fitted,
-        motional_resistance=fitted.motional_resistance / share,
-        motional_inductance=fitted.motional_inductance / share,
-        motional_capacitance=fitted.motional_capacitance * share,
-    )
-    held = 2j * np.pi * f * clamped_capacitance(body.section, body.drive)
-    scaled = np.asarray(held + share * (admittance - held), dtype=complex)
-    bare = RingAdmittance(f, scaled, None, _FITTED)
-    return replace(bare, circuit=with_static_capacitance(moved, bare))
+    branch, assumed = modal_circuit(body, mode), ""
+    if isinstance(actuator, AnnularStator):
+        measured = actuator.reference_amplitude / actuator.reference_voltage
+        # The current of motion is in proportion to the force squared, and the motion to the force:
+        # a ceramic that moves the ring less takes so much less current for it, in all modes alike.
+        share = (measured / mode.amplitude_per_volt(body.drive)) ** 2
+        branch = replace(
+            branch,
+            motional_resistance=branch.motional_resistance / share,
+            motional_inductance=branch.motional_inductance / share,
+            motional_capacitance=branch.motional_capacitance * share,
+        )
+        held = 2j * np.pi * f * clamped_capacitance(body.section, body.drive)
+        admittance, assumed = held + share * (admittance - held), _FITTED
+    bare = RingAdmittance(f, admittance, None, assumed)
+    return replace(bare, circuit=with_static_capacitance(branch, bare))
 
 
 def _driven_harmonics(body: RingBody, own: int) -> list[int]:

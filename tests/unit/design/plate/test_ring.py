@@ -19,6 +19,7 @@ from squeezefilm.design.plate.solved import ALONE, ModeRow, Remarks
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.circuit import EquivalentCircuit
 from squeezefilm.physics.plate.ring.body import (
+    RingBody,
     RingResponse,
     StatorAssumptions,
     ring_body,
@@ -56,7 +57,9 @@ def body(working: AnnularMode | None = None, **changes: Any) -> Any:
         "drive": TURNS if own.harmonic else ALL_ROUND, "quality_factor": 100.0, "fit": None,
         "mode": lambda label: {(1, own.harmonic): own, (0, 3): mode(50e3, 3)}[label],
     }  # fmt: skip
-    return SimpleNamespace(**{**parts, **changes})
+    made: Any = SimpleNamespace(**{**parts, **changes})
+    made.drives = lambda mode: RingBody.drives(made, mode)
+    return made
 
 
 def swept(motion: np.ndarray, resonance: int = 1) -> RingResponse:

@@ -39,7 +39,7 @@ class Response(DrivenResponse):
 
 
 def test_at_resonance_the_motional_resistor_and_the_held_capacitance_are_the_load() -> None:
-    load = electrical_load(Response(), 30.0, F0, capacitance=5e-9, channels=4)
+    load = electrical_load(Response(), 30.0, F0, circuit=CIRCUIT, channels=4)
     omega = 2 * np.pi * F0
     Y = 1 / R1 + 1j * omega * 5e-9
     assert load.current == pytest.approx(30 * abs(Y))

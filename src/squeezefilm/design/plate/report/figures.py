@@ -62,7 +62,7 @@ def shape(result: RingAnalysis) -> Figure:
 
 def _standing(motion: np.ndarray) -> np.ndarray:
     """Complex motion turned to the phase of its largest point: what stands there moves along."""
-    peak = motion[int(np.argmax(np.abs(motion)))]
+    peak = motion.flat[int(np.argmax(np.abs(motion)))]
     return np.asarray((motion * np.conj(peak) / np.abs(peak)).real)
 
 
@@ -201,9 +201,7 @@ RING_FIGURES = (
 def driven_shape(result: PlateAnalysis, x: FloatArray, y: FloatArray) -> FloatArray:
     """w per volt (m/V) over the upper face at resonance, at the instant when its largest point
     stands highest; shape (x, y)."""
-    w = result.response.motion(result.resonance, x, y)
-    phase = w.flat[int(np.argmax(np.abs(w)))]
-    return np.asarray((w * np.conj(phase) / np.abs(phase)).real)
+    return _standing(result.response.motion(result.resonance, x, y))
 
 
 @style.drawn

@@ -211,6 +211,10 @@ class RingBody:
             return self.fit.mode
         return bending_mode(self.section, diameters, circles, quality_factor=self.quality_factor)
 
+    def drives(self, mode: AnnularMode) -> bool:
+        """True where the channel moves a mode; over its sectors the waves of others cancel."""
+        return mode.modal_force(self.drive) > 1e-9 * abs(mode.modal_force_all_round)
+
 
 @functools.lru_cache(maxsize=8)
 def ring_body(actuator: AnnularStator | DiscPlate) -> RingBody:

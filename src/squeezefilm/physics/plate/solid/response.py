@@ -70,20 +70,14 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
     def displacement(self, x: si.MetreArray, y: si.MetreArray) -> si.ComplexArray:
         """Complex w per volt (m/V) on the grid of `x` × `y` of the upper face, shape (frequencies,
         x, y)."""
-        si.require("x", x, si.Unit("m"), axes=1)
-        si.require("y", y, si.Unit("m"), axes=1)
-        values = surface_values(self._parts, x, y, self.plate.thickness)
-        return np.asarray(np.tensordot(self._coordinates, values, 1))
+        return np.asarray(np.tensordot(self._coordinates, self._face(x, y), 1))
 
     @si.checked_numbers
     def motion(self, at: int, x: si.MetreArray, y: si.MetreArray) -> si.ComplexArray:
         """Complex w per volt (m/V) as `displacement` has it, at frequency number `at` only, shape
         (x, y)."""
         si.require("at", at, at_least=-self.frequencies.size, at_most=self.frequencies.size - 1)
-        si.require("x", x, si.Unit("m"), axes=1)
-        si.require("y", y, si.Unit("m"), axes=1)
-        values = surface_values(self._parts, x, y, self.plate.thickness)
-        return np.asarray(np.tensordot(self._coordinates[at], values, 1))
+        return np.asarray(np.tensordot(self._coordinates[at], self._face(x, y), 1))
 
     @si.checked_numbers
     def amplitude_at(self, x: si.Metre, y: si.Metre) -> si.FloatArray:
@@ -140,23 +134,28 @@ class HarmonicResponse(SolvedAgain, DrivenResponse):
             ]
         return sorted(modes, key=lambda mode: mode.frequency)
 
-    def _face(self) -> si.FloatArray:
-        """w of each coordinate on a grid over the upper face, shape (coordinates, points)."""
+    def _face(self, x: si.MetreArray, y: si.MetreArray) -> si.FloatArray:
+        """w of each coordinate on a grid over the upper face, shape (coordinates, x, y)."""
+        si.require("x", x, si.Unit("m"), axes=1)
+        si.require("y", y, si.Unit("m"), axes=1)
+        return surface_values(self._parts, x, y, self.plate.thickness)
+
+    def _whole_face(self) -> si.FloatArray:
+        """w of each coordinate all over the upper face, shape (coordinates, points)."""
         x = np.linspace(0, self.plate.length, _GRID[0])
         y = np.linspace(0, self.plate.width, _GRID[1])
-        values = surface_values(self._parts, x, y, self.plate.thickness)
-        return np.asarray(values.reshape(self._coordinates.shape[1], -1))
+        return self._face(x, y).reshape(self._coordinates.shape[1], -1)
 
     @si.checked_numbers
     def largest(self, at: int) -> si.MetrePerVolt:
         """The largest |w| per volt (m/V) anywhere on the upper face, at frequency number `at`."""
         si.require("at", at, at_least=-self.frequencies.size, at_most=self.frequencies.size - 1)
-        return _largest(self._coordinates[at], self._face())
+        return _largest(self._coordinates[at], self._whole_face())
 
     @functools.cached_property
     def maximum(self) -> si.FloatArray:
         """The largest |w| per volt (m/V) anywhere on the upper face, for every frequency."""
-        values = self._face()
+        values = self._whole_face()
         return np.array([_largest(row, values) for row in self._coordinates])
 
 

@@ -15,12 +15,10 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import NO_HURRY, Deadline, Pace
 from squeezefilm.physics.plate.circuit import (
     EquivalentCircuit,
-    conductance_share,
     motional_branch,
     resolved_circuit,
 )
@@ -47,8 +45,6 @@ _LINE_POINTS = 401
 # Enough for a display, and nearly always met by the first refinement; the estimate stands beside
 # the frequency.
 _TOLERANCE = 3e-3
-# A circuit that has less of the conductance is told of with its share.
-_MOST_OF_IT = 0.8
 # The part of the time that the modes take; the response takes the rest.
 _MODES = 0.8
 
@@ -141,13 +137,7 @@ class SolidMode:
         if force == 0:
             return None, "none: the drive exerts no force on this mode"
         branch = motional_branch(self.frequency, self.quality_factor, 1.0, force)
-        try:
-            circuit = resolved_circuit(branch, self.response)
-        except OutOfRangeError as error:
-            return None, f"none: {error}"
-        share = conductance_share(branch, self.response)
-        said = f"the mode has {si.percent(share)} of the conductance at its resonance"
-        return circuit, said if share < _MOST_OF_IT else ""
+        return resolved_circuit(branch, self.response)
 
     @functools.cached_property
     def neighbour(self) -> Neighbour | None:
