@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
 from squeezefilm.actuators.motor import kernel
+from squeezefilm.actuators.motor.assembled import Working
 from squeezefilm.actuators.motor.average_kernel import (
     MEANS,
     Swing,
     average_contact,
 )
-from squeezefilm.actuators.motor.averaged import _settled_height
+from squeezefilm.actuators.motor.averaged import _means
 from squeezefilm.actuators.motor.parts import damping_at, mode_energy, spring_at
 
 from .test_plane_kernel import FEET, MODES, foot, made
@@ -169,9 +173,14 @@ def test_means_are_the_sums_over_the_instants_that_count() -> None:
 
 def test_the_slider_settles_where_the_feet_carry_its_preload() -> None:
     stator, feet, sideways, _ = made(2, held=True, imposed=True)
-    swing, found, there = Swing(0.05, -0.03, 64, 1, 2), np.zeros(MEANS), np.zeros(MEANS)
+    # Two modes beat: 64 periods count, after two.
+    swing, there = Swing(0.05, -0.03, 64, 2, 64), np.zeros(MEANS)
     for preload in (0.05, 2.0, 30.0):
-        height = _settled_height(stator, feet, sideways, preload, swing, found)
+        slider: Any = SimpleNamespace(preload=preload)
+        motor: Any = SimpleNamespace(
+            feet=feet, sideways=sideways, slider=lambda *_, imposed, s=slider: s
+        )
+        height, found = _means(motor, Working(amplitude=1e-6), stator, (0.05, -0.03), 64)
         average_contact(stator, feet, sideways, height, swing, there)
         assert found == pytest.approx(there)
         assert found[2] == pytest.approx(preload, rel=1e-6)

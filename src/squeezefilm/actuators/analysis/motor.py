@@ -120,10 +120,8 @@ class MotorAnalysis(Result):
 
     @property
     def input_power(self) -> si.Watt:
-        """Input of the drive at `best` (W): output, losses of plate, contacts and guide."""
-        best = self.best
-        guide = (best.thrust - best.force) * best.speed
-        return best.output + best.plate_loss + best.contact_loss + best.friction_loss + guide
+        """Input of the drive at `best` (W)."""
+        return self.best.input_power
 
     @property
     def best_of_map(self) -> tuple[si.Dimensionless, si.Newton, si.Metre]:
@@ -333,11 +331,7 @@ def _drawn(
         )
         for mode in solved.modes
     )
-    return _answered(assembled(drawn.motor, modes=modes), voltage)
-
-
-def _answered(motor: AssembledMotor, voltage: si.Volt) -> Mapping[str, float]:
-    working = Working(voltage=voltage)
+    motor, working = assembled(drawn.motor, modes=modes), Working(voltage=voltage)
     return {
         "stall_force_N": stall_force(motor, working),
         "no_load_speed_m_per_s": no_load_speed(motor, working),

@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
 from squeezefilm.actuators.motor.average_kernel import MEANS, Swing, average_contact
 from squeezefilm.actuators.motor.in_time import require_no_pull
-from squeezefilm.actuators.motor.parts import Feet, Stator
+from squeezefilm.actuators.motor.parts import Stator
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeError, UnreachableError
 
@@ -67,11 +67,15 @@ class AveragedMotor:
     model: str = "averaged: height and speed constant over a period, feet without mass"
 
     @property
+    def input_power(self) -> si.Watt:
+        """Input of the drive (W): output, losses of plate, contacts and guide."""
+        lost = self.plate_loss + self.contact_loss + self.friction_loss
+        return lost + (self.thrust - self.force) * self.speed + self.output
+
+    @property
     def efficiency(self) -> si.Dimensionless:
         """Output over input, 0 where the load drives the motor (1)."""
-        lost = self.plate_loss + self.contact_loss + self.friction_loss
-        guide = (self.thrust - self.force) * self.speed
-        return max(0.0, self.output / (lost + guide + self.output)) if self.output > 0 else 0.0
+        return max(0.0, self.output / self.input_power) if self.output > 0 else 0.0
 
 
 @si.checked_numbers
@@ -133,21 +137,14 @@ def _means(
     speeds: tuple[float, float],
     samples: int,
 ) -> tuple[float, si.FloatArray]:
-    means = np.zeros(MEANS)
+    """The height (m) at which the feet carry the preload in the mean, and the `MEANS` there."""
+    feet, means = motor.feet, np.zeros(MEANS)
     beats = stator.mass.size > 1 and stator.amplitude[1] != 0
     swing = Swing(*speeds, samples, 2, _BEATING if beats else 1)
     preload = motor.slider(working, imposed=True).preload
-    height = _settled_height(stator, motor.feet, motor.sideways, preload, swing, means)
-    return height, means
-
-
-def _settled_height(
-    stator: Stator, feet: Feet, sideways: si.Array, preload: float, swing: Swing, means: si.Array
-) -> float:
-    """The height (m) at which the feet carry the preload in the mean; `means` are those there."""
 
     def excess(height: float) -> float:
-        average_contact(stator, feet, sideways, height, swing, means)
+        average_contact(stator, feet, motor.sideways, height, swing, means)
         return float(means[2] - preload)
 
     highest = float(np.max(np.abs(feet.across) @ np.abs(stator.amplitude)))
@@ -156,7 +153,7 @@ def _settled_height(
     lowest = -highest - 4.0 * preload / weakest
     height = float(brentq(excess, lowest, highest, xtol=1e-14 * (highest + 1e-12)))
     excess(height)
-    return height
+    return height, means
 
 
 def _balanced(

@@ -5,22 +5,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
-from squeezefilm.design.fabrication.wiring import NodalLines
-from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted
+from squeezefilm.core.kit.numbers import HZ, M, N, V
 from squeezefilm.measure.calibration.calibration import UNITS
 from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.physics.chain.pad_place import place_words
-from squeezefilm.physics.chain.prediction import Prediction
-from squeezefilm.physics.plate.electronics import ElectricalLoad
-from squeezefilm.physics.plate.parts import Part
-from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
+
+if TYPE_CHECKING:
+    from squeezefilm.design.fabrication.fabricate import Fabrication
 
 SMALL_SIGNAL: si.Dimensionless = 0.1
 """Share of the drive's voltage for what is to be linear."""
 _BAND, _POINTS = 8.0, 201
-_HZ, _V, _M = si.Unit("Hz"), si.Unit("V"), si.Unit("m")
 
 
 @dataclass(frozen=True)
@@ -53,33 +51,10 @@ class TestStep:
     checks: tuple[Check, ...]
 
 
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class BenchFacts:
-    """Base of what is known of a display that is to be built: its solid `parts`, and `blind`, what
-    is expected of it with intervals (None where nothing can be drawn)."""
-
-    prediction: Prediction
-    uncertainty: UncertainFriction | None
-    parts: tuple[Part, ...]
-    nodal: NodalLines
-    load: ElectricalLoad | None
-    blind: BlindPrediction | None
-
-    @property
-    def mass(self) -> float:
-        """Mass of all bodies together (kg)."""
-        return math.fsum(part.mass for part in self.parts)
-
-    @property
-    def expected(self) -> tuple[Predicted, ...]:
-        """The numbers of `blind`; none without it."""
-        return () if self.blind is None else self.blind.predictions
-
-
 _OF_DRAWS = "zero-to-peak; as friction's interval, which allows no error of the plate's model"
 
 
-def test_plan(known: BenchFacts) -> tuple[TestStep, ...]:
+def test_plan(known: Fabrication) -> tuple[TestStep, ...]:
     """The steps, each recording named as `squeezefilm measure calibrate` finds it in its folder."""
     steps = [
         _weighing(known),
@@ -97,7 +72,7 @@ def test_plan(known: BenchFacts) -> tuple[TestStep, ...]:
 test_plan.__test__ = False  # type: ignore[attr-defined] # pytest collects by name
 
 
-def _of(known: BenchFacts, answer: str, what: str, value: float | None, remark: str = "") -> Check:
+def _of(known: Fabrication, answer: str, what: str, value: float | None, remark: str = "") -> Check:
     """A check of an answer, with the interval that was drawn of it."""
     matching = [predicted for predicted in known.expected if predicted.answer == answer]
     interval, level = (matching[0].interval, matching[0].level) if matching else (None, None)
@@ -106,7 +81,7 @@ def _of(known: BenchFacts, answer: str, what: str, value: float | None, remark: 
     return Check(what, answer, UNITS.get(answer, "1"), value, interval, level, (), remark)
 
 
-def _weighing(known: BenchFacts) -> TestStep:
+def _weighing(known: Fabrication) -> TestStep:
     return TestStep(
         "Weigh it",
         "Weigh the assembly with its glue cured, before leads are soldered.",
@@ -117,10 +92,10 @@ def _weighing(known: BenchFacts) -> TestStep:
 
 
 def _volts(volts: si.Volt) -> str:
-    return si.format_quantity(volts, _V, 3)
+    return si.format_quantity(volts, V, 3)
 
 
-def _band(known: BenchFacts) -> str:
+def _band(known: Fabrication) -> str:
     mode = known.prediction.mode
     half = mode.resonance_frequency / (2 * mode.quality_factor)
     low, high = (mode.resonance_frequency + side * _BAND * half for side in (-1, 1))
@@ -132,11 +107,11 @@ def _band(known: BenchFacts) -> str:
                 max(high, predicted.interval[1] + 2 * half),
             )
     points = max(_POINTS, 8 * math.ceil((high - low) / half))
-    ends = " to ".join(si.format_quantity(end, _HZ, 4) for end in (low, high))
+    ends = " to ".join(si.format_quantity(end, HZ, 4) for end in (low, high))
     return f"from {ends} in {points} points"
 
 
-def _impedance(known: BenchFacts) -> TestStep:
+def _impedance(known: Fabrication) -> TestStep:
     p, load = known.prediction, known.load
     static = None if load is None else load.capacitance
     checks = [
@@ -162,7 +137,7 @@ def _impedance(known: BenchFacts) -> TestStep:
     )
 
 
-def _response(known: BenchFacts) -> TestStep:
+def _response(known: Fabrication) -> TestStep:
     p = known.prediction
     volts = SMALL_SIGNAL * (p.voltage or 0.0)
     at = place_words(p.mode.lobe)
@@ -180,7 +155,7 @@ def _response(known: BenchFacts) -> TestStep:
     )
 
 
-def _line(known: BenchFacts) -> TestStep:
+def _line(known: Fabrication) -> TestStep:
     p, nodal = known.prediction, known.nodal
     half = p.mode.half_wavelength
     checks = [_of(known, "half_wavelength", "Half wavelength", half)]
@@ -198,7 +173,7 @@ def _line(known: BenchFacts) -> TestStep:
         along = "along a diameter"
     elif nodal.angles:
         along = "along the mean circumference"
-    step = si.format_quantity(half / 10, _M, 2)
+    step = si.format_quantity(half / 10, M, 2)
     return TestStep(
         "Line scan",
         f"At the measured resonance, scan {along} in steps of {step} or less.",
@@ -208,11 +183,11 @@ def _line(known: BenchFacts) -> TestStep:
     )
 
 
-def _grid(known: BenchFacts) -> TestStep | None:
+def _grid(known: Fabrication) -> TestStep | None:
     mode = known.prediction.mode
     if mode.solid is None:
         return None
-    step = si.format_quantity(mode.half_wavelength / 4, _M, 2)
+    step = si.format_quantity(mode.half_wavelength / 4, M, 2)
     likeness = Check(
         f"Likeness with {mode.label}",
         "",
@@ -230,7 +205,7 @@ def _grid(known: BenchFacts) -> TestStep | None:
     )
 
 
-def _decay(known: BenchFacts) -> TestStep:
+def _decay(known: Fabrication) -> TestStep:
     p = known.prediction
     quality = _of(known, "quality_factor", "Quality factor", p.mode.quality_factor)
     ends = None
@@ -256,7 +231,7 @@ def _decay(known: BenchFacts) -> TestStep:
     )
 
 
-def _voltages(known: BenchFacts) -> TestStep | None:
+def _voltages(known: Fabrication) -> TestStep | None:
     p, load, unsure = known.prediction, known.load, known.uncertainty
     if not p.voltage:
         return None
@@ -288,13 +263,13 @@ def _voltages(known: BenchFacts) -> TestStep | None:
     )
 
 
-def _strokes(known: BenchFacts) -> TestStep:
+def _strokes(known: Fabrication) -> TestStep:
     p, unsure = known.prediction, known.uncertainty
     ends = None if unsure is None else unsure.amplitude_interval
     if ends is not None and ends[0] == ends[1]:
         ends = None  # a stator's amplitude is what its description says, and nothing moves it
     level = None if unsure is None else unsure.level
-    force, speed = si.format_quantity(p.normal_force, si.Unit("N"), 3), 1e3 * p.speed
+    force, speed = si.format_quantity(p.normal_force, N, 3), 1e3 * p.speed
     checks = [
         Check(
             "Friction coefficient without vibration",
@@ -318,7 +293,7 @@ def _strokes(known: BenchFacts) -> TestStep:
         if predicted.answer == FRICTION:
             amplitude = predicted.conditions["vibration_amplitude"]
             here = math.isclose(amplitude, p.vibration_amplitude, rel_tol=1e-3)
-            what = f"µ′/µ at {si.format_quantity(amplitude, _M, 3)}"
+            what = f"µ′/µ at {si.format_quantity(amplitude, M, 3)}"
             value = p.relative_friction if here else p.law.at(amplitude)
             under = tuple(predicted.conditions.items())
             checks.append(

@@ -11,7 +11,8 @@ import pytest
 from squeezefilm.actuators.analysis import motor
 from squeezefilm.actuators.analysis.drawn import COUNT, Usual, drawn_answers
 from squeezefilm.actuators.described import load_actuator
-from squeezefilm.actuators.motor.assembled import assembled
+from squeezefilm.actuators.motor.assembled import Working, assembled
+from squeezefilm.actuators.motor.averaged import no_load_speed, stall_force
 from squeezefilm.actuators.motor.description import MotorDescription
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import Provenance
@@ -90,8 +91,9 @@ def test_losses_scale_a_drawn_motor_as_its_plate_solved_anew() -> None:
     solved = assembled(described.motor)
     lossy = with_values(described, {"motor.plate.quality_factor": 45.0})
     scaled = motor._drawn(described, solved, lossy, 15.0)
-    anew = motor._answered(assembled(lossy.motor), 15.0)
-    for name, value in anew.items():
-        # Other modes add a little to the amplitude at the resonance.
-        assert scaled[name] == pytest.approx(value, rel=0.02)
+    anew, working = assembled(lossy.motor), Working(voltage=15.0)
+    # Other modes add a little to the amplitude at the resonance.
+    assert scaled["stall_force_N"] == pytest.approx(stall_force(anew, working), rel=0.02)
+    speed = no_load_speed(anew, working)
+    assert scaled["no_load_speed_m_per_s"] == pytest.approx(speed, rel=0.02)
     assert all(np.isfinite(value) for value in scaled.values())
