@@ -191,11 +191,11 @@ class BillRow:
 
     what: str
     count: int
-    material: str
-    size: str
-    made: str
-    mass: si.Kilogram | None
-    in_mass: bool
+    material: str = ""
+    size: str = ""
+    made: str = ""
+    mass: si.Kilogram | None = None
+    in_mass: bool = False
     remark: str = ""
 
 
@@ -214,16 +214,7 @@ def bill_of(
         height = millimetres(teeth[0].thickness)
         remark = f"with {len(teeth)} teeth of {height} mm height; {remark}"
     rows = [
-        BillRow(
-            "Substrate",
-            1,
-            base.material,
-            _size(base),
-            CUT,
-            math.fsum(part.mass for part in substrate),
-            True,
-            remark,
-        ),
+        _row("Substrate", 1, substrate, _size(base), CUT, remark),
         *_ceramics(parts),
         *_glue(parts),
         *_held(actuator),
@@ -232,14 +223,20 @@ def bill_of(
         joined = f"{', '.join(lead.electrodes)} to {lead.to}"
         if len(lead.electrodes) > 8:
             joined = f"{len(lead.electrodes)} electrodes to {lead.to}"
-        rows.append(BillRow(f"Lead {lead.name}", 1, "wire", "", "", None, False, joined))
+        rows.append(BillRow(f"Lead {lead.name}", 1, "wire", remark=joined))
     for electrode in electrodes:
         if electrode.shunt_resistance is not None:
             size = si.format_quantity(electrode.shunt_resistance, si.Unit("ohm"))
-            rows.append(
-                BillRow("Shunt resistor", 1, "", size, "", None, False, f"at {electrode.name}")
-            )
+            rows.append(BillRow("Shunt resistor", 1, size=size, remark=f"at {electrode.name}"))
     return tuple(rows)
+
+
+def _row(
+    what: str, count: int, pieces: Sequence[Part], size: str, made: str, remark: str
+) -> BillRow:
+    """A row of pieces of one material that count in the display's mass."""
+    mass = math.fsum(part.mass for part in pieces)
+    return BillRow(what, count, pieces[0].material, size, made, mass, True, remark)
 
 
 def _size(part: Part) -> str:
@@ -260,19 +257,11 @@ def _ceramics(parts: Sequence[Part]) -> list[BillRow]:
     by: dict[tuple[str, str], list[Part]] = {}
     for piece in pieces:
         by.setdefault((piece.material, _size(piece)), []).append(piece)
-    return [
-        BillRow(
-            "Ceramic",
-            len(same),
-            material,
-            size,
-            CUT,
-            math.fsum(part.mass for part in same),
-            True,
-            same[0].assumed or f"each {1e3 * same[0].mass:.3g} g; electrodes on both faces",
-        )
-        for (material, size), same in by.items()
-    ]
+    rows = []
+    for (_, size), same in by.items():
+        each = same[0].assumed or f"each {1e3 * same[0].mass:.3g} g; electrodes on both faces"
+        rows.append(_row("Ceramic", len(same), same, size, CUT, each))
+    return rows
 
 
 def _glue(parts: Sequence[Part]) -> list[BillRow]:
@@ -281,19 +270,10 @@ def _glue(parts: Sequence[Part]) -> list[BillRow]:
         return []
     area = math.fsum(layer.footprint.area for layer in layers)
     thick = sorted({millimetres(layer.thickness) for layer in layers})
-    return [
-        BillRow(
-            "Glue",
-            len(layers),
-            layers[0].material,
-            f"{1e6 * area:.4g} mm² × {' or '.join(thick)} mm",
-            "",
-            math.fsum(layer.mass for layer in layers),
-            True,
-            f"{1e9 * math.fsum(layer.volume for layer in layers):.3g} µl cured, between "
-            "each ceramic and the substrate",
-        )
-    ]
+    size = f"{1e6 * area:.4g} mm² × {' or '.join(thick)} mm"
+    volume = 1e9 * math.fsum(layer.volume for layer in layers)
+    where = f"{volume:.3g} µl cured, between each ceramic and the substrate"
+    return [_row("Glue", len(layers), layers, size, "", where)]
 
 
 def _held(actuator: Actuator) -> list[BillRow]:
@@ -305,12 +285,12 @@ def _held(actuator: Actuator) -> list[BillRow]:
     )
     told = "its mass is not described, and neglected"
     clamps = [
-        BillRow("Clamp", 1, "", "", "", None, False, f"holds the {edge} edge, taken as rigid")
+        BillRow("Clamp", 1, remark=f"holds the {edge} edge, taken as rigid")
         for edge in actuator.clamped_edges
     ]
     return [
         *(
-            BillRow("Support", count, "foam", size, CUT, None, False, told)
+            BillRow("Support", count, "foam", size, CUT, remark=told)
             for size, count in sizes.items()
         ),
         *clamps,
