@@ -26,7 +26,7 @@ KINDS: dict[str, type[Described]] = {
     "skin_stretch": SkinStretchDescription,
 }
 """Kinds by the table that a file has: the dataclass that it is read into. What `analyze` says of
-each is in `actuators.report.dispatch`."""
+each is in `actuators.report.page`."""
 
 
 def is_actuator(name_or_path: str | Path) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any, get_args, get_type_hints
 
-from squeezefilm.actuators.report import dispatch
+from squeezefilm.actuators.report import page
 from squeezefilm.cli.app import answer, option_of, read_option, working
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit.folder import require_folder
@@ -241,7 +241,7 @@ def analyze_actuator(asked: Any) -> None:
     if asked.out is not None:
         require_folder(asked.out)
     with working(asked.as_json) as step:
-        analyzed = dispatch.analyze_actuator(asked.target, voltage, step)
+        analyzed = page.analyze_actuator(asked.target, voltage, step)
         written = None
         if asked.out is not None:
             step("figures")

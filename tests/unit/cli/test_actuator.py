@@ -14,7 +14,7 @@ from tests.e2e.program import run
 from tests.shared import shared
 
 from squeezefilm.actuators.report import motor, skin_stretch
-from squeezefilm.actuators.report.dispatch import analyze_actuator
+from squeezefilm.actuators.report.page import analyze_actuator
 
 
 def test_options_of_displays_are_refused_of_actuators() -> None:
@@ -30,7 +30,7 @@ def test_an_actuator_is_analysed_as_one(kind: str, tmp_path: Path) -> None:
     name = f"biet2008-{kind.replace('_', '-')}"
     # What is computed of each is asked in its own tests.
     analysis = shared(name, lambda: analyze_actuator(name)).analysis
-    with mock.patch(f"squeezefilm.actuators.analysis.{kind}.analyze_{kind}") as analyze:
+    with mock.patch(f"squeezefilm.actuators.report.page.analyze_{kind}") as analyze:
         analyze.return_value = analysis
         done = run("analyze", name, "--voltage", "3 V", "--json", "--out", str(tmp_path))
     assert analyze.call_args.args[0].name == name
@@ -52,7 +52,7 @@ def test_an_actuator_is_analysed_shown_and_written_where_asked(
     analysis = SimpleNamespace(summary=lambda: {"kind": "motor"})
     show = functools.partial(shown.append, analysis)
     analyzed = SimpleNamespace(analysis=analysis, show=show, write=write)
-    asked = stands_in("actuators.report.dispatch:analyze_actuator", analyzed, tells=False)
+    asked = stands_in("actuators.report.page:analyze_actuator", analyzed, tells=False)
     done = run("analyze", "biet2008-motor")
     assert asked.given[:2] == ("biet2008-motor", None)
     assert (done.stdout, shown, wrote) == ("", [analysis], [])
@@ -77,7 +77,7 @@ def test_an_actuator_is_analysed_shown_and_written_where_asked(
     ],
 )
 def test_each_kind_has_its_own_analysis_and_report(name: str, kind: str, report: object) -> None:
-    place = f"squeezefilm.actuators.analysis.{kind}.analyze_{kind}"
+    place = f"squeezefilm.actuators.report.page.analyze_{kind}"
     with mock.patch(place, return_value="analysed") as analyze:
         found = analyze_actuator(name, 12.0, print)
     assert analyze.call_args.args[0].name == name

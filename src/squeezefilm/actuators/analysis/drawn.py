@@ -14,6 +14,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.distributions import Uniform
 from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.kit.numbers import shown
 from squeezefilm.core.progress import CountProgress
 from squeezefilm.physics.uncertainty.parameters import Parameter, value_at, with_values
 
@@ -96,6 +97,15 @@ def drawn_answers(
     reason = reasons.most_common(1)[0][0] if reasons else ""
     refused = COUNT - len(answered)
     return DrawnAnswers(intervals, shares, COUNT, refused, reason, SEED, drawn)
+
+
+def with_interval(sampled: DrawnAnswers, value: float, name: str, unit: si.Unit) -> str:
+    """A value (in its unit) and what lies between 5 and 95 % of the draws of the answer `name`."""
+    interval = sampled.intervals.get(name)
+    said = shown(value, unit, 3)
+    if interval is None:
+        return said
+    return f"{said} ({shown(interval[0], unit, 2)} to {shown(interval[2], unit, 2)})"
 
 
 def _share(drawn: si.FloatArray, answers: si.FloatArray) -> float:

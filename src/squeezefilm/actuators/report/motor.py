@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from squeezefilm.actuators.analysis.drawn import with_interval
 from squeezefilm.actuators.analysis.motor import MotorAnalysis
-from squeezefilm.actuators.report.page import with_interval
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, Row, V, W, shown

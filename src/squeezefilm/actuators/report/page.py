@@ -1,4 +1,5 @@
-"""The page of an actuator: what one decides from, its figures, and where its values are from."""
+"""An actuator analysed by its kind, and its page: what one decides from, its figures, and where its
+values are from."""
 
 from __future__ import annotations
 
@@ -8,11 +9,21 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers
+from squeezefilm.actuators.analysis.motor import MotorAnalysis, analyze_motor
+from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis, analyze_skin_stretch
+from squeezefilm.actuators.described import load_actuator
+from squeezefilm.actuators.motor.description import MotorDescription
+from squeezefilm.actuators.report.motor import MOTOR_ANSWERS, motor_figures, motor_rows
+from squeezefilm.actuators.report.skin_stretch import (
+    SKIN_STRETCH_ANSWERS,
+    skin_stretch_figures,
+    skin_stretch_rows,
+)
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
-from squeezefilm.core.kit.numbers import Row, shown
+from squeezefilm.core.kit.numbers import Row
 from squeezefilm.core.kit.page_style import (
     as_html,
     bullets,
@@ -24,13 +35,11 @@ from squeezefilm.core.kit.page_style import (
 )
 from squeezefilm.core.kit.terminal import bullets as terminal_bullets
 from squeezefilm.core.kit.terminal import show_rows
+from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import stamp
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from squeezefilm.actuators.analysis.motor import MotorAnalysis
-    from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis
 
 
 def assumed_words(provenance: Mapping[str, Provenance]) -> str:
@@ -82,6 +91,20 @@ class AnalyzedActuator(NamedTuple):
         return folder / "report.html"
 
 
+def analyze_actuator(
+    target: str | Path, voltage: si.Volt | None = None, progress: SayProgress | None = None
+) -> AnalyzedActuator:
+    """Analyse a motor or an array, by a preset's name or the path of its file, at a voltage (V,
+    zero-to-peak; its own if None). Raises what `load_actuator` and the kind's analysis raise.
+    """
+    described = load_actuator(target)
+    if isinstance(described, MotorDescription):
+        of_motor = analyze_motor(described, voltage=voltage, progress=progress)
+        return AnalyzedActuator(of_motor, motor_rows, motor_figures, MOTOR_ANSWERS)
+    of_array = analyze_skin_stretch(described, voltage=voltage, progress=progress)
+    return AnalyzedActuator(of_array, skin_stretch_rows, skin_stretch_figures, SKIN_STRETCH_ANSWERS)
+
+
 def _sources(provenance: Mapping[str, Provenance]) -> str:
     """Sources of values, those of the same place side by side: seven ceramics alike take as
     many rows as one."""
@@ -95,15 +118,6 @@ def _sources(provenance: Mapping[str, Provenance]) -> str:
     ]
     head = ("value", "evidence", "source")
     return section("Where the values come from", text_table("As the file says", head, table))
-
-
-def with_interval(sampled: DrawnAnswers, value: float, name: str, unit: si.Unit) -> str:
-    """A value (in its unit) and what lies between 5 and 95 % of the draws of the answer `name`."""
-    interval = sampled.intervals.get(name)
-    said = shown(value, unit, 3)
-    if interval is None:
-        return said
-    return f"{said} ({shown(interval[0], unit, 2)} to {shown(interval[2], unit, 2)})"
 
 
 def drawn_words(sampled: DrawnAnswers) -> str:

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from squeezefilm.actuators.analysis.drawn import with_interval
 from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis
-from squeezefilm.actuators.report.page import with_interval
 from squeezefilm.actuators.skin_stretch.bimorph import (
     PUBLISHED_BLOCKED,
     PUBLISHED_FREE,

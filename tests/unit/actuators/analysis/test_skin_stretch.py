@@ -19,7 +19,7 @@ from squeezefilm.actuators.analysis.skin_stretch import (
     analyze_skin_stretch,
 )
 from squeezefilm.actuators.described import load_actuator
-from squeezefilm.actuators.report.dispatch import analyze_actuator
+from squeezefilm.actuators.report.page import analyze_actuator
 from squeezefilm.actuators.skin_stretch.array import SkinStretchDescription
 from squeezefilm.core.errors import OutOfRangeError
 

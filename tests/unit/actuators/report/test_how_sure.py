@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from squeezefilm.actuators.analysis.drawn import DrawnAnswers
-from squeezefilm.actuators.report.page import drawn_words, how_sure, with_interval
+from squeezefilm.actuators.analysis.drawn import DrawnAnswers, with_interval
+from squeezefilm.actuators.report.page import drawn_words, how_sure
 from squeezefilm.core import quantities as si
 from squeezefilm.core.distributions import Uniform
 from squeezefilm.physics.uncertainty.parameters import Parameter

@@ -16,8 +16,7 @@ from tests.shared import shared
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers
 from squeezefilm.actuators.described import is_actuator
 from squeezefilm.actuators.report import motor, skin_stretch
-from squeezefilm.actuators.report.dispatch import analyze_actuator
-from squeezefilm.actuators.report.page import AnalyzedActuator, assumed_words
+from squeezefilm.actuators.report.page import AnalyzedActuator, analyze_actuator, assumed_words
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.kit import style
