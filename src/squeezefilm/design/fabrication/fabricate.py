@@ -3,28 +3,24 @@
 from __future__ import annotations
 
 import functools
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar
 
-from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import Result, stamp, to_json
-from squeezefilm.design.fabrication.test_plan import TestStep, test_plan
+from squeezefilm.design.fabrication.test_plan import BenchFacts, TestStep, test_plan
 from squeezefilm.design.fabrication.wiring import (
     BillRow,
     Electrode,
-    NodalLines,
     bill_of,
     electrodes_of,
     nodal_lines_of,
 )
 from squeezefilm.measure.calibration.blind import (
     BlindPrediction,
-    Predicted,
     load_prediction,
     predicted,
 )
@@ -33,9 +29,9 @@ from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.measure.fits.estimate import Observation
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display, NamedDisplay
-from squeezefilm.physics.plate.electronics import ElectricalLoad, load_of_mode
+from squeezefilm.physics.plate.electronics import load_of_mode
 from squeezefilm.physics.plate.layout import AnnularStator, RectangularPlate
-from squeezefilm.physics.plate.parts import Part, parts_of
+from squeezefilm.physics.plate.parts import parts_of
 from squeezefilm.physics.uncertainty.parameters import Parameter
 from squeezefilm.physics.uncertainty.uncertainty import (
     SAMPLES,
@@ -59,7 +55,7 @@ SHARES = (0.5, 1.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Fabrication(Result):
+class Fabrication(BenchFacts, Result):
     """Everything that a workshop and a bench are told of a display.
 
     `parts` are its solid bodies, `bill` what is bought or cut, `blind` what is expected of the
@@ -67,12 +63,6 @@ class Fabrication(Result):
     can be drawn: `no_intervals` says why), `drawn` which values these intervals are of.
     """
 
-    prediction: Prediction
-    uncertainty: UncertainFriction | None
-    parts: tuple[Part, ...]
-    nodal: NodalLines
-    load: ElectricalLoad | None
-    blind: BlindPrediction | None
     display: Display
     electrodes: tuple[Electrode, ...]
     bill: tuple[BillRow, ...]
@@ -82,16 +72,6 @@ class Fabrication(Result):
         "display.name mass prediction.frequency prediction.vibration_amplitude "
         "prediction.relative_friction"
     )
-
-    @property
-    def mass(self) -> si.Kilogram:
-        """Mass of all bodies together (kg)."""
-        return math.fsum(part.mass for part in self.parts)
-
-    @property
-    def expected(self) -> tuple[Predicted, ...]:
-        """The numbers of `blind`; none without it."""
-        return () if self.blind is None else self.blind.predictions
 
     @functools.cached_property
     def steps(self) -> tuple[TestStep, ...]:

@@ -5,16 +5,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import HZ, M, N, V
+from squeezefilm.design.fabrication.wiring import NodalLines
+from squeezefilm.measure.calibration.blind import BlindPrediction, Predicted
 from squeezefilm.measure.calibration.calibration import UNITS
 from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.physics.chain.pad_place import place_words
-
-if TYPE_CHECKING:
-    from squeezefilm.design.fabrication.fabricate import Fabrication
+from squeezefilm.physics.chain.prediction import Prediction
+from squeezefilm.physics.plate.electronics import ElectricalLoad
+from squeezefilm.physics.plate.parts import Part
+from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
 SMALL_SIGNAL: si.Dimensionless = 0.1
 """Share of the drive's voltage for what is to be linear."""
@@ -51,10 +53,33 @@ class TestStep:
     checks: tuple[Check, ...]
 
 
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class BenchFacts:
+    """Base of what is known of a display that is to be built: its solid `parts`, and `blind`, what
+    is expected of it with intervals (None where nothing can be drawn)."""
+
+    prediction: Prediction
+    uncertainty: UncertainFriction | None
+    parts: tuple[Part, ...]
+    nodal: NodalLines
+    load: ElectricalLoad | None
+    blind: BlindPrediction | None
+
+    @property
+    def mass(self) -> float:
+        """Mass of all bodies together (kg)."""
+        return math.fsum(part.mass for part in self.parts)
+
+    @property
+    def expected(self) -> tuple[Predicted, ...]:
+        """The numbers of `blind`; none without it."""
+        return () if self.blind is None else self.blind.predictions
+
+
 _OF_DRAWS = "zero-to-peak; as friction's interval, which allows no error of the plate's model"
 
 
-def test_plan(known: Fabrication) -> tuple[TestStep, ...]:
+def test_plan(known: BenchFacts) -> tuple[TestStep, ...]:
     """The steps, each recording named as `squeezefilm measure calibrate` finds it in its folder."""
     steps = [
         _weighing(known),
@@ -72,7 +97,7 @@ def test_plan(known: Fabrication) -> tuple[TestStep, ...]:
 test_plan.__test__ = False  # type: ignore[attr-defined] # pytest collects by name
 
 
-def _of(known: Fabrication, answer: str, what: str, value: float | None, remark: str = "") -> Check:
+def _of(known: BenchFacts, answer: str, what: str, value: float | None, remark: str = "") -> Check:
     """A check of an answer, with the interval that was drawn of it."""
     matching = [predicted for predicted in known.expected if predicted.answer == answer]
     interval, level = (matching[0].interval, matching[0].level) if matching else (None, None)
@@ -81,7 +106,7 @@ def _of(known: Fabrication, answer: str, what: str, value: float | None, remark:
     return Check(what, answer, UNITS.get(answer, "1"), value, interval, level, (), remark)
 
 
-def _weighing(known: Fabrication) -> TestStep:
+def _weighing(known: BenchFacts) -> TestStep:
     return TestStep(
         "Weigh it",
         "Weigh the assembly with its glue cured, before leads are soldered.",
@@ -95,7 +120,7 @@ def _volts(volts: si.Volt) -> str:
     return si.format_quantity(volts, V, 3)
 
 
-def _band(known: Fabrication) -> str:
+def _band(known: BenchFacts) -> str:
     mode = known.prediction.mode
     half = mode.resonance_frequency / (2 * mode.quality_factor)
     low, high = (mode.resonance_frequency + side * _BAND * half for side in (-1, 1))
@@ -111,7 +136,7 @@ def _band(known: Fabrication) -> str:
     return f"from {ends} in {points} points"
 
 
-def _impedance(known: Fabrication) -> TestStep:
+def _impedance(known: BenchFacts) -> TestStep:
     p, load = known.prediction, known.load
     static = None if load is None else load.capacitance
     checks = [
@@ -137,7 +162,7 @@ def _impedance(known: Fabrication) -> TestStep:
     )
 
 
-def _response(known: Fabrication) -> TestStep:
+def _response(known: BenchFacts) -> TestStep:
     p = known.prediction
     volts = SMALL_SIGNAL * (p.voltage or 0.0)
     at = place_words(p.mode.lobe)
@@ -155,7 +180,7 @@ def _response(known: Fabrication) -> TestStep:
     )
 
 
-def _line(known: Fabrication) -> TestStep:
+def _line(known: BenchFacts) -> TestStep:
     p, nodal = known.prediction, known.nodal
     half = p.mode.half_wavelength
     checks = [_of(known, "half_wavelength", "Half wavelength", half)]
@@ -183,7 +208,7 @@ def _line(known: Fabrication) -> TestStep:
     )
 
 
-def _grid(known: Fabrication) -> TestStep | None:
+def _grid(known: BenchFacts) -> TestStep | None:
     mode = known.prediction.mode
     if mode.solid is None:
         return None
@@ -205,7 +230,7 @@ def _grid(known: Fabrication) -> TestStep | None:
     )
 
 
-def _decay(known: Fabrication) -> TestStep:
+def _decay(known: BenchFacts) -> TestStep:
     p = known.prediction
     quality = _of(known, "quality_factor", "Quality factor", p.mode.quality_factor)
     ends = None
@@ -231,7 +256,7 @@ def _decay(known: Fabrication) -> TestStep:
     )
 
 
-def _voltages(known: Fabrication) -> TestStep | None:
+def _voltages(known: BenchFacts) -> TestStep | None:
     p, load, unsure = known.prediction, known.load, known.uncertainty
     if not p.voltage:
         return None
@@ -263,7 +288,7 @@ def _voltages(known: Fabrication) -> TestStep | None:
     )
 
 
-def _strokes(known: Fabrication) -> TestStep:
+def _strokes(known: BenchFacts) -> TestStep:
     p, unsure = known.prediction, known.uncertainty
     ends = None if unsure is None else unsure.amplitude_interval
     if ends is not None and ends[0] == ends[1]:
