@@ -76,7 +76,6 @@ class Drawing:
     corner: Place = (0.0, 0.0)
     views: tuple[float, float, float, float] = (0.0, 0.0, 0.42, 0.297)
     notes: list[str] = field(default_factory=list)
-    document: Document = field(init=False)
 
     def __post_init__(self) -> None:
         from squeezefilm.core.errors import optional
@@ -84,7 +83,7 @@ class Drawing:
         with optional("design", "a DXF drawing"):
             from ezdxf.filemanagement import new
 
-        self.document = document = new("R2010", setup=True)
+        document = new("R2010", setup=True)
         document.header["$INSUNITS"] = MILLIMETRES
         # Dashes are as long on paper whatever the scale.
         document.header["$LTSCALE"] = 0.2 / self.scale
@@ -95,7 +94,8 @@ class Drawing:
         for name, colour in _BESIDE.items():
             if name not in self.layers:
                 document.layers.add(name, color=colour)
-        self._space = self.document.modelspace()
+        self.document: Document = document
+        self._space = document.modelspace()
 
     @si.checked_numbers
     def line(self, layer: str, points: tuple[Place, ...], *, closed: bool = False) -> None:
