@@ -165,7 +165,7 @@ NOT_CALLED = {
     physics.plate.solid.reduced.harmonic_solution physics.plate.elements.slab_modes.orthonormal
     physics.plate.elements.box_model.require_half_wave physics.plate.solid.reduced.reduced_class
     physics.plate.solid.reduced.resolved_frequency physics.plate.solid.reduced.reduced_model
-    physics.plate.solid.solve.solve_for_response physics.plate.solid.reduced.surface_values
+    physics.plate.solid.reduced.surface_values
     physics.plate.solid.refined_modes.RefinedModes physics.plate.solid.refined_modes.extrapolated
     physics.plate.solid.refined_modes.refined_modes physics.plate.solid.refined_modes.with_label
     physics.plate.solid.forecast.bare_frequency physics.plate.solid.forecast.pieced_frequency

@@ -20,7 +20,7 @@ from squeezefilm.design.sweep.points import Answer, KeptAnswers, Point, answer_o
 from squeezefilm.design.sweep.sweep import SweepRequest, SweepRun, sweep, sweep_until_stopped
 from squeezefilm.design.sweep.swept import NOT_YET, counted
 from squeezefilm.physics.plate.solid import working
-from squeezefilm.physics.plate.solid.solve import solve_for_response
+from squeezefilm.physics.plate.solid.solve import solved_classes
 
 STATOR = "biet2008-stator"
 VOLTS = {"voltage": "50 V..100 V:3"}
@@ -248,14 +248,14 @@ def test_a_plate_is_solved_once_for_its_voltages_and_forces(
     """Two plates, each at four points that need no other solve; voltages vary slowest."""
     solves: list[Any] = []
 
-    def counted_solve(plate: Any, *rest: Any) -> Any:
-        solves.append(plate)
-        return solve_for_response(plate, *rest)
+    def counted_solve(asked: Any, **kept: Any) -> Any:
+        solves.append(asked.plate)
+        return solved_classes(asked, **kept)
 
     # As if so many plates were kept as a sweep has: one.
     kept = functools.lru_cache(maxsize=1)(working._solid_mode.__wrapped__)
     monkeypatch.setattr(working, "_solid_mode", kept)
-    monkeypatch.setattr(working, "solve_for_response", counted_solve)
+    monkeypatch.setattr(working, "solved_classes", counted_solve)
     found = sweep(
         "biet2008-plate",
         vary={

@@ -186,7 +186,7 @@ def harmonic_response(
     band stands at its frequency extrapolated from two meshes, where `solve_modes` has it (the
     largest amplitude lies a little beside it, by damping and other modes). Without `extrapolate`,
     or on a mesh other than NORMAL and FINE, resonances lie where the mesh has them. `solved` are
-    modes in the band as `solve_for_response` has them: their meshes and factors serve again.
+    modes in the band as `solved_classes` has them: their meshes and factors serve again.
 
     Raises `InputError` for frequencies that are not ascending and positive or a plate without a
     driven electrode.
@@ -205,6 +205,9 @@ def harmonic_response(
         q, potentials, charge = harmonic_solution(parts, omega)
         admittance = 1j * omega * charge
         error = _truncation(parts, omega, admittance)
+    again = functools.partial(
+        harmonic_response, plate, f, steps=steps, resolution=resolution, extrapolate=extrapolate
+    )
     return HarmonicResponse(
         plate,
         f,
@@ -215,14 +218,7 @@ def harmonic_response(
         parts,
         q,
         potentials,
-        functools.partial(
-            harmonic_response,
-            plate,
-            f,
-            steps=steps,
-            resolution=resolution,
-            extrapolate=extrapolate,
-        ),
+        None if solved else again,
     )
 
 

@@ -10,12 +10,14 @@ from __future__ import annotations
 import dataclasses
 import functools
 import time
+from dataclasses import KW_ONLY, dataclass
 from typing import Annotated, Any
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.blas_threads import one_blas_thread
+from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import FREQUENCY
 from squeezefilm.core.progress import Deadline, ShareProgress
@@ -191,18 +193,25 @@ _COARSE = 0.2
 
 
 @si.checked_numbers
-def solve_modes(
-    plate: RectangularPlate,
-    *,
-    near: si.Hertz | None = None,
-    band: tuple[si.Hertz, si.Hertz] | None = None,
-    mode: Label | None = None,
-    count: Annotated[int, si.AtLeast(1)] = 6,
-    tolerance: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 1e-3,
-    driven_only: bool = False,
-    progress: ShareProgress | None = None,
-    deadline: Deadline | None = None,
-) -> PlateModes:
+@dataclass(frozen=True)
+class ModesRequest:
+    """Arguments of `solve_modes`."""
+
+    plate: RectangularPlate
+    _: KW_ONLY
+    near: si.Hertz | None = None
+    band: tuple[si.Hertz, si.Hertz] | None = None
+    mode: Label | None = None
+    count: Annotated[int, si.AtLeast(1)] = 6
+    tolerance: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 1e-3
+    driven_only: bool = False
+    progress: ShareProgress | None = None
+    deadline: Deadline | None = None
+
+
+@si.checked_numbers
+@called_with(ModesRequest)
+def solve_modes(asked: ModesRequest) -> PlateModes:
     """Modes of a plate by three-dimensional piezoelectric finite elements.
 
     One of: `near` (Hz), the `count` modes nearest to it; `band` (Hz, Hz), all modes in it, their
@@ -221,63 +230,34 @@ def solve_modes(
     Raises `InputError` for a band without modes or a label that is not found, `OutOfRangeError` for
     plates too thin for solid elements.
     """
-    if sum(option is not None for option in (near, band, mode)) > 1:
+    ways = [option for option in (asked.near, asked.band, asked.mode) if option is not None]
+    if len(ways) > 1:
         raise InputError("give one of near, band and mode; they choose the modes in different ways")
-    if near is not None:
-        si.require("near", near, si.Unit("Hz"), above=0, at_most=FREQUENCY.most)
-    if band is not None:
-        check_band(band)
-    if near is None and band is None and mode is None:
-        mode = plate.working_label
-    found, _ = _solved(plate, near, band, mode, count, tolerance, driven_only, progress, deadline)
-    again = functools.partial(
-        solve_modes,
-        plate,
-        near=near,
-        band=band,
-        mode=mode,
-        count=count,
-        tolerance=tolerance,
-        driven_only=driven_only,
-    )
-    return dataclasses.replace(found, _again=again)
-
-
-def solve_for_response(
-    plate: RectangularPlate,
-    mode: Label,
-    tolerance: si.Dimensionless,
-    progress: ShareProgress | None = None,
-    deadline: Deadline | None = None,
-) -> tuple[PlateModes, list[RefinedModes]]:
-    """`solve_modes` of one label, and the refined modes of each class with their mesh and its
-    factors, on which `harmonic_response` can go on. Those take 50 to 500 MB: let them go soon.
-
-    Raises what `solve_modes` raises.
-    """
-    again = functools.partial(solve_modes, plate, mode=mode, tolerance=tolerance)
-    modes, pieces = _solved(
-        plate, None, None, mode, 1, tolerance, False, progress, deadline, keep_factors=True
-    )
-    return dataclasses.replace(modes, _again=again), pieces
+    if asked.near is not None:
+        si.require("near", asked.near, si.Unit("Hz"), above=0, at_most=FREQUENCY.most)
+    if asked.band is not None:
+        check_band(asked.band)
+    if not ways:
+        asked = dataclasses.replace(asked, mode=asked.plate.working_label)
+    modes, _ = solved_classes(asked)
+    unhurried = dataclasses.replace(asked, progress=None, deadline=None)
+    return dataclasses.replace(modes, _again=functools.partial(solve_modes, **vars(unhurried)))
 
 
 @one_blas_thread()
-def _solved(
-    plate: RectangularPlate,
-    near: float | None,
-    band: tuple[float, float] | None,
-    mode: Label | None,
-    count: int,
-    tolerance: float,
-    driven_only: bool,
-    progress: ShareProgress | None,
-    deadline: Deadline | None,
-    *,
-    keep_factors: bool = False,
+def solved_classes(
+    asked: ModesRequest, *, keep_factors: bool = False
 ) -> tuple[PlateModes, list[RefinedModes]]:
-    tell = progress or (lambda text, fraction: None)
-    classes = drive_classes(plate) if driven_only else all_classes(plate)
+    """`solve_modes` with one of its three ways to choose, and the refined modes of each class with
+    their mesh.
+
+    With `keep_factors` each has the factors of its mesh too, on which `harmonic_response` can go
+    on. Those take 50 to 500 MB: let them go soon. Raises what `solve_modes` raises.
+    """
+    plate, band, deadline = asked.plate, asked.band, asked.deadline
+    near, mode, count = asked.near, asked.mode, asked.count
+    tell = asked.progress or (lambda text, fraction: None)
+    classes = drive_classes(plate) if asked.driven_only else all_classes(plate)
     if mode is not None:
         classes = [c for c in all_classes(plate) if class_fits(c, mode)]
         if mode == plate.working_label and plate.working_frequency is not None:
@@ -308,7 +288,13 @@ def _solved(
                 tell(f"fine mesh, {told_of(coarse.parity)}", share)
                 pieces.append(
                     refined_modes(
-                        plate, coarse, index, highest, tolerance, deadline, keep_factor=keep_factors
+                        plate,
+                        coarse,
+                        index,
+                        highest,
+                        asked.tolerance,
+                        deadline,
+                        keep_factor=keep_factors,
                     )
                 )
         if mode is None:
@@ -317,7 +303,7 @@ def _solved(
         if labelled:
             pieces = labelled
             break
-    return collected_modes(plate, pieces, tolerance, band), pieces
+    return collected_modes(plate, pieces, asked.tolerance, band), pieces
 
 
 def _slowness(found: list[CoarseModes], took: si.Second) -> float:

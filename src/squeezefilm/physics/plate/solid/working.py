@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -36,7 +35,7 @@ from squeezefilm.physics.plate.solid.resonances import (
     strongest_neighbour,
 )
 from squeezefilm.physics.plate.solid.response import HarmonicResponse, harmonic_response
-from squeezefilm.physics.plate.solid.solve import solve_for_response
+from squeezefilm.physics.plate.solid.solve import ModesRequest, solved_classes
 from squeezefilm.physics.plate.solid.symmetry import PlateModel
 from squeezefilm.physics.plate.sound import RadiatingSurface, smooth_surface
 
@@ -240,37 +239,31 @@ def _solid_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: Pa
     if kept is None:
         kept = _solved_mode(plate, label, pace)
         if not kept.coarseness:
-            _KEPT.put(asked, _solved_again(kept, None, None), [plate])
+            _KEPT.put(asked, kept, [plate])
     # Without its bulk wherever else it is sent.
-    return _solved_again(
-        kept,
-        functools.partial(_modes_again, plate, label),
-        functools.partial(_response_again, plate, label),
-    )
-
-
-def _solved_again(
-    found: SolidMode,
-    modes: Callable[[], PlateModes] | None,
-    response: Callable[[], HarmonicResponse] | None,
-) -> SolidMode:
-    """The same, with how its parts are solved again; with None nothing of it stays behind."""
+    again = functools.partial(_part_again, plate, label)
     return dataclasses.replace(
-        found,
-        modes=dataclasses.replace(found.modes, _again=modes),
-        response=dataclasses.replace(found.response, _again=response),
+        kept,
+        modes=dataclasses.replace(kept.modes, _again=functools.partial(again, "modes")),
+        response=dataclasses.replace(kept.response, _again=functools.partial(again, "response")),
     )
+
+
+def _part_again(plate: RectangularPlate, label: tuple[int, int] | None, name: str) -> Any:
+    """The `modes` or the `response` of a mode, solved again."""
+    return getattr(solid_mode(plate, label), name)
 
 
 def _solved_mode(plate: RectangularPlate, label: tuple[int, int] | None, pace: Pace) -> SolidMode:
     wanted = label or plate.working_label
-    modes, pieces = solve_for_response(
+    request = ModesRequest(
         plate,
-        wanted,
-        _TOLERANCE,
-        pace.share(0.0, _MODES),
-        _deadline_of_modes(plate, wanted, pace),
+        mode=wanted,
+        tolerance=_TOLERANCE,
+        progress=pace.share(0.0, _MODES),
+        deadline=_deadline_of_modes(plate, wanted, pace),
     )
+    modes, pieces = solved_classes(request, keep_factors=True)
     index = modes.index(wanted)
     frequency, quality = float(modes.frequencies[index]), float(modes.quality_factors[index])
     response = harmonic_response(
@@ -351,11 +344,3 @@ def _answer_change(
         return 0.0
     coarse = answer(rough.solved, rough.values[number], rough.vectors[:, number])
     return abs(coarse / fine - 1)
-
-
-def _modes_again(plate: RectangularPlate, label: tuple[int, int] | None) -> PlateModes:
-    return solid_mode(plate, label).modes
-
-
-def _response_again(plate: RectangularPlate, label: tuple[int, int] | None) -> HarmonicResponse:
-    return solid_mode(plate, label).response

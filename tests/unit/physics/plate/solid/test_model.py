@@ -19,7 +19,7 @@ from squeezefilm.physics.plate.solid.mesh import plate_model
 from squeezefilm.physics.plate.solid.refined_modes import with_coarse_modes
 from squeezefilm.physics.plate.solid.resonances import screened_modes
 from squeezefilm.physics.plate.solid.response import harmonic_response
-from squeezefilm.physics.plate.solid.solve import solve_for_response, solve_modes
+from squeezefilm.physics.plate.solid.solve import ModesRequest, solve_modes, solved_classes
 from squeezefilm.physics.plate.solid.symmetry import Parity, PlateModel
 
 GLASS = ElasticMaterial("glass", 72e9, 0.22, 2480)
@@ -77,7 +77,9 @@ def test_one_element_across_resolves_half_a_wave_and_not_two() -> None:
 
 @pytest.mark.slow
 def test_a_response_that_knows_the_modes_about_it_is_that_of_a_long_space() -> None:
-    modes, (piece,) = solve_for_response(PLATE, (2, 0), 3e-3)
+    modes, (piece,) = solved_classes(
+        ModesRequest(PLATE, mode=(2, 0), tolerance=3e-3), keep_factors=True
+    )
     known = with_coarse_modes(piece)
     assert known.shape[1] == piece.found.values.size
     gram = known.T @ piece.solved.slabs.mass_times(known)
