@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,7 +20,7 @@ from squeezefilm.physics.plate.laminate import (
     plate_laminate,
     section_with,
 )
-from squeezefilm.physics.plate.layout import CeramicPatch, DiscPlate, RectangularPlate, turned
+from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate, turned
 
 DRIVEN: si.Dimensionless = 1e-3
 """Share of what single ceramics do to a mode, one by one, below which a drive that has them all
@@ -31,9 +31,8 @@ cancels and does not move the mode."""
 class BeamResponse:
     """A plate driven as a beam: its working mode, and how strongly the ceramics drive it.
 
-    `section` is that of the plate where it carries ceramic.
-    `force_per_width` is the force of one volt on the working mode `mode` (N/V per m of width).
-    `modes` are all that enter the superposition, found where they are asked for.
+    `section` is that of the plate where it carries ceramic, `mode` the working mode. `modes` are
+    all that enter the superposition, found where they are asked for.
     """
 
     plate: RectangularPlate
@@ -41,12 +40,16 @@ class BeamResponse:
     theory: BeamTheory
     cross_section: CrossSection
     mode: BeamMode
-    force_per_width: float
 
     @property
     def model(self) -> str:
         """The model's name, for results and plots."""
         return f"{self.theory}_beam_{self.cross_section}"
+
+    @functools.cached_property
+    def force_per_width(self) -> float:
+        """Force of one volt on the working mode (N/V per m of width)."""
+        return float(np.sum(self._forces(self.mode)))
 
     @property
     def amplitude_per_volt(self) -> si.MetrePerVolt:
@@ -60,7 +63,7 @@ class BeamResponse:
     def require_driven(self) -> None:
         """Raise `OutOfRangeError` where the ceramics' forces on the working mode cancel to less
         than `DRIVEN` of their sum: what is left says nothing of how an amplitude changes."""
-        (parts,) = _forces(self.plate, self.theory, self.cross_section, (self.mode,))
+        parts = self._forces(self.mode)
         if abs(self.force_per_width) < DRIVEN * np.sum(np.abs(parts)) or not np.any(parts):
             raise OutOfRangeError(
                 f"the drive does not bend the plate in its mode with {self.plate.nodal_lines} "
@@ -90,14 +93,35 @@ class BeamResponse:
         si.require("position", position, si.Unit("m"), axes=1)
         omega2 = (2 * np.pi * frequency[:, None]) ** 2
         total = np.zeros((frequency.size, np.size(position)), dtype=complex)
-        modes = self.modes
-        forces = _forces(self.plate, self.theory, self.cross_section, modes)
-        for mode, parts in zip(modes, forces, strict=True):
-            force = float(np.sum(parts))
+        for mode in self.modes:
+            force = float(np.sum(self._forces(mode)))
             own = (2 * np.pi * mode.frequency) ** 2
             denominator = own * (1 + 1j / self.plate.quality_factor) - omega2
             total += force / mode.modal_mass_per_width / denominator * mode.deflection_at(position)
         return total
+
+    def _forces(self, mode: BeamMode) -> si.FloatArray:
+        """The force of one volt in each ceramic on a mode (N/V per m of width): the work of its
+        moment on the section's rotation where it begins and ends to pull."""
+        moment, begin, end = self._moments
+        return np.asarray(moment * (mode.rotation_at(end) - mode.rotation_at(begin)))
+
+    @functools.cached_property
+    def _moments(self) -> tuple[si.FloatArray, si.MetreArray, si.MetreArray]:
+        """The moment of one volt in each ceramic, of the section in its middle, and between which
+        places it pulls."""
+        plate, moments, spans = self.plate, [], []
+        for patch in plate.patches:
+            middle = patch.x + patch.length / 2, patch.y + patch.width / 2
+            section = section_with(plate, self.cross_section, *plate.ceramics_at(*middle))
+            moment = moment_per_volt(plate, section, self.cross_section, patch.face)
+            # A ceramic narrower than the plate drives in proportion to its width.
+            moments.append(moment * patch.drive_sign * (patch.width / plate.width))
+            whole = patch.x, patch.x + patch.length
+            bare = self.theory == "euler_bernoulli"
+            spans.append(whole if bare else stressed_span(plate, patch))
+        begin, end = np.array(spans).T
+        return np.array(moments), begin, end
 
 
 def beam_response(
@@ -132,15 +156,7 @@ def _driven(
 ) -> BeamResponse:
     section = plate_laminate(plate, cross_section)
     working = _finder(plate, theory, cross_section)(plate.nodal_lines)
-    (forces,) = _forces(plate, theory, cross_section, (working,))
-    return BeamResponse(
-        plate,
-        section,
-        theory,
-        cross_section,
-        working,
-        float(np.sum(forces)),
-    )
+    return BeamResponse(plate, section, theory, cross_section, working)
 
 
 def _finder(
@@ -168,39 +184,6 @@ def _superposed(
             break
         modes.append(mode)
     return tuple(modes)
-
-
-def _forces(
-    plate: RectangularPlate,
-    theory: BeamTheory,
-    cross_section: CrossSection,
-    modes: Iterable[BeamMode],
-) -> Iterator[si.FloatArray]:
-    """The force of one volt in each ceramic on each mode (N/V per m of width)."""
-    # Work of the piezo moment on the section's rotation where each ceramic begins and ends to pull;
-    # a ceramic narrower than the plate drives in proportion to its width.
-    pushed = np.array(
-        [
-            _moment(plate, cross_section, patch) * patch.drive_sign * (patch.width / plate.width)
-            for patch in plate.patches
-        ]
-    )
-    if theory == "euler_bernoulli":
-        spans = [(patch.x, patch.x + patch.length) for patch in plate.patches]
-    else:
-        spans = [stressed_span(plate, patch) for patch in plate.patches]
-    begin, end = np.array(spans).T
-    for mode in modes:
-        yield pushed * (mode.rotation_at(end) - mode.rotation_at(begin))
-
-
-def _moment(
-    plate: RectangularPlate, cross_section: CrossSection, patch: CeramicPatch
-) -> si.NewtonPerVolt:
-    """The moment of one volt in a ceramic, of the section in its middle."""
-    middle = patch.x + patch.length / 2, patch.y + patch.width / 2
-    section = section_with(plate, cross_section, *plate.ceramics_at(*middle))
-    return moment_per_volt(plate, section, cross_section, patch.face)
 
 
 def patch_capacitance(plate: RectangularPlate) -> si.Farad:

@@ -16,7 +16,6 @@ from functools import lru_cache
 from typing import Annotated, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
@@ -200,26 +199,9 @@ def solve_all(
 
     Inputs are checked 1-D arrays with 0 ≤ ε < 1.
     """
-    u, sigma = compiled(), films.squeeze_number
-    total = len(sigma)
-    cells, times = first_guess(
-        sigma if films.shape == STRIP else 2.25 * sigma,
-        films.excursion_ratio,
-        films.knudsen_number,
-        tolerance,
-    )
-    work = _Work(
-        films,
-        tolerance,
-        workers,
-        progress,
-        force,
-        cells,
-        times,
-        np.full((total, u.COLUMNS), np.nan),
-        np.zeros(total),
-        np.zeros(total, dtype=bool),
-    )
+    u = compiled()
+    work = _Work(films, tolerance, workers, progress, force)
+    cells, times, total = work.cells, work.times, len(work.met)
     pending: si.IntArray = np.arange(total)
     work.met[fill_small(films, tolerance, work.rows, pending, better=True)] = True
     pending = np.flatnonzero(~work.met)
@@ -245,7 +227,7 @@ def solve_all(
     return work
 
 
-@dataclass(frozen=True)
+@dataclass
 class _Work:
     """Films under way: the indices of their cells and times, their result rows (columns in
     `uniform`), the iterations spent on each, and which met the tolerance."""
@@ -255,11 +237,13 @@ class _Work:
     workers: int
     progress: CountProgress | None
     force: bool
-    cells: si.IntArray
-    times: si.IntArray
-    rows: si.FloatArray
-    spent: si.FloatArray
-    met: NDArray[np.bool_]
+
+    def __post_init__(self) -> None:
+        sigma, eps, _, kn, _, shape = self.films
+        wide = sigma if shape == STRIP else 2.25 * sigma
+        self.cells, self.times = first_guess(wide, eps, kn, self.tolerance)
+        self.rows = np.full((len(sigma), compiled().COLUMNS), np.nan)
+        self.spent, self.met = np.zeros(len(sigma)), np.zeros(len(sigma), dtype=bool)
 
     def tell(self) -> None:
         """Say how many are done."""
