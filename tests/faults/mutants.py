@@ -83,7 +83,8 @@ def counted() -> Iterator[Work]:
             work.counting(periodic.refine, "films", one),
         ),
         mock.patch.object(
-            solve_modes, "_solved", work.counting(solve_modes._solved, "solid solves", one)
+            solve_modes, "solved_classes",
+            work.counting(solve_modes.solved_classes, "solid solves", one),
         ),
         mock.patch.object(
             annular, "nearest_modes",

@@ -18,6 +18,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.hard_limits import NODAL_LINES, require_within
+from squeezefilm.core.kit.numbers import HZ, shown
 from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left
 from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring
 from squeezefilm.design.plate.solved import ALONE, ModeRow, Remarks, SolvedBody
@@ -254,10 +255,10 @@ def parse_band(text: str) -> tuple[si.Hertz, si.Hertz]:
     parts = text.split(".." if ".." in text else ":")
     if len(parts) != 2:
         raise InputError(f"band '{text}' is no band; write two frequencies: 25 kHz..45 kHz")
-    low, high = (parse_quantity(part.strip(), si.Unit("Hz")) for part in parts)
+    low, high = (parse_quantity(part.strip(), HZ) for part in parts)
     if low >= high:
         raise InputError(
-            f"band runs from {si.format_quantity(low, si.Unit('Hz'))} down to "
-            f"{si.format_quantity(high, si.Unit('Hz'))}; write the lower frequency first"
+            f"band runs from {shown(low, HZ)} down to {shown(high, HZ)}; write the lower frequency "
+            "first"
         )
     return low, high

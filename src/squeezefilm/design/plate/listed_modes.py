@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
+from squeezefilm.core.kit.numbers import HZ, PER_VOLT, shown
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.elements.nodal_lines import profiles
 from squeezefilm.physics.plate.layout import Actuator, RectangularPlate
@@ -21,8 +22,6 @@ from squeezefilm.physics.plate.solid.resonances import (
 )
 from squeezefilm.physics.plate.solid.symmetry import forbidden_by, symmetry_in_words
 from squeezefilm.physics.plate.working_mode import CROWDED, WorkingMode
-
-_HZ, _PER_VOLT = si.Unit("Hz"), si.Unit("m/V")
 
 HEARING: si.Hertz = 20e3
 """Frequency below which people hear a plate; the young and animals somewhat above it too."""
@@ -195,11 +194,6 @@ def _moving(mode: ListedMode) -> Moving:
     return Moving(mode.label, mode.frequency, mode.half_bandwidth, mode.alone_per_volt)
 
 
-def shown_frequency(mode: ListedMode) -> str:
-    """A screened frequency in as many digits as it has."""
-    return si.format_quantity(mode.frequency, _HZ, 3)
-
-
 def chosen(
     modes: Sequence[ListedMode], label: str, near: si.Hertz | None = None
 ) -> ListedMode | None:
@@ -236,6 +230,8 @@ def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) 
             "(band), or change the ceramics' polarity, place or size.",
         )
     best = max(able, key=lambda mode: mode.alone_per_volt / (1 + 4 * mode.neighbour_share))
+    # A screened frequency in as many digits as it has.
+    frequency = shown(best.frequency, HZ, 3)
     straight = "" if best.straightness is None else ", its nodal lines cross one side only"
     others = (
         f", and of {len(able)} such modes it moves most, counting against it what neighbours add"
@@ -245,12 +241,11 @@ def suggested(modes: Sequence[ListedMode], described: ListedMode | None = None) 
     if best is described:
         write = f"Keep {best.choice}, as described"
     else:
-        alone = "" if best.unique else f', working_frequency = "{shown_frequency(best)}"'
+        alone = "" if best.unique else f', working_frequency = "{frequency}"'
         write = f"Write {best.choice}{alone}"
     said = (
-        f"{write}: at {shown_frequency(best)} {best.label} is above the hearing range"
-        f"{straight}{others} ({si.format_quantity(best.alone_per_volt, _PER_VOLT, 3)} at an "
-        "antinode"
+        f"{write}: at {frequency} {best.label} is above the hearing range{straight}{others} "
+        f"({shown(best.alone_per_volt, PER_VOLT, 3)} at an antinode"
     )
     if best.neighbour is not None and best.neighbour_distance is not None:
         said += (
@@ -281,8 +276,7 @@ def why_undriven(display: Display, mode: WorkingMode) -> str | None:
     if solid is None or solid.alone_per_volt >= _OWN_SHARE * solid.amplitude_per_volt:
         return None
     own, all_of_it = (
-        si.format_quantity(value, _PER_VOLT, 3)
-        for value in (solid.alone_per_volt, solid.amplitude_per_volt)
+        shown(value, PER_VOLT, 3) for value in (solid.alone_per_volt, solid.amplitude_per_volt)
     )
     return (
         f"The working mode {mode.label} is hardly driven: of {all_of_it} at its antinode it has "
@@ -303,9 +297,9 @@ def mode_doubts(display: Display, mode: WorkingMode) -> Iterator[str]:
         yield f"{undriven} {_instead(plate)}"
     if mode.resonance_frequency < HEARING:
         yield (
-            f"{mode.label} is audible: {si.format_quantity(mode.resonance_frequency, _HZ)} lies "
-            f"below {si.format_quantity(HEARING, _HZ)}, where people hear the plate whenever it is "
-            "driven. Take a thicker or smaller plate, or a mode with more nodal lines."
+            f"{mode.label} is audible: {shown(mode.resonance_frequency, HZ)} lies below "
+            f"{shown(HEARING, HZ)}, where people hear the plate whenever it is driven. Take a "
+            "thicker or smaller plate, or a mode with more nodal lines."
         )
     if isinstance(plate, RectangularPlate) and undriven is None:
         yield from _company(plate, mode)
@@ -342,14 +336,14 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[str]:
     ]
     if same and plate.working_frequency is None:
         listed = " and ".join(
-            f"{shown_frequency(mode)} ({si.format_quantity(mode.alone_per_volt, _PER_VOLT, 3)})"
+            f"{shown(mode.frequency, HZ, 3)} ({shown(mode.alone_per_volt, PER_VOLT, 3)})"
             for mode in sorted([own, *same], key=lambda mode: mode.frequency)
         )
         yield (
             f"{len(same) + 1} modes near have the label {mode.label}, at {listed}"
             f"{' by screening' if solid is None else ''}: the most strongly driven was taken, at "
-            f"{si.format_quantity(mode.resonance_frequency, _HZ)}. To choose, write "
-            "working_frequency beside nodal_lines."
+            f"{shown(mode.resonance_frequency, HZ)}. To choose, write working_frequency beside "
+            "nodal_lines."
         )
 
 

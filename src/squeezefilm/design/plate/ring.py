@@ -12,6 +12,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfTimeError
 from squeezefilm.core.hard_limits import RING_MODES, require_within
+from squeezefilm.core.kit.numbers import HZ, shown
 from squeezefilm.core.progress import NO_HURRY, Deadline, Pace, SayProgress
 from squeezefilm.core.results import to_json
 from squeezefilm.design.plate.solved import ALONE, ModeRow, Remarks, SolvedBody, sweep_around
@@ -269,11 +270,9 @@ def modes_in_band(
         if m > body.label[1] and all(x.frequency > high for x in modes):
             break
     if not in_band:
-        hertz = si.Unit("Hz")
         raise InputError(
-            f"no mode lies between {si.format_quantity(low, hertz)} and "
-            f"{si.format_quantity(high, hertz)}; widen the band, or leave it out for the modes "
-            "around the working mode",
+            f"no mode lies between {shown(low, HZ)} and {shown(high, HZ)}; widen the band, or "
+            "leave it out for the modes around the working mode",
             quantity="band",
         )
     return tuple(sorted(in_band, key=lambda mode: mode.frequency))

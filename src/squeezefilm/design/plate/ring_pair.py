@@ -16,6 +16,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.kit.numbers import HZ, SPEED, shown
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import AnnularStator
 from squeezefilm.physics.plate.ring.body import RingBody
@@ -92,7 +93,6 @@ def crest_speed(
     return float(2 * math.pi * mode.frequency * ratio * travelling)
 
 
-_HZ, _SPEED = si.Unit("Hz"), si.Unit("m/s")
 # In half-bandwidths: what good rings have, what is common, and the worst there is.
 _SPLITS = (0.1, 0.5, 2.0)
 
@@ -134,7 +134,7 @@ class RingPair:
         half = self.frequency / (2 * self.quality_factor)
         open_in_halves = self.electrode_split / half
         amplitude = f"{self.amplitude * 1e6:.3g} µm"
-        two = si.format_quantity(self.two_channels, _SPEED, 2)
+        two = shown(self.two_channels, SPEED, 2)
         return (
             f"{self.label} is a pair: the same wave in two places around the ring, a quarter of a "
             "wave apart, at one frequency on a perfect ring. The one channel drives the one whose "
@@ -143,7 +143,7 @@ class RingPair:
             f"channels in quadrature would make a travelling wave of it, whose crests move along "
             f"the ring at {two} at the same {amplitude}: that is the motor.",
             f"If the electrodes outside the channel are left open, they part the pair by at most "
-            f"{si.format_quantity(self.electrode_split, _HZ, 2)} ({open_in_halves:.2g} "
+            f"{shown(self.electrode_split, HZ, 2)} ({open_in_halves:.2g} "
             "half-bandwidths; computed for sectors that go on as the channel's), along the "
             "channel's own axes: the wave still stands. Shorted to ground they part nothing.",
             "What is uneven around the ring (mass, glue, teeth, how it is held) parts the pair "

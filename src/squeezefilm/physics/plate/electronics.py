@@ -247,7 +247,8 @@ def ring_admittance(actuator: AnnularStator | DiscPlate) -> RingAdmittance:
             motional_capacitance=branch.motional_capacitance * share,
         )
         held = 2j * np.pi * f * clamped_capacitance(body.section, body.drive)
-        admittance, assumed = held + share * (admittance - held), _FITTED
+        admittance = np.asarray(held + share * (admittance - held), dtype=complex)
+        assumed = _FITTED
     bare = RingAdmittance(f, admittance, None, assumed)
     return replace(bare, circuit=with_static_capacitance(branch, bare))
 
