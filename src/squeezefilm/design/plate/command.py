@@ -23,7 +23,6 @@ from squeezefilm.core.progress import Pace, SayProgress, said_with_time_left
 from squeezefilm.design.plate.ring import RingAnalysis, analyze_ring
 from squeezefilm.design.plate.solved import ALONE, ModeRow, Remarks, SolvedBody
 from squeezefilm.physics.display import NamedDisplay
-from squeezefilm.physics.plate.beam_response import BeamResponse, beam_response
 from squeezefilm.physics.plate.elements.nodal_lines import line_distance
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.forecast import band_seconds
@@ -57,15 +56,16 @@ class PlateAnalysis(SolvedBody):
     working_label: Label
     modes: PlateModes
     response: HarmonicResponse
-    beam_frequency: si.Hertz
-    beam_amplitude_per_volt: si.MetrePerVolt
 
     def _particulars(self) -> dict[str, Any]:
+        beam = self.mode.beam
+        if beam is None:
+            return {"beam": None}
         return {
             "beam": {
-                "model": "timoshenko_beam_plane_strain",
-                "frequency_Hz": self.beam_frequency,
-                "amplitude_m_per_V": self.beam_amplitude_per_volt,
+                "model": beam.model,
+                "frequency_Hz": beam.mode.frequency,
+                "amplitude_m_per_V": beam.amplitude_per_volt,
             },
         }
 
@@ -155,8 +155,6 @@ def _of_rectangle(
         model=solved.modes.model,
         status=solved.modes.status,
         remarks=_REMARKS,
-        beam_frequency=solved.beam.mode.frequency,
-        beam_amplitude_per_volt=solved.beam.amplitude_per_volt,
         sound=sound_field(solid.radiating(display.drive.voltage, solid.frequency)),
         objections=(*doubts, *solved.left_out),
     )
@@ -186,7 +184,6 @@ class SolvedPlate(NamedTuple):
 
     solid: SolidMode
     modes: PlateModes
-    beam: BeamResponse
     left_out: tuple[str, ...]
 
 
@@ -223,7 +220,7 @@ def solved_plate(
         )
     else:
         left_out.append(ALONE)
-    return SolvedPlate(solid, modes, beam_response(plate), tuple(left_out))
+    return SolvedPlate(solid, modes, tuple(left_out))
 
 
 def mode_row(modes: PlateModes, index: int) -> ModeRow:

@@ -294,7 +294,9 @@ def mode_doubts(display: Display, mode: WorkingMode) -> Iterator[str]:
     plate = display.actuator
     undriven = why_undriven(display, mode)
     if undriven is not None and isinstance(plate, RectangularPlate):
-        yield f"{undriven} {_instead(plate)}"
+        modes = _screened(plate, _ELSEWHERE)
+        instead = f"{suggested(modes).text} " if modes else ""
+        yield f"{undriven} {instead}squeezefilm modes lists what is driven."
     if mode.resonance_frequency < HEARING:
         yield (
             f"{mode.label} is audible: {shown(mode.resonance_frequency, HZ)} lies below "
@@ -307,7 +309,13 @@ def mode_doubts(display: Display, mode: WorkingMode) -> Iterator[str]:
 
 def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[str]:
     """Neighbours and modes of the same name."""
-    modes, solid = _around(plate, mode), mode.solid
+    near, solid = mode.resonance_frequency, mode.solid
+    band = (1 - _NEAR) * near, (1 + _NEAR) * near
+    modes = (
+        _screened(plate, band)
+        if solid is None
+        else listed_modes(solid.response.settled_modes(band))
+    )
     has = None if solid is None else solid.modes.labels[solid.index]
     if solid is not None and has != plate.working_label:
         lines = "moves in its plane" if has is None else f"has nodal lines ({has[0]},{has[1]})"
@@ -317,7 +325,7 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[str]:
         )
     if (company := mode.company) is not None:
         yield company
-    own = chosen(modes, mode.label, mode.resonance_frequency)
+    own = chosen(modes, mode.label, near)
     if own is None:
         return
     if solid is None and own.crowded and own.neighbour_distance is not None:
@@ -342,17 +350,9 @@ def _company(plate: RectangularPlate, mode: WorkingMode) -> Iterator[str]:
         yield (
             f"{len(same) + 1} modes near have the label {mode.label}, at {listed}"
             f"{' by screening' if solid is None else ''}: the most strongly driven was taken, at "
-            f"{shown(mode.resonance_frequency, HZ)}. To choose, write working_frequency beside "
+            f"{shown(near, HZ)}. To choose, write working_frequency beside "
             "nodal_lines."
         )
-
-
-def _instead(plate: RectangularPlate) -> str:
-    """Advice on what to work in instead."""
-    modes = _screened(plate, _ELSEWHERE)
-    if not modes:
-        return "squeezefilm modes lists what is driven."
-    return f"{suggested(modes).text} squeezefilm modes lists what is driven."
 
 
 def _screened(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> tuple[ListedMode, ...]:
@@ -362,11 +362,3 @@ def _screened(plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz]) -> tuple
     except SqueezefilmError:
         return ()
     return listed_modes(modes)
-
-
-def _around(plate: RectangularPlate, mode: WorkingMode) -> tuple[ListedMode, ...]:
-    """The driven modes around a working mode as they are listed."""
-    band = (1 - _NEAR) * mode.resonance_frequency, (1 + _NEAR) * mode.resonance_frequency
-    if mode.solid is None:
-        return _screened(plate, band)
-    return listed_modes(mode.solid.response.settled_modes(band))

@@ -17,7 +17,7 @@ from squeezefilm.physics.plate.circuit import (
     with_static_capacitance,
 )
 from squeezefilm.physics.plate.layout import Actuator, AnnularStator, DiscPlate, RectangularPlate
-from squeezefilm.physics.plate.ring.body import RingBody, modal_circuit, ring_body
+from squeezefilm.physics.plate.ring.body import modal_circuit, ring_body
 from squeezefilm.physics.plate.ring.modes import annular_admittance, clamped_capacitance
 from squeezefilm.physics.plate.solid.working import response_frequencies
 from squeezefilm.physics.plate.working_mode import WorkingMode
@@ -225,11 +225,14 @@ def ring_admittance(actuator: AnnularStator | DiscPlate) -> RingAdmittance:
     body = ring_body(actuator)
     mode = body.mode()
     f = response_frequencies(mode.frequency, mode.quality_factor)
+    # The mode's harmonic, and those up to three times it that hold a twentieth of its charge.
+    own = mode.harmonic
+    shares = [abs(body.drive.coefficient(m)) ** 2 for m in range(3 * own + 3)]
     admittance = annular_admittance(
         body.section,
         body.drive,
         f,
-        harmonics=_driven_harmonics(body, mode.harmonic),
+        harmonics=[m for m, part in enumerate(shares) if m == own or part > 0.05 * shares[own]],
         quality_factor=body.quality_factor,
     )
     if not body.drives(mode):
@@ -251,12 +254,6 @@ def ring_admittance(actuator: AnnularStator | DiscPlate) -> RingAdmittance:
         assumed = _FITTED
     bare = RingAdmittance(f, admittance, None, assumed)
     return replace(bare, circuit=with_static_capacitance(branch, bare))
-
-
-def _driven_harmonics(body: RingBody, own: int) -> list[int]:
-    """A mode's harmonic, and those up to three times it that hold a twentieth of its charge."""
-    shares = [abs(body.drive.coefficient(m)) ** 2 for m in range(3 * own + 3)]
-    return [m for m, share in enumerate(shares) if m == own or share > 0.05 * shares[own]]
 
 
 def driven_ceramics(plate: RectangularPlate) -> int:

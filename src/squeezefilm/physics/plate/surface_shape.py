@@ -181,14 +181,10 @@ class BeamSurface(SurfaceShape):
         "a beam's mode, which moves alike all across the plate: a solved plate does not"
     )
 
-    def _line(self, along: si.MetreArray) -> si.DimensionlessArray:
-        mode = self.beam.mode
-        at_lobe = mode.deflection_at(np.array([self.lobe[0 if self.along == "x" else 1]]))
-        shape: si.DimensionlessArray = np.abs(mode.deflection_at(along) / at_lobe)
-        return shape
-
     def _points(self, x: si.MetreArray, y: si.MetreArray) -> si.DimensionlessArray:
-        return self._line(x if self.along == "x" else y)
+        mode = self.beam.mode
+        along, lobe = (x, self.lobe[0]) if self.along == "x" else (y, self.lobe[1])
+        return np.abs(mode.deflection_at(along) / mode.deflection_at(lobe))
 
 
 @dataclass(frozen=True, eq=False)

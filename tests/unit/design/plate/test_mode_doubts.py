@@ -35,6 +35,7 @@ def mode(
         index=0,
         neighbour=beside,
         modes=SimpleNamespace(labels=(lines,)),
+        response=SimpleNamespace(settled_modes=lambda band: ()),
     )
     one = WorkingMode(
         label,
@@ -51,8 +52,8 @@ def mode(
 
 def near(monkeypatch: pytest.MonkeyPatch, *modes: ListedMode) -> None:
     """Let these modes be what is driven."""
-    for looked_up in ("_screened", "_around"):
-        monkeypatch.setattr(room, looked_up, lambda plate, where: modes)
+    monkeypatch.setattr(room, "_screened", lambda plate, where: modes)
+    monkeypatch.setattr(room, "listed_modes", lambda settled: modes)
 
 
 def test_a_mode_alone_is_not_doubted(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from squeezefilm.design.plate.listed_modes import ListedMode
     from squeezefilm.design.plate.modes import ModeList
     from squeezefilm.design.plate.ring_pair import RingPair
-    from squeezefilm.physics.plate.working_mode import WorkingMode
 
 _HEAD = ("mode", "frequency", "per volt", "neighbour", "away", "adds", "")
 # So many shapes are drawn: those that move most.
@@ -109,8 +108,12 @@ def show_mode_list(result: ModeList) -> None:
         "resonance: how many half-bandwidths (its f/2Q) it is away, and how much it adds to the "
         "amplitude there. From 20 % on a mode is crowded, from 100 % on hidden."
     )
-    if result.solved is not None:
-        console.print(_solved_said(result.solved))
+    if (solved := result.solved) is not None:
+        console.print(
+            f"{solved.label} with the contribution of all other modes: "
+            f"{shown(solved.amplitude_per_volt, PER_VOLT)} at its antinode "
+            f"({place_words(solved.lobe)}); squeezefilm plate and analyze give the same."
+        )
     bullets(console, mode_list_sentences(result))
     if result.pair is not None:
         show_pair(console, result.pair)
@@ -122,15 +125,6 @@ def show_mode_list(result: ModeList) -> None:
             if result.screened
             else f"within {100 * result.frequency_error:.2g} % (estimated)"
         )
-    )
-
-
-def _solved_said(mode: WorkingMode) -> str:
-    """The display's own mode with all others in, as every other verb has it."""
-    return (
-        f"{mode.label} with the contribution of all other modes: "
-        f"{shown(mode.amplitude_per_volt, PER_VOLT)} at its antinode ({place_words(mode.lobe)}); "
-        "squeezefilm plate and analyze give the same."
     )
 
 

@@ -24,7 +24,6 @@ from squeezefilm.core.kit.numbers import (
     signed,
 )
 from squeezefilm.core.kit.terminal import heading, show_rows, table
-from squeezefilm.design.plate.command import PlateAnalysis
 from squeezefilm.design.plate.ring import RingAnalysis
 from squeezefilm.physics.chain.pad_place import place_words
 from squeezefilm.physics.plate.heat_states import COEFFICIENT_SHARES, EMISSIVITIES
@@ -252,8 +251,9 @@ def show_modes(
 def show_plate(result: SolvedBody) -> None:
     """Print a solved plate, disc or stator: the working mode, then every mode of the band."""
     rows = working_rows(result)
-    if isinstance(result, PlateAnalysis):
-        rows += _theory_rows(result)
+    if (beam := result.mode.beam) is not None:
+        against = changed(beam.mode.frequency / result.working.frequency - 1)
+        rows.append(("As a Timoshenko beam", shown(beam.mode.frequency, HZ, 5), against))
     rows += drive_rows(result) + sound_rows(result.sound, result.remarks.loudest)
     console = show_rows(f"{result.display.title} [{result.display.name}]", rows)
     show_guidance(console, result.sound)
@@ -268,10 +268,3 @@ def show_plate(result: SolvedBody) -> None:
     console.print(f"{result.model}; {result.status}")
     for doubt in (*result.objections, *result.heat.doubts):
         console.print(f"! {printable(doubt)}")
-
-
-def _theory_rows(result: PlateAnalysis) -> list[Row]:
-    """The working mode's frequency by a simpler theory."""
-    beam = result.beam_frequency
-    against = changed(beam / result.working.frequency - 1)
-    return [("As a Timoshenko beam", shown(beam, HZ, 5), against)]

@@ -105,13 +105,9 @@ class Extrapolated:
     def lacking(self) -> float:
         """The larger of the mean's error relative to it and that of the worst harmonic relative to
         the largest."""
-        return float((self.errors / _norm(self.amplitudes)).max())
-
-
-def _norm(amplitudes: si.ComplexArray) -> si.FloatArray:
-    """Scale of errors: for the mean itself, for the harmonics the largest of them."""
-    size = np.abs(amplitudes)
-    return np.concatenate([size[:1], np.full(len(size) - 1, size[1:].max())])
+        size = np.abs(self.amplitudes)
+        size[1:] = size[1:].max()
+        return float((self.errors / size).max())
 
 
 @dataclass(frozen=True)

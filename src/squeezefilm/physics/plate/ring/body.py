@@ -223,7 +223,10 @@ def ring_body(actuator: AnnularStator | DiscPlate) -> RingBody:
     Raises `UnreachableError` for a stator whose frequency no thickness reaches.
     """
     if isinstance(actuator, DiscPlate):
-        return _disc(actuator)
+        m, own = actuator.nodal_diameters, actuator.substrate.quality_factor
+        drive = alternate_sectors(actuator.sectors, math.pi / m) if m else full_drive()
+        quality = actuator.quality_factor if own is None else None
+        return RingBody(bonded_disc(actuator), drive, (actuator.nodal_circles, m), quality)
     fit = fit_stator(
         actuator.resonance_frequency,
         actuator.wavelength,
@@ -255,13 +258,6 @@ def stator_assumptions(actuator: AnnularStator) -> StatorAssumptions:
             StatorAssumptions.driven_sectors, 2 * round(actuator.wavelengths_around)
         ),
     )
-
-
-def _disc(disc: DiscPlate) -> RingBody:
-    m = disc.nodal_diameters
-    drive = alternate_sectors(disc.sectors, math.pi / m) if m else full_drive()
-    quality = disc.quality_factor if disc.substrate.quality_factor is None else None
-    return RingBody(bonded_disc(disc), drive, (disc.nodal_circles, m), quality)
 
 
 @si.checked_numbers

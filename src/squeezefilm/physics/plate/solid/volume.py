@@ -127,7 +127,10 @@ def mode_fields(
 ) -> tuple[si.FloatArray, si.FloatArray]:
     """Displacement (points × 3, 1/√kg) and potential (V per m√kg) of a mode of unit modal mass."""
     solved, vector = modes._fields[mode]
-    electrodes = _mode_electrodes(solved, vector)
+    # In free vibration only a patch that is open has a potential, at which it carries no charge.
+    G, C = solved.slabs.electrode_columns
+    opened = open_electrodes(solved)
+    electrodes = opened @ np.linalg.solve(opened.T @ C @ opened, -opened.T @ (G.T @ vector))
     return volume.displacement(solved, vector), volume.potential(solved, vector, electrodes)
 
 
@@ -165,14 +168,6 @@ def _patches(
         own = material == (1 if patch.face == "bottom" else 2)
         out[inside[:, :, None] & own] = number
     return out
-
-
-def _mode_electrodes(solved: PlateModel, vector: si.FloatArray) -> si.FloatArray:
-    """The potential (V) of each electrode in free vibration: none but where a patch is open and
-    carries no charge."""
-    G, C = solved.slabs.electrode_columns
-    opened = open_electrodes(solved)
-    return opened @ np.linalg.solve(opened.T @ C @ opened, -opened.T @ (G.T @ vector))
 
 
 def _potential_coefficients(

@@ -44,7 +44,7 @@ def ring(**changes: Any) -> Any:
         "working": WORKING,
         "rows": (WORKING, ASIDE),
         "body": SimpleNamespace(fit=None, quality_factor=None),
-        "mode": SimpleNamespace(amplitude_per_volt=1.2346e-7, lobe=(0.0, 2e-3)),
+        "mode": SimpleNamespace(amplitude_per_volt=1.2346e-7, lobe=(0.0, 2e-3), beam=None),
         "largest_per_volt": 1.9e-7,
         "computed_per_volt": 1.1e-7,
         "annular": SimpleNamespace(harmonic=9),
