@@ -314,7 +314,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "physics.chain.pad_place.met_by_pads": {"points": PadPoints(*[WAYS] * 5)},
     "physics.plate.sound.sound_pressure": {"points": np.array([[0.0, 0.0, 0.3]])},
     "physics.plate.sound.pressure_level": {"pressure": np.array([1.0 + 1j])},
-    "physics.plate.solid.solve.solve_modes": {"count": 1, "near": 60e3},
+    "physics.plate.solid.solve.ModesRequest": {"count": 1, "near": 60e3},
     "physics.plate.solid.forecast.solve_size": {"label": (4, 0), "frequency": 60e3},
     "physics.plate.solid.forecast.band_seconds": {"highest": 60e3},
     "physics.plate.ring.body.stator_section": {"mean_diameter": 53.6e-3, "ring_thickness": 3e-3},

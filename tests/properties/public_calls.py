@@ -74,7 +74,7 @@ NOT_CALLED = {
     physics.plate.beam_modes.BeamMode physics.plate.solid.modes.PlateModes
     physics.plate.solid.response.HarmonicResponse physics.plate.thermal.ThermalBody
     physics.plate.warming.Warming physics.plate.heat_states.WarmState
-    physics.plate.solid.volume.PlateVolume physics.plate.beam_response.BeamResponse
+    physics.plate.solid.volume.PlateVolume
     physics.plate.ring.body.RingBody physics.plate.ring.body.RingResponse
     physics.plate.solid.working.SolidMode physics.plate.sound.ExposureGuidance
     physics.plate.sound.SoundField physics.plate.working_mode.ModeLine
@@ -198,7 +198,7 @@ NOT_CALLED = {
     physics.render.program.renderer.Renderer.tick
     """,
     "a verb that is called with the fields of a record, which is attacked itself": """
-    design.sweep.sweep.sweep
+    design.sweep.sweep.sweep physics.plate.solid.solve.solve_modes
     """,
     "the check of numbers itself, whose bounds are the code's own, and its messages' text": """
     core.quantities.require.require core.quantities.units.format_quantity

@@ -209,7 +209,6 @@ class ModesRequest:
     deadline: Deadline | None = None
 
 
-@si.checked_numbers
 @called_with(ModesRequest)
 def solve_modes(asked: ModesRequest) -> PlateModes:
     """Modes of a plate by three-dimensional piezoelectric finite elements.
