@@ -49,7 +49,9 @@ def tried(work: Callable[[], A]) -> A | NoAnswer:
 
 
 class Workers:
-    """Base of all who answer; each has its own way to ask for groups of tasks (`_asked`)."""
+    """Whoever answers: as such this process alone, in the order of the groups of tasks; nothing
+    needs to be picklable then, and nobody dies. Others have their own way to be asked (`_asked`).
+    """
 
     def answers(
         self,
@@ -85,19 +87,6 @@ class Workers:
         groups: Sequence[Sequence[K]],
     ) -> Iterator[tuple[K, A | NoAnswer]]:
         """Answers to groups of tasks; `NoAnswer` for one whose worker died."""
-        raise NotImplementedError
-
-
-class ThisProcess(Workers):
-    """Process of this program alone: answers in the order of the groups; nothing needs to be
-    picklable, and nobody dies alone."""
-
-    def _asked(
-        self,
-        function: Callable[..., A],
-        tasks: Mapping[K, tuple[Any, ...]],
-        groups: Sequence[Sequence[K]],
-    ) -> Iterator[tuple[K, A | NoAnswer]]:
         for key in itertools.chain.from_iterable(groups):
             yield key, computed(function, tasks[key])
 

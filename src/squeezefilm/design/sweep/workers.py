@@ -15,7 +15,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from typing import Annotated, Any
 
 from squeezefilm import __version__
@@ -29,7 +29,6 @@ from squeezefilm.design.sweep.tasks import (
     K,
     NoAnswer,
     Shares,
-    ThisProcess,
     Workers,
     computed,
 )
@@ -276,14 +275,13 @@ def _prepare() -> None:
     end_with_parent()
 
 
-@contextmanager
 @si.checked_numbers
 def workers(
     jobs: Annotated[int, si.AtLeast(1)] = 1,
     scheduler: str | None = None,
     tell: SayProgress | None = None,
     first: Callable[..., Any] | None = None,
-) -> Iterator[Workers]:
+) -> AbstractContextManager[Workers]:
     """Workers that answer, for the block: this process where `jobs` is 1, else so many of their own
     beside it, or all workers of the Dask `scheduler` (``"tcp://host:8786"``) however many there
     are, `jobs` then counting for nothing. `tell` is told of a cluster who is there and where its
@@ -295,10 +293,5 @@ def workers(
     ``if __name__ == "__main__":``.
     """
     if scheduler is not None:
-        with Cluster(scheduler, tell or (lambda _: None)) as cluster:
-            yield cluster
-    elif jobs == 1:
-        yield ThisProcess()
-    else:
-        with Processes(jobs, first) as processes:
-            yield processes
+        return Cluster(scheduler, tell or (lambda _: None))
+    return contextlib.nullcontext(Workers()) if jobs == 1 else Processes(jobs, first)

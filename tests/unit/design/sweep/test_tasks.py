@@ -2,7 +2,7 @@
 
 import pytest
 
-from squeezefilm.design.sweep.tasks import Shares, ThisProcess, grouped
+from squeezefilm.design.sweep.tasks import Shares, Workers, grouped
 
 
 def test_a_worker_keeps_to_its_group_and_helps_where_none_is_left() -> None:
@@ -35,11 +35,11 @@ def test_tasks_that_are_alike_follow_each_other() -> None:
     assert grouped(tasks, None) == [["a"], ["b"], ["c"], ["d"]]
     alike = {"a": 1, "b": 2, "c": 1, "d": 2}
     assert grouped(tasks, alike) == [["a", "c"], ["b", "d"]]
-    assert list(ThisProcess().answers(str.upper, tasks, alike)) == [
+    assert list(Workers().answers(str.upper, tasks, alike)) == [
         ("a", "A"), ("c", "C"), ("b", "B"), ("d", "D"),
     ]  # fmt: skip
 
 
 def test_what_a_task_raises_ends_the_asking() -> None:
     with pytest.raises(ZeroDivisionError):
-        list(ThisProcess().answers(divmod, {1: (1, 1), 2: (1, 0)}))
+        list(Workers().answers(divmod, {1: (1, 1), 2: (1, 0)}))

@@ -12,13 +12,13 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.sweep import workers as pools
-from squeezefilm.design.sweep.tasks import NoAnswer, ThisProcess
+from squeezefilm.design.sweep.tasks import NoAnswer, Workers
 from squeezefilm.design.sweep.workers import Processes, workers
 
 
 def test_one_process_is_this_one_and_more_are_a_pool() -> None:
     with workers() as pool:
-        assert isinstance(pool, ThisProcess)
+        assert type(pool) is Workers
         assert dict(pool.answers(divmod, {"a": (7, 2)})) == {"a": (3, 1)}
     with workers(jobs=2) as pool:
         assert isinstance(pool, Processes)
