@@ -23,8 +23,7 @@ from squeezefilm.design.search.report.words import (
     chosen_sentences,
     chosen_words,
     counts_sentence,
-    effect_head,
-    effect_rows,
+    effect_table,
     empty_front_sentences,
     front_head,
     front_row,
@@ -224,8 +223,7 @@ def show_design(search: DesignSearch) -> None:
     """Print a search: what was asked, the front, the plate to build, and why not others."""
     console = plain_console()
     requirements = search.requirements
-    heading(console, requirements.title)
-    _say(console, asked_sentences(requirements))
+    _say(console, requirements.title, asked_sentences(requirements))
     heading(console, "What was found")
     console.print(counts_sentence(search))
     if search.stopped:
@@ -237,30 +235,25 @@ def show_design(search: DesignSearch) -> None:
             "No plate meets the requirements. What each limit costs is below: ease the one that "
             "most designs break, or give the shapes more room."
         )
-        _say(console, empty_front_sentences(search))
+        bullets(console, [("–", sentence, "") for sentence in empty_front_sentences(search)])
         for reason, count in counted(o.reason for o in search.screened if o.reason)[:3]:
             console.print(f"! {many(count, 'design')} cannot be built: {printable(reason)}")
     if compared := reference_sentences(search):
-        heading(console, f"Beside {requirements.compare_with}")
-        _say(console, compared)
-    heading(console, "What each limit does")
-    _say(console, limit_sentences(search))
+        _say(console, f"Beside {requirements.compare_with}", compared)
+    _say(console, "What each limit does", limit_sentences(search))
     if search.corners:
-        heading(console, "Where nothing keeps the limits")
-        _say(
-            console,
-            [f"{corner_in_words(corner)}." for corner in search.corners[:_CORNERS]],
-        )
+        corners = [f"{corner_in_words(corner)}." for corner in search.corners[:_CORNERS]]
+        _say(console, "Where nothing keeps the limits", corners)
         if len(search.corners) > _CORNERS:
             console.print(f"{len(search.corners) - _CORNERS} more stand in the files of --out")
-    heading(console, "How good the screening was")
-    _say(console, rank_sentences(search))
-    heading(console, "What all of this assumes")
-    _say(console, [f"{sentence[0].upper()}{sentence[1:]}." for sentence in requirements.assumed])
+    _say(console, "How good the screening was", rank_sentences(search))
+    assumed = [f"{sentence[0].upper()}{sentence[1:]}." for sentence in requirements.assumed]
+    _say(console, "What all of this assumes", assumed)
     console.print(f"{search.computed} answers computed, {search.kept} taken from before")
 
 
-def _say(console: Console, sentences: list[str]) -> None:
+def _say(console: Console, title: str, sentences: list[str]) -> None:
+    heading(console, title)
     bullets(console, [("–", sentence, "") for sentence in sentences])
 
 
@@ -282,13 +275,12 @@ def _show_front(console: Console, search: DesignSearch) -> None:
         table(console, ("", ""), made_of, fixed=(0,))
         if len(search.front) > len(members):
             console.print(f"{len(search.front) - len(members)} more rows stand in front.csv")
-    heading(console, "The plate to build")
-    _say(console, chosen_sentences(search))
+    _say(console, "The plate to build", chosen_sentences(search))
     assert search.chosen is not None, "there is a front"
-    if effects := effect_rows(requirements, search.chosen):
+    head, effects = effect_table(requirements, search.chosen)
+    if effects:
         heading(console, "What one standard deviation more of each tolerance does to it")
-        head = [in_lines(name) for name in ("", *effect_head(requirements))]
-        table(console, head, effects)
+        table(console, ["", *map(in_lines, head)], effects)
 
 
 def show_requirements() -> None:

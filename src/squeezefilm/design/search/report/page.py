@@ -36,8 +36,7 @@ from squeezefilm.design.search.report.words import (
     chosen_sentences,
     chosen_words,
     counts_sentence,
-    effect_head,
-    effect_rows,
+    effect_table,
     empty_front_sentences,
     front_head,
     front_row,
@@ -220,17 +219,13 @@ def _chosen_sections(search: DesignSearch, fabrication: str) -> Iterator[str]:
             _criteria_rows(search, chosen),
         ),
     )
-    if effects := effect_rows(search.requirements, chosen):
-        yield section(
-            "What each tolerance does to it",
-            text_table(
-                "One standard deviation more of each, the others as drawn",
-                ("tolerance", *effect_head(search.requirements)),
-                effects,
-            ),
-        )
-    if told := chosen.evaluated.warnings:
-        yield section("What was warned of when it was solved", bullets(told))
+    head, effects = effect_table(search.requirements, chosen)
+    if effects:
+        told = "One standard deviation more of each, the others as drawn"
+        table = text_table(told, ("tolerance", *head), effects)
+        yield section("What each tolerance does to it", table)
+    if warned := chosen.evaluated.warnings:
+        yield section("What was warned of when it was solved", bullets(warned))
 
 
 def _criteria_rows(search: DesignSearch, member: FrontMember) -> Iterator[tuple[str, ...]]:
@@ -295,12 +290,16 @@ def _corners(search: DesignSearch) -> str:
 
 
 def _errors(search: DesignSearch) -> str:
-    rows = []
-    for space, correction in zip(search.requirements.spaces, search.corrections, strict=True):
-        for key, raw in {} if correction is None else correction.raw.items():
-            after = correction.errors[key] if correction is not None else raw
-            what = f"{space.shape}: {CRITERIA[key].said}"
-            rows.append((what, si.percent(raw, 1), si.percent(after, 1)))
+    rows = [
+        (
+            f"{correction.space.shape}: {CRITERIA[key].said}",
+            si.percent(raw, 1),
+            si.percent(correction.errors[key], 1),
+        )
+        for correction in search.corrections
+        if correction is not None
+        for key, raw in correction.raw.items()
+    ]
     table = text_table(
         "Screened against solved, one standard deviation",
         ("number", "as screened", "corrected, on plates left out"),

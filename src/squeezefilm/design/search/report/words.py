@@ -252,32 +252,19 @@ def made_sentences(requirements: Requirements, member: FrontMember) -> list[str]
     ]
 
 
-def effect_rows(requirements: Requirements, member: FrontMember) -> list[tuple[str, ...]]:
-    """Rows of what one standard deviation more of each tolerance does: its name and size, then the
-    changes of frequency and objectives."""
-    if member.made is None:
-        return []
-    keys = _effect_keys(requirements)
+def effect_table(
+    requirements: Requirements, member: FrontMember
+) -> tuple[list[str], list[tuple[str, ...]]]:
+    """Headings and rows of what one standard deviation more of each tolerance does: the tolerance
+    and its size, without a heading, then the changes of frequency and objectives."""
+    keys = tuple(dict.fromkeys(("resonance_frequency", *requirements.objectives)))
     rows = []
-    for name, effects in member.made.effects.items():
+    for name, effects in ({} if member.made is None else member.made.effects).items():
         by = getattr(requirements.tolerances, name)
         size = shown(by, si.Unit("m")) if name in _LENGTHS else si.percent(by, 1)
-        rows.append(
-            (
-                f"{_TOLERANCES[name]} +{size}",
-                *(_effect(key, effects.get(key)) for key in keys),
-            )
-        )
-    return rows
-
-
-def effect_head(requirements: Requirements) -> list[str]:
-    """The headings of `effect_rows`, without the name."""
-    return [criterion_of(key).said for key in _effect_keys(requirements)]
-
-
-def _effect_keys(requirements: Requirements) -> tuple[str, ...]:
-    return tuple(dict.fromkeys(("resonance_frequency", *requirements.objectives)))
+        changes = (_effect(key, effects.get(key)) for key in keys)
+        rows.append((f"{_TOLERANCES[name]} +{size}", *changes))
+    return [criterion_of(key).said for key in keys], rows
 
 
 def _effect(objective: str, value: float | None) -> str:

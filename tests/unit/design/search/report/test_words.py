@@ -125,11 +125,11 @@ def test_a_yield_names_the_limits_that_it_does_not_ask_of_what_is_made(found: De
 
 
 def test_effects_of_tolerances_have_their_size_and_sign(found: DesignSearch) -> None:
-    rows = words.effect_rows(found.requirements, found.front[0])
+    head, rows = words.effect_table(found.requirements, found.front[0])
     assert rows[0][0] == "thickness of the sheet +20 µm"
     assert rows[0][1:] == ("+160 Hz", "+0.001", "not known")
     assert rows[1][1:] == ("none", "−0.022", "not known")
-    assert len(rows[0]) == 1 + len(words.effect_head(found.requirements))
+    assert len(rows[0]) == 1 + len(head)
 
 
 def test_limits_that_nothing_breaks_share_a_sentence_and_the_dear_one_is_named(
