@@ -88,14 +88,12 @@ def display_values(target: str) -> list[dict[str, Any]]:
     described = actuator_class(text, file) if other else Display
     return [
         {
-            "path": dotted(written_value.path),
-            "text": written_value.text,
-            "source": (written_value.provenance and written_value.provenance.source) or None,
-            "evidence": None
-            if written_value.provenance is None
-            else written_value.provenance.evidence,
+            "path": dotted(path),
+            "text": said,
+            "source": (origin and origin.source) or None,
+            "evidence": origin and origin.evidence,
         }
-        for written_value in written_values(described, text, file=file)
+        for path, said, origin in written_values(described, text, file=file)
     ]
 
 

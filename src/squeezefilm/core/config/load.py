@@ -281,16 +281,6 @@ def _message(item: Any, path: Sequence[str | int], owner: type[Any]) -> str:
     return message if kind == "value_error" else f"{item['input']!r}: {message}"
 
 
-@dataclasses.dataclass(frozen=True)
-class WrittenValue:
-    """A value of a file: the parts of its path (members of lists from 0), its text as it was
-    typed, and where it is from (None for a word that needs no source)."""
-
-    path: tuple[str | int, ...]
-    text: str
-    provenance: Provenance | None
-
-
 class _Typed(str):
     """A number of a TOML file as it was typed: 0.30 does not become 0.3."""
 
@@ -299,9 +289,10 @@ class _Typed(str):
 
 def written_values(
     cls: type[Any], text: str, *, file: str | Path | None = None
-) -> tuple[WrittenValue, ...]:
+) -> list[tuple[_Path, str, Provenance | None]]:
     """Every value that a text states of a dataclass with `provenance`, in the text's order, but for
-    what a program found and wrote.
+    what a program found and wrote: the parts of its path (members of lists from 0), its text as it
+    was typed, and where it is from (None for a word that needs no source).
 
     Raises `ConfigError` as `load_text` does: what is shown can be built.
     """
@@ -312,7 +303,7 @@ def written_values(
         tree, _ = references.written_out(tree)
     plain = split_provenance(tree, of_tables=references is not None).plain
     found: Mapping[str, Provenance] = built.provenance
-    return tuple(
-        WrittenValue(path, str(value), found.get(".".join(map(str, path))))
+    return [
+        (path, str(value), found.get(".".join(map(str, path))))
         for path, value in tree_values(described(cls, plain))
-    )
+    ]
