@@ -283,11 +283,6 @@ def require_quick_toml(text: str, file: str | Path | None = None) -> None:
         raise ConfigError(
             f"is nested {longest} deep by one key; at most {DEEPEST} are read", file=file
         )
-    _require_flat(bare, file)
-
-
-def _require_flat(bare: str, file: str | Path | None = None) -> None:
-    """Refuse a text with too many brackets open at once."""
     depth = deepest = 0
     for bracket in re.findall(r"[\[\]{}]", bare):
         depth = depth + 1 if bracket in "[{" else max(depth - 1, 0)

@@ -196,12 +196,6 @@ def folder_of(kind: str) -> Path | None:
     return None if any(is_shared(place, CACHE_VARIABLE) for place in both) else both[1]
 
 
-def make_private(folder: Path) -> None:
-    """Make a kind's folder, and what it lies in, for this user alone. Raises `OSError`."""
-    folder.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    folder.mkdir(mode=0o700, exist_ok=True)
-
-
 def kept_sizes() -> dict[str, tuple[int, int]]:
     """The number of files that are kept, and their bytes, by kind."""
     sizes: dict[str, tuple[int, int]] = {}
@@ -315,7 +309,9 @@ class Kept(Generic[T]):
         if len(data) > KEPT_BYTES.most:
             return
         with suppress(OSError):
-            make_private(file.parent)
+            # For this user alone, as what they lie in.
+            file.parent.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            file.parent.mkdir(mode=0o700, exist_ok=True)
             # Of many small files once a process.
             if self._large or self._tidied != file.parent:
                 self._tidied = file.parent

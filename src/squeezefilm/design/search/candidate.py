@@ -79,10 +79,6 @@ class Design:
         """Plate that is built and solved: the design without its voltage."""
         return Design(self.shape, tuple(value for value in self.values if value[0] != VOLTAGE))
 
-    def at_voltage(self, voltage: si.Volt) -> Design:
-        """The same plate driven with another voltage (V)."""
-        return design_of(self.shape, {**self.settings, VOLTAGE: voltage})
-
 
 def plates_of(designs: Iterable[Design]) -> dict[Design, tuple[Design, ...]]:
     """The plates of designs, each with its designs in their order: whoever solves a plate has it
@@ -200,7 +196,10 @@ def at_other_voltages(requirements: Requirements, design: Design) -> list[Design
     if volts.is_fixed:
         return []
     shares = np.linspace(0, 1, _VOLTAGES[requirements.limits.confidence]).tolist()
-    return [design.at_voltage(float(volts.at(share, {}))) for share in shares]
+    return [
+        design_of(design.shape, {**design.settings, VOLTAGE: volts.at(share, {})})
+        for share in shares
+    ]
 
 
 def screened(requirements: Requirements, display: Display, design: Design) -> dict[str, float]:

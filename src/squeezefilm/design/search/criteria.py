@@ -18,7 +18,7 @@ from squeezefilm.design.search.requirements import Limits, Requirements
 from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.perception.observer import Observer, load_observer
+from squeezefilm.physics.perception.observer import load_observer
 from squeezefilm.physics.perception.senses import (
     Rubbed,
     grating_evidence,
@@ -243,9 +243,7 @@ def numbers_of_solved(
     return numbers
 
 
-@functools.cache
-def _observer() -> Observer:
-    return load_observer()
+_observer = functools.cache(load_observer)
 
 
 def finest_period_felt(display: Display, p: Prediction) -> si.Metre:

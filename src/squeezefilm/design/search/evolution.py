@@ -64,15 +64,21 @@ class Proposals:
     def known(self, answers: Iterable[Evaluated], generation: int | None = None) -> None:
         """Tell of designs that somebody else proposed, so that the sampler learns from them: as
         of the generation that the next one is bred from, where it is given."""
+        from optuna import distributions, trial
+
+        share = distributions.FloatDistribution(0.0, 1.0)
         for answer in answers:
-            trial = _trial(
-                self._space.places(answer.design.settings),
-                self._values(answer),
-                self._excess(answer),
+            places = self._space.places(answer.design.settings)
+            finished = trial.create_trial(
+                params=places,
+                distributions=dict.fromkeys(places, share),
+                values=self._values(answer),
+                # Where Optuna looks for a finished trial's constraints.
+                system_attrs={_EXCESS: self._excess(answer)},
             )
             if generation is not None:
-                trial.system_attrs[_GENERATION] = generation
-            self._study.add_trial(trial)
+                finished.system_attrs[_GENERATION] = generation
+            self._study.add_trial(finished)
 
     def ask(
         self, count: int, batch: int, others: Iterable[Evaluated] = ()
@@ -156,18 +162,6 @@ class Proposals:
             excess = -1.0 if value is None else excess_of(criterion, value, bound)
             excesses.append(float(np.clip(np.nan_to_num(excess, nan=0.0), -1.0, 10.0)))
         return excesses or [0.0]
-
-
-def _trial(params: dict[str, float], values: Sequence[float], excess: Sequence[float]) -> Any:
-    """A finished trial of designs' places, with its constraints where Optuna looks for them."""
-    import optuna
-
-    return optuna.trial.create_trial(
-        params=params,
-        distributions={name: optuna.distributions.FloatDistribution(0.0, 1.0) for name in params},
-        values=list(values),
-        system_attrs={_EXCESS: list(excess)},
-    )
 
 
 def _constraints(trial: Any) -> Sequence[float]:

@@ -93,12 +93,29 @@ class DesignStore:
     def add(self, candidates: Iterable[Evaluated]) -> None:
         """Keep evaluated designs, together on the disk. What might be another one another time is
         kept in memory only."""
-        lines = []
+        lines = list[dict[str, Any]]()
         for candidate in candidates:
             self._known[candidate.design, candidate.level] = candidate
             self.computed += 1
-            if candidate.lasting:
-                lines.append(self._line(candidate))
+            if not candidate.lasting:
+                continue
+            # JSON has no infinity; `float` reads it from text.
+            numbers = {
+                key: value if math.isfinite(value) else str(value)
+                for key, value in candidate.numbers.items()
+            }
+            line = {
+                "asked": self._hashes[candidate.level],
+                "shape": candidate.design.shape,
+                "values": candidate.design.settings,
+                "level": candidate.level,
+                "member": self._member,
+                "numbers": numbers,
+                "reason": candidate.reason,
+                "seconds": round(candidate.seconds, 4),
+                "warnings": list(candidate.warnings),
+            }
+            lines.append(line)
         self._lines.append(lines)
 
     def made(self, design: Design) -> Made | None:
@@ -122,19 +139,6 @@ class DesignStore:
             read["draws"], read["kept"], read["broken"], intervals, read["effects"], read["failed"]
         )
 
-    def _line(self, candidate: Evaluated) -> dict[str, Any]:
-        return {
-            "asked": self._hashes[candidate.level],
-            "shape": candidate.design.shape,
-            "values": candidate.design.settings,
-            "level": candidate.level,
-            "member": self._member,
-            "numbers": {key: _plain(value) for key, value in candidate.numbers.items()},
-            "reason": candidate.reason,
-            "seconds": round(candidate.seconds, 4),
-            "warnings": list(candidate.warnings),
-        }
-
     def _evaluated(self, read: Mapping[str, Any]) -> Evaluated | None:
         if read["asked"] != self._hashes[read["level"]]:
             return None
@@ -153,8 +157,3 @@ class DesignStore:
             float(read["seconds"]),
             tuple(read["warnings"]),
         )
-
-
-def _plain(value: float) -> float | str:
-    """JSON has no infinity; `float` reads it from text."""
-    return value if math.isfinite(value) else str(value)

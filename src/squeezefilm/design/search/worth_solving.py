@@ -118,12 +118,10 @@ def learned(
 
 def _spline(x: si.FloatArray, y: si.FloatArray) -> RBFInterpolator:
     # A plane needs more points than it has directions; with fewer, a constant.
-    degree = 1 if x.shape[0] > 2 * (x.shape[1] + 1) and _spans(x) else 0
+    points, directions = x.shape
+    spans = np.linalg.matrix_rank(x - x.mean(axis=0), tol=1e-6) == directions
+    degree = 1 if points > 2 * (directions + 1) and spans else 0
     return RBFInterpolator(x, y, smoothing=_SMOOTHING, kernel="linear", degree=degree)
-
-
-def _spans(x: si.FloatArray) -> bool:
-    return bool(np.linalg.matrix_rank(x - x.mean(axis=0), tol=1e-6) == x.shape[1])
 
 
 def _logarithm(before: float | None, after: float | None) -> float:

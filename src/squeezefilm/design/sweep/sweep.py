@@ -270,7 +270,7 @@ class SweepRun:
 
     def result(self) -> Sweep:
         """The table of the answers there are."""
-        plan = self.plan
+        plan, answers = self.plan, self._found.values()
         reasons = tuple(self._reason(k) for k in range(len(plan.points)))
         follows = self._followed()
         columns: list[SweptColumn] = []
@@ -288,7 +288,8 @@ class SweepRun:
             plan.axes,
             tuple(columns),
             reasons,
-            self._warnings(),
+            # Texts that differ in their numbers only are told once.
+            counted(text for answer in answers for text in dict.fromkeys(answer.warnings)),
             self._computed,
             len(self._before),
             origin,
@@ -331,11 +332,6 @@ class SweepRun:
         if all(number.verb != FOLLOWED for number in self.plan.asked):
             return ()
         return followed_modes(self._modes(), self.plan.shape, self.plan.begin())
-
-    def _warnings(self) -> tuple[tuple[str, int], ...]:
-        """Warnings with their counts, texts that differ in their numbers only told once."""
-        answers = self._found.values()
-        return counted(text for answer in answers for text in dict.fromkeys(answer.warnings))
 
 
 def sweep_until_stopped(asked: SweepRequest) -> tuple[Sweep, str]:

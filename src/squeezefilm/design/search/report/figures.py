@@ -87,9 +87,9 @@ def front(search: DesignSearch) -> Figure:
     plate to build and the display to compare with."""
     names = search.requirements.objectives
     pairs = list(itertools.combinations(range(len(names)), 2))
-    rows = _rows(
-        search, _thinned([candidate for candidate in search.screened if candidate.is_feasible])
-    )
+    feasible = [candidate for candidate in search.screened if candidate.is_feasible]
+    # Every so many where there are more than can be told apart.
+    rows = _rows(search, feasible[:: 1 + len(feasible) // (_MOST_POINTS + 1)])
     if not rows.size and not search.front:
         return style.message_figure(
             "No design meets the requirements", "What each limit costs is told on the page."
@@ -199,11 +199,6 @@ def _rows(search: DesignSearch, designs: Sequence[Evaluated]) -> si.FloatArray:
     rows = objectives_of(search.requirements, designs)
     finite: si.FloatArray = rows[np.isfinite(rows).all(axis=1)]
     return finite
-
-
-def _thinned(designs: Sequence[Evaluated]) -> Sequence[Evaluated]:
-    """Every so many designs where there are more than can be told apart."""
-    return designs[:: 1 + len(designs) // (_MOST_POINTS + 1)]
 
 
 FIGURES = (

@@ -39,23 +39,17 @@ _LENGTHS = ("thickness", "ceramic_thickness", "sides")
 
 
 def setting_words(variable: Variable, design: Design, requirements: Requirements) -> str:
-    """Words for what a design has for a variable."""
+    """Words for what a design has for a variable; of a material "as described" those of the display
+    that the search starts from."""
     value = design.settings[variable.name]
     if isinstance(variable, Choice):
-        return material_words(variable.name, str(value), requirements)
+        if value != OWN:
+            return str(value)
+        return f"{getattr(requirements.own, variable.name).name} ({OWN})"
     if variable.unit.symbol == "1":
         number = float(value)
         return f"{number:g}" if number > 1 or number == int(number) else si.percent(number)
     return shown(float(value), variable.unit, 4)
-
-
-def material_words(kind: str, name: str, requirements: Requirements) -> str:
-    """A material's name; of one "as described" that of the display the search starts from."""
-    if name != OWN:
-        return name
-    own = requirements.own
-    known = own.substrate.name if kind == "substrate" else own.ceramic.name
-    return f"{known} ({OWN})"
 
 
 def chosen_words(requirements: Requirements, design: Design) -> str:

@@ -92,6 +92,7 @@ def sweep_page(
     if len(sweep.columns) > 1:
         figures["tradeoffs"] = ("Trade-offs", tradeoffs_figure((sweep, better)))
     title = escape(printable(sweep.title))
+    unanswered = counted(reason for reason in sweep.reasons if reason)
     return {
         **picture_files(figures),
         "index.html": page(
@@ -102,7 +103,10 @@ def sweep_page(
             picture_sections(figures)
             + _decisive(effects, varied)
             + _best(sweep, better)
-            + section("Points without an answer", bullets(_reasons(sweep)))
+            + section(
+                "Points without an answer",
+                bullets(f"{reason} ({count} points)" for reason, count in unanswered),
+            )
             + section(
                 "Warnings", bullets(f"{text} (at {count} points)" for text, count in sweep.warnings)
             ),
@@ -110,11 +114,6 @@ def sweep_page(
             f"{links(files)}.",
         ),
     }
-
-
-def _reasons(sweep: Sweep) -> list[str]:
-    said = counted(reason for reason in sweep.reasons if reason)
-    return [f"{reason} ({count} points)" for reason, count in said]
 
 
 def _decisive(effects: Sequence[Effects], varied: Sequence[SweptColumn]) -> str:

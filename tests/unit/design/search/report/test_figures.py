@@ -61,8 +61,9 @@ def test_three_objectives_are_drawn_in_pairs() -> None:
     assert sum("mass" in one for one in names) == 2
 
 
-def test_a_large_cloud_is_thinned() -> None:
-    few = made_search(screened=6, solved=1).screened
-    assert figures._thinned(few * 250) == few * 250
-    assert figures._thinned(few * 251) == (few * 251)[::2]
-    assert 700 < len(figures._thinned(few * 1000)) <= 1500
+def test_a_large_cloud_is_thinned(found: DesignSearch, monkeypatch: pytest.MonkeyPatch) -> None:
+    feasible = sum(one.is_feasible for one in found.screened)
+    for most, points in ((feasible, feasible), (feasible - 1, -(-feasible // 2))):
+        monkeypatch.setattr(figures, "_MOST_POINTS", most)
+        cloud = labelled(figures.front(found).axes[0])["screened, keeps all limits"]
+        assert len(cloud.get_xdata()) == points
