@@ -61,6 +61,7 @@ def test_three_objectives_are_drawn_in_pairs() -> None:
     assert sum("mass" in one for one in names) == 2
 
 
+@pytest.mark.slow  # what it draws is described nowhere
 def test_a_large_cloud_is_thinned(found: DesignSearch, monkeypatch: pytest.MonkeyPatch) -> None:
     feasible = sum(one.is_feasible for one in found.screened)
     for most, points in ((feasible, feasible), (feasible - 1, -(-feasible // 2))):
