@@ -129,8 +129,12 @@ class Stub:
         given = inspect.signature(subject).parameters
         return {name: (given[name], text_of(hints.get(name))) for name in given}
 
-    def _plain(self, annotation: str, module: Any) -> str:
+    def _plain(self, annotation: Any, module: Any) -> str:
         """The annotation without its marks; what it names is imported."""
+        if not isinstance(annotation, str):
+            # The kind of a part of a texture, which its decorator adds.
+            self.imports["typing"].add("Literal")
+            return inspect.formatannotation(annotation)
         tree = _WithoutMarks().visit(ast.parse(annotation, mode="eval"))
         for node in ast.walk(tree):
             if isinstance(node, ast.Name) and not (

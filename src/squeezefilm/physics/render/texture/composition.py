@@ -25,7 +25,6 @@ associative, and ``(a + b) * m = a * m + b * m``.
 from __future__ import annotations
 
 from collections.abc import Sequence as SequenceOf
-from dataclasses import field
 from typing import Annotated, Any, ClassVar, Literal, Protocol
 
 import numpy as np
@@ -201,8 +200,6 @@ class _Several(Composable):
 class Sum(_Several):
     """The sum of `textures` of one quantity. Raises `InputError` for a mixture."""
 
-    type: Literal["sum"] = field(default="sum", repr=False)
-
     def __post_init__(self) -> None:
         _require_alike(self.textures, "sum")
 
@@ -243,8 +240,6 @@ class _Shaped(_Changed):
 class Product(_Shaped):
     """`texture` times a dimensionless `pattern`, value by value. See `Masked` to fade to rest."""
 
-    type: Literal["product"] = field(default="product", repr=False)
-
     def _lower(self, assembler: Assembler) -> None:
         self.texture._lower(assembler)
         self.pattern._lower(assembler)
@@ -256,7 +251,6 @@ class Scaled(_Changed):
     """`texture` times a number from 0 to 1000. Raises `InputError` outside that."""
 
     factor: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1000.0)]
-    type: Literal["scaled"] = field(default="scaled", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
         self.texture._lower(assembler)
@@ -269,8 +263,6 @@ class Masked(_Shaped):
 
     Value: rest + pattern·(texture − rest), with the rest of the texture's quantity.
     """
-
-    type: Literal["masked"] = field(default="masked", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
         self.texture._lower(assembler)
@@ -296,7 +288,6 @@ class Sequence(_Several):
     edges: tuple[Place, ...]
     fade: si.Metre = 0.0
     along: Coordinate = X_AXIS
-    type: Literal["sequence"] = field(default="sequence", repr=False)
 
     def __post_init__(self) -> None:
         _require_alike(self.textures, "sequence")

@@ -64,7 +64,6 @@ class Image(Pattern):
     left: Place = 0.0
     bottom: Place = 0.0
     outside: Literal["hold", "repeat", "zero"] = "hold"
-    type: Literal["image"] = field(default="image", repr=False)
     _grid: si.FloatArray = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
@@ -166,7 +165,6 @@ class Noise(_Added):
     """
 
     along: Coordinate = X_AXIS
-    type: Literal["noise"] = field(default="noise", repr=False)
 
     def __post_init__(self) -> None:
         require_coordinate(self.along)
@@ -182,8 +180,6 @@ class NoiseField(_Added):
 
     Args and errors as for `Noise`.
     """
-
-    type: Literal["noise_field"] = field(default="noise_field", repr=False)
 
     def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
         assembler.emit(NOISE_FIELD, period, state)

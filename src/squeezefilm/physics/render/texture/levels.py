@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import typing
-from dataclasses import field
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Self
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
@@ -68,7 +67,6 @@ class Amplitude(_Level):
     pattern: Pattern
     low: VibrationAmplitude
     high: VibrationAmplitude
-    type: Literal["amplitude"] = field(default="amplitude", repr=False)
     _quantity: ClassVar[Quantity] = "amplitude"
     _unit: ClassVar[si.Unit] = METRE
 
@@ -84,7 +82,6 @@ class RelativeFriction(_Level):
     pattern: Pattern
     low: FrictionShare
     high: FrictionShare
-    type: Literal["relative_friction"] = field(default="relative_friction", repr=False)
     _quantity: ClassVar[Quantity] = "relative_friction"
 
 
@@ -99,5 +96,4 @@ class FrictionReduction(_Level):
     pattern: Pattern
     low: FrictionLoss
     high: FrictionLoss
-    type: Literal["friction_reduction"] = field(default="friction_reduction", repr=False)
     _quantity: ClassVar[Quantity] = "friction_reduction"

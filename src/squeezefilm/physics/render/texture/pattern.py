@@ -13,8 +13,9 @@ Morgan). There is no +: it would leave 0…1. Add textures, which have a quantit
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
-from typing import Annotated, ClassVar, Literal, TypeVar, dataclass_transform
+from typing import Annotated, Any, ClassVar, Literal, TypeVar, dataclass_transform
 
 import numpy as np
 
@@ -37,12 +38,22 @@ MOST_PARTS = 64
 
 
 _T = TypeVar("_T")
+_LITERAL: Any = Literal
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(field,))
 def part(cls: type[_T]) -> type[_T]:
     """A part of a texture: a frozen dataclass whose numbers are checked, and may be texts with
-    units."""
+    units.
+
+    Files know it by its `type`, the class's name in small letters with underscores; a class whose
+    name begins with one is but what others have in common.
+    """
+    made: Any = cls
+    if not made.__name__.startswith("_"):
+        name = re.sub(r"(?<!^)(?=[A-Z])", "_", made.__name__).lower()
+        made.__annotations__["type"] = _LITERAL[name]
+        made.type = field(default=name, repr=False)
     return reads_text(si.checked_numbers(dataclass(frozen=True, slots=True)(cls)))
 
 
@@ -133,7 +144,6 @@ class Complement(Pattern):
     """1 − `pattern`: its ends exchanged."""
 
     pattern: Pattern
-    type: Literal["complement"] = field(default="complement", repr=False)
 
     def __post_init__(self) -> None:
         require_pattern("pattern", self.pattern)
@@ -170,7 +180,6 @@ class _Joined(Pattern):
 class Least(_Joined):
     """The least of `patterns`: where masks overlap."""
 
-    type: Literal["least"] = field(default="least", repr=False)
     _opcode = LEAST
 
 
@@ -178,7 +187,6 @@ class Least(_Joined):
 class Greatest(_Joined):
     """The greatest of `patterns`: masks side by side."""
 
-    type: Literal["greatest"] = field(default="greatest", repr=False)
     _opcode = GREATEST
 
 
@@ -186,7 +194,6 @@ class Greatest(_Joined):
 class Times(_Joined):
     """The product of `patterns`: one fading another."""
 
-    type: Literal["times"] = field(default="times", repr=False)
     _opcode = MULTIPLY
 
 
@@ -209,7 +216,6 @@ class SpeedScaled(Pattern):
     reference_speed: Annotated[si.MetrePerSecond, si.AtLeast(1e-06), si.AtMost(10.0)]
     slowest: Annotated[si.MetrePerSecond, si.AtLeast(1e-06), si.AtMost(10.0)] = 0.001
     fastest: si.MetrePerSecond = 1.0
-    type: Literal["speed_scaled"] = field(default="speed_scaled", repr=False)
 
     def __post_init__(self) -> None:
         require_pattern("pattern", self.pattern)

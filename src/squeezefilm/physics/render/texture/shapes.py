@@ -8,7 +8,6 @@ Time is that of the stroke or the contact, whatever the caller passes as `t`. Ea
 from __future__ import annotations
 
 import math
-from dataclasses import field
 from typing import Annotated, Literal
 
 from squeezefilm.core import quantities as si
@@ -51,7 +50,6 @@ class Constant(Pattern):
     """The same `share` (1, from 0 to 1) everywhere. Raises `InputError` outside that."""
 
     share: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 1.0
-    type: Literal["constant"] = field(default="constant", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(CONSTANT, self.share)
@@ -90,7 +88,6 @@ class SquareWave(_Along):
     duty: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.5
     phase: si.Radian = 0.0
     along: Coordinate = X_AXIS
-    type: Literal["square_wave"] = field(default="square_wave", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)
@@ -107,7 +104,6 @@ class SineWave(_Along):
     spatial_period: Length
     phase: si.Radian = 0.0
     along: Coordinate = X_AXIS
-    type: Literal["sine_wave"] = field(default="sine_wave", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)
@@ -129,7 +125,6 @@ class Pulse(_Along):
     width: Length
     shape: Literal["gaussian", "raised_cosine"] = "gaussian"
     along: Coordinate = X_AXIS
-    type: Literal["pulse"] = field(default="pulse", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)
@@ -153,7 +148,6 @@ class Ramp(_Along):
     end: Place
     profile: Literal["linear", "smooth"] = "linear"
     along: Coordinate = X_AXIS
-    type: Literal["ramp"] = field(default="ramp", repr=False)
 
     def __post_init__(self) -> None:
         _Along.__post_init__(self)
@@ -188,7 +182,6 @@ class Band(_Along):
     end: Place
     fade: si.Metre = 0.0
     along: Coordinate = X_AXIS
-    type: Literal["band"] = field(default="band", repr=False)
 
     def __post_init__(self) -> None:
         si.require("end", self.end, METRE, above=self.start)
@@ -240,7 +233,6 @@ class Bump(_Along):
     width: Length
     kind: Literal["bump", "hole"] = "bump"
     along: Coordinate = X_AXIS
-    type: Literal["bump"] = field(default="bump", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
         self.along._lower(assembler)
@@ -265,7 +257,6 @@ class SpeedGate(Pattern):
 
     above: Annotated[si.MetrePerSecond, si.AtLeast(0.0), si.Below(_FASTEST)] | None = None
     below: si.MetrePerSecond | None = None
-    type: Literal["speed_gate"] = field(default="speed_gate", repr=False)
 
     def __post_init__(self) -> None:
         if self.above is None and self.below is None:
@@ -308,7 +299,6 @@ class Attack(Pattern):
 
     duration: Annotated[si.Second, si.AtLeast(1e-06), si.AtMost(_LONGEST)]
     start: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
-    type: Literal["attack"] = field(default="attack", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(TIME)
@@ -326,7 +316,6 @@ class Decay(Pattern):
 
     time_constant: Annotated[si.Second, si.AtLeast(1e-06), si.AtMost(_LONGEST)]
     start: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
-    type: Literal["decay"] = field(default="decay", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(TIME)
@@ -348,7 +337,6 @@ class Periodic(Pattern):
     shape: Literal["square", "sine"] = "square"
     duty: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.5
     phase: si.Radian = 0.0
-    type: Literal["periodic"] = field(default="periodic", repr=False)
 
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(TIME)
