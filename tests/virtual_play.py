@@ -107,7 +107,7 @@ def virtual_play(
     with TraceWriter(trace, plan.columns, metadata) as writer:
         link = Link(stream, clock, stream.wait)
         player = Player(plan, loop, DeviceHost(link), writer, clock)
-        ending, message = played(player, clock, lambda: stream.wait(step), duration)
+        ending, message = played(player, lambda: stream.wait(step), duration)
         player.end(ending, stream.wait, message)
         writer.event("loop", {"lateness": loop.lateness.to_json()})
         writer.event("link", to_json(link.statistics))

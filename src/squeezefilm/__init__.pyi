@@ -46,7 +46,8 @@ if TYPE_CHECKING:
     from squeezefilm.design.search.requirements import NamedRequirements
     from squeezefilm.design.sweep.swept import Sweep
     from squeezefilm.instruments.bench.play import PlayResult
-    from squeezefilm.instruments.session.play.plan import PlayView
+    from squeezefilm.instruments.session.loop.plan import LoopCompensation
+    from squeezefilm.instruments.session.play.plan import PlayMode, PlayView
     from squeezefilm.instruments.session.record.trace import read_trace as read_trace
     from squeezefilm.measure.calibration.blind import BlindPrediction, Score
     from squeezefilm.measure.calibration.folder import FolderCalibration
@@ -370,11 +371,11 @@ if TYPE_CHECKING:
         target: str | Path | Display,
         texture: NamedTexture | str | Path,
         *,
-        mode: str = ...,
+        mode: PlayMode = ...,
         rate: Hertz | str = ...,
         voltage: Volt | str | None = ...,
         surface: str | None = ...,
-        compensation: str = ...,
+        compensation: LoopCompensation = ...,
         hold: bool = ...,
         drive: str = ...,
         sensor: str = ...,

@@ -11,9 +11,15 @@ from squeezefilm.core.compiled import announce
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims
-from squeezefilm.instruments.session.loop.plan import LoopPlan
+from squeezefilm.instruments.session.loop.plan import LoopCompensation, LoopPlan
 from squeezefilm.instruments.session.loop.tick import make_tick
-from squeezefilm.instruments.session.play.plan import NOTHING_KNOWN, KnownDevice, PlayPlan, tile_of
+from squeezefilm.instruments.session.play.plan import (
+    NOTHING_KNOWN,
+    KnownDevice,
+    PlayMode,
+    PlayPlan,
+    tile_of,
+)
 from squeezefilm.physics.chain.played_texture import lowered
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display
@@ -34,6 +40,7 @@ _TILE_WAY: tuple[si.Metre, si.Metre] = (0.0, 0.1)
 """Where a tile lies for a finger whose way is not known."""
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class HowToPlay:
     """What may be chosen of how a texture is played, see `play.play_texture`.
@@ -42,11 +49,11 @@ class HowToPlay:
     slowness is compensated for is the loops'.
     """
 
-    mode: str = "stream"
+    mode: PlayMode = "stream"
     rate: si.Hertz = 5e3
     voltage: si.Volt | None = None
     surface: str | None = None
-    compensation: str = "none"
+    compensation: LoopCompensation = "none"
     hold: bool = False
 
 
@@ -98,9 +105,8 @@ def play_setup(
     """The plan for a texture on a display, whose drive's limits are the device's.
 
     Raises:
-        InputError: a display that does not vibrate, limits that do not fit, an unknown
-            compensation or mode, a texture that no tile can hold, or a device that shall hold and
-            whose pickup is not known.
+        InputError: a display that does not vibrate, limits that do not fit, a texture that no tile
+            can hold, or a device that shall hold and whose pickup is not known.
     """
     p = predict(display, voltage=how.voltage, surface=how.surface)
     largest = p.vibration_amplitude
@@ -122,7 +128,7 @@ def play_setup(
         envelope=DrivenEnvelope(tau, tau, largest),
         amplitude_per_volt=per_volt,
         estimator=MotionEstimator.for_sensor(device.sensor),
-        compensation=how.compensation,  # type: ignore[arg-type] # checked with a message by LoopPlan
+        compensation=how.compensation,
         relative_friction=p.inverse,
         output_delay=OUTPUT_DELAY,
     )
@@ -134,7 +140,6 @@ def play_setup(
         loop=loop,
         limits=limits,
         frequency=p.frequency,
-        mode=how.mode,  # type: ignore[arg-type] # checked with a message by PlayPlan
         tile=tile,
         device=device,
         hold=held,

@@ -5,7 +5,7 @@ Integers throughout, so that C and Python count the same numbers.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 from squeezefilm.instruments.device.wire.messages import SetLimits
 
@@ -55,16 +55,9 @@ class DeviceLimits:
         )
         if not good:
             return None
-        return DeviceLimits(
-            voltage=voltage,
-            slew=asked.slew,
-            continuous_voltage=continuous,
-            heat=asked.heat,
-            lowest_frequency=asked.lowest_frequency,
-            highest_frequency=asked.highest_frequency,
-            duty=asked.duty,
-            duty_window=asked.duty_window,
-        )
+        given = asdict(asked)
+        del given["insulated"]
+        return DeviceLimits(**{**given, "voltage": voltage, "continuous_voltage": continuous})
 
     def levels(self, volts: tuple[float, ...]) -> tuple[int, ...] | None:
         """µV of every amplitude, or None if any is outside the limits: one bad one refuses all."""

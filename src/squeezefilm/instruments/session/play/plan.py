@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 from enum import Enum
-from typing import Annotated, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -217,8 +217,8 @@ NOTHING_KNOWN = KnownDevice()
 
 PlayMode = Literal["stream", "tile"]
 
-
 REPORT_PERIOD: si.Second = 1e-3
+"""Of a device's readings."""
 
 
 @si.checked_numbers
@@ -230,25 +230,20 @@ class PlayPlan:
         loop: texture, rate, estimator, compensation, output delay.
         limits: that the device is given, and holds.
         frequency: of the carrier (Hz), within the limits.
-        mode: "stream" sends the loop's commands; "tile" gives the device the texture, which it
-            plays at its own sensor while the loop only watches.
-        tile: the texture for mode "tile".
-        report_period: of the device's readings (s); at least 0.2 ms.
+        tile: the texture for mode "tile"; None for mode "stream".
         device: what is known of it. Its places are older than their stamp by its sensor's latency,
             and a twin's watchdog counts its own time.
         hold: the identified plate and what its loops shall do, where the device has loops; None
             for a carrier and levels as they are asked for.
 
     Raises:
-        InputError: a value outside its range, a tile without its mode, or the other way round.
+        InputError: a frequency outside the limits, or a loop that commands more than they allow.
     """
 
     loop: LoopPlan
     limits: Limits
     frequency: si.Hertz
-    mode: PlayMode = "stream"
     tile: TextureTile | None = None
-    report_period: Annotated[si.Second, si.AtLeast(0.0002), si.AtMost(0.02)] = REPORT_PERIOD
     device: KnownDevice = NOTHING_KNOWN
     hold: tuple[IdentifiedPlate, LoopAims] | None = None
 
@@ -261,8 +256,6 @@ class PlayPlan:
             at_least=limits.lowest_frequency,
             at_most=limits.highest_frequency,
         )
-        if (self.mode == "tile") != (self.tile is not None):
-            raise InputError("mode tile needs a tile, and mode stream has none")
         highest = self.loop.voltage_limit
         if highest > limits.voltage * (1 + 1e-9):
             raise InputError(
@@ -270,6 +263,12 @@ class PlayPlan:
                 "V; lower the loop's",
                 quantity="loop",
             )
+
+    @property
+    def mode(self) -> PlayMode:
+        """ "stream" sends the loop's commands; "tile" gives the device the texture, which it plays
+        at its own sensor while the loop only watches."""
+        return "stream" if self.tile is None else "tile"
 
     @property
     def columns(self) -> tuple[str, ...]:

@@ -30,6 +30,7 @@ from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.process import LoopProcess
 from squeezefilm.instruments.session.loop.rows import flag_meanings
 from squeezefilm.instruments.session.play.plan import (
+    REPORT_PERIOD,
     Ending,
     HeldState,
     PlayPlan,
@@ -105,7 +106,7 @@ class Player:
         if plan.tile is not None:
             levels = plan.tile.amplitude / plan.loop.amplitude_per_volt
             host.load_tile(plan.tile.origin, plan.tile.pitch, levels)
-        host.report(plan.report_period)
+        host.report(REPORT_PERIOD)
         host.arm()
         host.start(plan.frequency)
         if plan.mode == "tile":

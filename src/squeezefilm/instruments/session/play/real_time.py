@@ -136,7 +136,7 @@ def run_play(
                 with contextlib.nullcontext() if plan.device.twin else _preferred():
                     with _stopping(host):
                         ending, message = played(
-                            player, clock, lambda: time.sleep(PAUSE), duration, interrupted, show
+                            player, lambda: time.sleep(PAUSE), duration, interrupted, show
                         )
                     player.end(ending, time.sleep, message)
                 silent = time.monotonic()
@@ -160,7 +160,6 @@ def _compile() -> None:
 
 def played(
     player: Player,
-    clock: Callable[[], si.Second],
     wait: Callable[[], None],
     duration: si.Second,
     interrupted: Callable[[], bool] = lambda: False,
@@ -168,8 +167,9 @@ def played(
 ) -> tuple[Ending, str]:
     """Begin, step until something ends it, and fade; returns what ended it, and what to say.
 
-    `wait` lets time pass on the `clock` between two steps of the player.
+    `wait` lets time pass on the player's clock between two of its steps.
     """
+    clock = player.clock
     player.begin()
     began = clock()
     shown, state = 0.0, player.state

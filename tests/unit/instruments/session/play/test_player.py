@@ -28,7 +28,6 @@ from squeezefilm.instruments.session.play.plan import (
     KnownDevice,
     PlayPlan,
     TextureTile,
-    tile_of,
 )
 from squeezefilm.instruments.session.play.player import FADE, LOOP_LIMIT, Player
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
@@ -156,16 +155,12 @@ def begun(plan: PlayPlan, **how: Any) -> Bench:
     return bench
 
 
-def test_a_plan_must_fit_its_limits_and_its_mode(play_of: PlayOf, plan_of: PlanOf) -> None:
+def test_a_plan_must_fit_its_limits(play_of: PlayOf) -> None:
     for frequency in (20e3, 60e3):
         assert play_of(frequency=frequency).frequency == frequency
     for frequency in (19.99e3, 60.01e3):
         with pytest.raises(InputError, match="frequency"):
             play_of(frequency=frequency)
-    tile = tile_of(plan_of().program, (0.0, 2e-3))
-    for changes in ({"mode": "tile"}, {"tile": tile}):
-        with pytest.raises(InputError, match="mode tile needs a tile"):
-            play_of(**changes)
     # The loop's drive goes up to 100 V.
     low = Limits(99.9, 1e6, 99.9, 0.0, 20e3, 60e3, insulation="glass")
     with pytest.raises(InputError, match=r"may command 100 V and the limits allow 99\.9 V"):
@@ -175,10 +170,10 @@ def test_a_plan_must_fit_its_limits_and_its_mode(play_of: PlayOf, plan_of: PlanO
 
 
 def test_beginning_a_stream_opens_reports_arms_and_starts(play_of: PlayOf) -> None:
-    bench = Bench(play_of(report_period=2e-3))
+    bench = Bench(play_of())
     bench.player.begin()
     assert bench.calls == [
-        ("open", LIMITS), ("report", 2e-3), ("arm",), ("start", FREQUENCY),
+        ("open", LIMITS), ("report", 1e-3), ("arm",), ("start", FREQUENCY),
     ]  # fmt: skip
     assert bench.notes == [("begin", {"mode": "stream", "frequency_Hz": FREQUENCY})]
 
@@ -187,7 +182,7 @@ def test_beginning_a_tile_loads_it_and_follows(play_of: PlayOf, plan_of: PlanOf)
     # At 100 V per um: 80 V and 10 V.
     amplitude = np.array([0.8e-6, 0.1e-6, 0.8e-6])
     tile = TextureTile(plan_of().program, 0.5e-3, 1e-3, amplitude, None)
-    bench = Bench(play_of(mode="tile", tile=tile))
+    bench = Bench(play_of(tile=tile))
     bench.player.begin()
     kinds = [call[0] for call in bench.calls]
     assert kinds == ["open", "tile", "report", "arm", "start", "follow"]

@@ -109,7 +109,7 @@ class Bench:
         return Loop()
 
     def player_of(self, *given: Any) -> Any:
-        self.given = given
+        self.given, self.clock = given, given[4]
         return self
 
     # The player.
