@@ -8,7 +8,7 @@ import pytest
 
 from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.core.materials import ElasticMaterial
-from squeezefilm.design.analysis.coarse_shift import CoarseShifts
+from squeezefilm.design.analysis.sensitivities import CoarseShifts
 from squeezefilm.design.plate.changed_plates import (
     with_ceramic_stiffness,
     with_glue,

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import OutOfRangeError
-from squeezefilm.design.analysis import coarse_shift
-from squeezefilm.design.analysis.coarse_shift import CoarseShifts
+from squeezefilm.design.analysis import sensitivities
+from squeezefilm.design.analysis.sensitivities import CoarseShifts
 
 MODE: Any = SimpleNamespace(resonance_frequency=30e3, lobe=(20e-3, 10e-3))
 
@@ -48,7 +48,7 @@ def solves(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
         asked.append((plate, band[0], band[-1], given["resolution"]))
         return Response(band, plate.own, plate.quality, plate.force)
 
-    monkeypatch.setattr(coarse_shift, "harmonic_response", answer)
+    monkeypatch.setattr(sensitivities, "harmonic_response", answer)
     return asked
 
 
