@@ -76,26 +76,27 @@ class JudgedArea(NamedTuple):
         return self.area.summary() | {"odds": None if self.odds is None else self.odds.summary()}
 
 
-def area_odds(
-    display: Display,
-    prediction: Prediction,
-    area: ActiveArea,
-    *,
-    samples: int = SAMPLES,
-    seed: int = 1,
-) -> AreaOdds | None:
-    """The friction of an area by the draws that its prediction's interval is of, see
-    `uncertain_friction`; None where the area has no friction, nothing vibrates or nothing
-    touches."""
+def judged_area(
+    display: Display, prediction: Prediction, *, samples: int = SAMPLES, seed: int = 1
+) -> JudgedArea | None:
+    """The active area where a prediction was made, with its odds by the draws that the prediction's
+    interval is of, see `uncertain_friction`; None where there is no area.
+
+    Without odds where no `samples` were asked for (0), the area has no friction, nothing vibrates
+    or nothing touches.
+    """
     p = prediction
-    if p.touch.law is None or p.vibration_amplitude == 0 or not area.of_note:
+    area = active_area(display, p.mode, p.law, p.drive)
+    if area is None:
         return None
+    if not samples or p.touch.law is None or p.vibration_amplitude == 0 or not area.of_note:
+        return JudgedArea(area, None)
     over = _elsewhere(display, p, area)
     mixture = mixture_of(display, p)
     points = sobol_points(mixture, POINTS * samples, seed)
     outcomes = np.stack(evaluate(mixture, points, lambda _: None)[0], axis=1)
     make = functools.partial(_drawn, mixture, over, points, outcomes)
-    return AreaOdds(_KEPT.found(hash_of_draws(mixture, points, over), make))
+    return JudgedArea(area, AreaOdds(_KEPT.found(hash_of_draws(mixture, points, over), make)))
 
 
 @as_drawn()
@@ -146,15 +147,3 @@ def _met(law: FrictionLaw, outcome: Outcome, over: list[_Elsewhere | None]) -> l
         for place in over
     )
     return [min(max(mean + tied, 0.0), 1.0) for mean in means]
-
-
-def judged_area(
-    display: Display, prediction: Prediction, *, samples: int, seed: int = 1
-) -> JudgedArea | None:
-    """The active area with its odds, where samples were asked for; None without an area."""
-    area = active_area(display, prediction.mode, prediction.law, prediction.drive)
-    if area is None:
-        return None
-    if not samples:
-        return JudgedArea(area, None)
-    return JudgedArea(area, area_odds(display, prediction, area, samples=samples, seed=seed))

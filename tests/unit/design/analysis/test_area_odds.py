@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.design.analysis import area_odds as room
-from squeezefilm.design.analysis.area_odds import area_odds, judged_area
+from squeezefilm.design.analysis.area_odds import judged_area
 from squeezefilm.physics.chain.area_map import active_area
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
@@ -18,9 +18,9 @@ STATOR = load_display("biet2008-stator")
 
 def test_odds_fall_from_the_best_place_to_the_worst() -> None:
     p = predict(STATOR)
-    area = active_area(STATOR, p.mode, p.law, p.drive)
-    assert area is not None
-    odds = area_odds(STATOR, p, area, samples=16)
+    judged = judged_area(STATOR, p, samples=16)
+    assert judged is not None
+    area, odds = judged
     assert odds is not None
     best, median, worst = odds.probabilities_below(0.7)
     # The places are those of the model as described: a draw by another may order them otherwise.
@@ -53,9 +53,9 @@ def test_no_draw_is_asked_for_more_amplitude_than_the_face_has() -> None:
     # A pad as wide as waves are long: its friction is that of no even wave on an antinode.
     display = load_display("winfield2007-tpad")
     p = predict(display)
-    area = active_area(display, p.mode, p.law, p.drive)
-    assert area is not None
-    odds = area_odds(display, p, area, samples=16)
+    judged = judged_area(display, p, samples=16)
+    assert judged is not None
+    area, odds = judged
     assert odds is not None
     assert not np.isnan(odds.samples).any()
     middle = np.median(odds.samples, axis=0)
