@@ -7,9 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
-import io
 import json
-import pickle
 from hashlib import blake2b
 
 import numpy as np
@@ -62,32 +60,12 @@ def description_of(display: Display, prediction: Prediction, more: object = None
 
 def hash_of_draws(mixture: Mixture, points: si.DimensionlessArray, more: object = None) -> str:
     """A hash of all that draws at points of the unit cube, shape (n, inputs), come from: the
-    display with its ranges and the working point, the solved plate by the numbers that draws take
-    of it; and of what `more` is made of them."""
-    p = mixture.prediction
-    mode, law = p.mode, p.law
-    numbers = (
-        mode.resonance_frequency,
-        mode.quality_factor,
-        mode.modal_mass,
-        mode.half_wavelength,
-        mode.amplitude_per_volt,
-        p.held_amplitude,
-        p.frequency,
-        p.voltage,
-        p.normal_force,
-        law.position,
-        law.speed,
-    )
-    place = None if law.place is None else (law.place.x, law.place.y, law.place.at_centre)
-    words = (mixture.model, p.surface.name, law.slip)
-    told = (mixture.display, mixture.inputs, numbers, place, words, *law.ridge_swings, points, more)
-    stream = io.BytesIO()
-    pickler = pickle.Pickler(stream, protocol=5)
-    # By values alone: which of them are one object differs between processes.
-    pickler.fast = True
-    pickler.dump(told)
-    return blake2b(stream.getvalue()).hexdigest()
+    display with its ranges, its prediction, and of these what the prediction's numbers do not say
+    in full; and of what `more` is made of them."""
+    p, law = mixture.prediction, mixture.prediction.law
+    beside = (p.mode.modal_mass, p.held_amplitude, law.position, *law.ridge_swings)
+    told = (mixture.model, mixture.inputs, beside, points, more)
+    return blake2b(description_of(mixture.display, p, told).encode()).hexdigest()
 
 
 @as_drawn()
