@@ -16,6 +16,7 @@ CONSTANTS = PiezoConstants(
 PZT_5H = Piezoceramic(
     "PZT-5H", 66.16e9, 0.2897, 22.99e9, 7500.0, -274e-12, 1434.0, 65.0, constants=CONSTANTS
 )
+FREE_PERMITTIVITY = float(CONSTANTS.free_permittivity_matrix[2, 2])
 BRASS = ElasticMaterial("brass", 112e9, 0.31, 8530.0)
 USUAL = Bimorph(21e-3, 1.6e-3, PZT_5H, 0.35e-3, BRASS, 0.1e-3)
 BARE = Bimorph(20e-3, 1e-3, PZT_5H, 0.5e-3, BRASS)
@@ -34,7 +35,7 @@ def narrow(beam: Bimorph, field: bool = True) -> tuple[float, float]:
     bending += beam.shim.young_modulus * shim**3 / 12
     if field:
         # ∂D3/∂z = 0: the field follows the strain and stiffens each ceramic about its own middle.
-        coupling = d31**2 / (s11 * beam.free_permittivity)
+        coupling = d31**2 / (s11 * FREE_PERMITTIVITY)
         bending += own**3 / (6 * s11) * coupling / (1 - coupling)
     moment = d31 / s11 * (shim + own) * beam.ceramic_share
     return moment * length**2 / (2 * bending), 3 * bending * beam.width / length**3
@@ -53,7 +54,7 @@ def wide(beam: Bimorph) -> tuple[float, float]:
     e31 = d31 / (s11 + s12)
     brass, ratio = beam.shim.plane_strain_modulus, beam.shim.poisson_ratio
     ceramics = 2 * ((shim / 2 + own) ** 3 - (shim / 2) ** 3) / 3
-    added = e31**2 / (beam.free_permittivity - 2 * d31 * e31) * own**3 / 6
+    added = e31**2 / (FREE_PERMITTIVITY - 2 * d31 * e31) * own**3 / 6
     along = ceramics * s11 / (s11**2 - s12**2) + brass * shim**3 / 12 + added
     across = ceramics * -s12 / (s11**2 - s12**2) + ratio * brass * shim**3 / 12 + added
     held = 0.41 * beam.width / beam.length * across / along

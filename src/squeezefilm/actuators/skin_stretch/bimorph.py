@@ -106,11 +106,6 @@ class Bimorph:
         return 2 * (self.ceramic_thickness + self.electrode_thickness) + self.shim_thickness
 
     @property
-    def free_permittivity(self) -> si.FaradPerMetre:
-        """εᵀ33 of the ceramic, from its full constants."""
-        return float(self.ceramic.full_constants.free_permittivity_matrix[2, 2])
-
-    @property
     def ceramic_share(self) -> si.Dimensionless:
         """The voltage of one ceramic over that of the actuator: 1 in parallel, 1/2 in series."""
         return 1.0 if self.wiring == "parallel" else 0.5

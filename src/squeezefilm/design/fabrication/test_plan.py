@@ -4,7 +4,7 @@ the numbers it should give."""
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import HZ, M, N, V
@@ -41,16 +41,20 @@ class Check:
 
 @dataclass(frozen=True)
 class TestStep:
-    """A step: what to do, in sentences; the `kind` of recording and its `file` (both "" where none
-    is kept), and what to read."""
+    """A step: what to do, in sentences; the `kind` of recording and the `file` named after it (both
+    "" where none is kept), and what to read."""
 
     __test__ = False
 
     name: str
     do: str
     kind: str
-    file: str
+    file: str = field(init=False)
     checks: tuple[Check, ...]
+
+    def __post_init__(self) -> None:
+        file = f"{self.kind.replace(' ', '-')}.csv" if self.kind else ""
+        object.__setattr__(self, "file", file)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -81,8 +85,9 @@ _OF_DRAWS = "zero-to-peak; as friction's interval, which allows no error of the 
 
 def test_plan(known: BenchFacts) -> tuple[TestStep, ...]:
     """The steps, each recording named as `squeezefilm measure calibrate` finds it in its folder."""
+    weigh = "Weigh the assembly with its glue cured, before leads are soldered."
     steps = [
-        _weighing(known),
+        TestStep("Weigh it", weigh, "", (_of(known, "mass", "Mass", known.mass),)),
         _impedance(known),
         _response(known),
         _line(known),
@@ -104,16 +109,6 @@ def _of(known: BenchFacts, answer: str, what: str, value: float | None, remark: 
     if value is None and matching:
         value = matching[0].median
     return Check(what, answer, UNITS.get(answer, "1"), value, interval, level, (), remark)
-
-
-def _weighing(known: BenchFacts) -> TestStep:
-    return TestStep(
-        "Weigh it",
-        "Weigh the assembly with its glue cured, before leads are soldered.",
-        "",
-        "",
-        (_of(known, "mass", "Mass", known.mass),),
-    )
 
 
 def _volts(volts: si.Volt) -> str:
@@ -157,7 +152,6 @@ def _impedance(known: BenchFacts) -> TestStep:
         f"Sweep all driven electrodes together, joined as in operation, at 1 V or less, "
         f"{_band(known)}, without a finger and held as in operation.",
         "impedance",
-        "impedance.csv",
         tuple(check for check in checks if check.value is not None),
     )
 
@@ -171,7 +165,6 @@ def _response(known: BenchFacts) -> TestStep:
         f"Point the vibrometer at the best antinode, {at}; sweep at {_volts(volts)} "
         f"(zero-to-peak), {_band(known)}.",
         "frequency response",
-        "frequency-response.csv",
         (
             _of(known, "resonance_frequency", "Resonance", p.mode.resonance_frequency),
             _of(known, "quality_factor", "Quality factor", p.mode.quality_factor),
@@ -203,7 +196,6 @@ def _line(known: BenchFacts) -> TestStep:
         "Line scan",
         f"At the measured resonance, scan {along} in steps of {step} or less.",
         "line scan",
-        "line-scan.csv",
         tuple(checks),
     )
 
@@ -225,7 +217,6 @@ def _grid(known: BenchFacts) -> TestStep | None:
         "Grid scan",
         f"At the measured resonance, scan the whole face in steps of {step} or less.",
         "grid scan",
-        "grid-scan.csv",
         (likeness,),
     )
 
@@ -251,7 +242,6 @@ def _decay(known: BenchFacts) -> TestStep:
         "Drive at the measured resonance, switch the drive off (electrodes shorted, not open), and "
         "record at the best antinode with 13 samples a period or more.",
         "ring-down",
-        "ring-down.csv",
         (quality, tau),
     )
 
@@ -283,7 +273,6 @@ def _voltages(known: BenchFacts) -> TestStep | None:
         "Voltage sweeps",
         f"Repeat the frequency response at {levels} in a mixed order, up and down.",
         "voltage sweeps",
-        "voltage-sweeps.csv",
         tuple(checks),
     )
 
@@ -332,6 +321,5 @@ def _strokes(known: BenchFacts) -> TestStep:
         f"Strokes at {speed:.3g} mm/s with {force} on '{p.surface.name}', at these amplitudes "
         "(with the finger on) and without vibration, in a mixed order, ten strokes each or more.",
         "friction bench",
-        "friction-bench.csv",
         tuple(checks),
     )

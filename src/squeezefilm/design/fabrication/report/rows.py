@@ -11,10 +11,10 @@ from squeezefilm.core.formats.drawing import millimetres
 from squeezefilm.core.kit.folder import csv_text
 from squeezefilm.core.kit.numbers import shown
 from squeezefilm.core.results import to_json
-from squeezefilm.design.fabrication.wiring import Electrode, leads_of
+from squeezefilm.design.fabrication.wiring import leads_of
 from squeezefilm.measure.calibration.solved_answers import FRICTION
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.plate.parts import Rectangle, Sector
+from squeezefilm.physics.plate.parts import Rectangle
 
 if TYPE_CHECKING:
     from squeezefilm.design.fabrication.fabricate import Fabrication
@@ -70,12 +70,8 @@ def expected_rows(made: Fabrication) -> list[tuple[str, ...]]:
         for check in step.checks:
             key = check.answer in _KEY or check.what.startswith(("Amplitude at", "Free amplitude"))
             if key and check.value is not None:
-                row = (
-                    check.what,
-                    said(check.value, check.unit),
-                    expected_said(check),
-                    check.remark,
-                )
+                value, expected = said(check.value, check.unit), expected_said(check)
+                row = (check.what, value, expected, check.remark)
                 rows.setdefault((check.what, check.unit), row)
     return list(rows.values())
 
@@ -117,37 +113,21 @@ def bill_csv(bill: Sequence[BillRow]) -> str:
 
 
 def layout_rows(made: Fabrication) -> tuple[tuple[str, ...], list[tuple[str, ...]]]:
-    """Head and rows of the electrodes, lengths in millimetres."""
-    if isinstance(made.display.actuator, RectangularPlate):
-        return CERAMICS, electrode_rows(made.electrodes)
-    return SECTORS, sector_rows(made.electrodes)
-
-
-def electrode_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
-    """Rows of where each ceramic lies and what its outer electrode is joined to, in millimetres."""
+    """Head and rows of the electrodes: where each ceramic lies, in millimetres, or where its sector
+    begins and ends; what its outer side is joined to, and how it is poled."""
     rows = []
-    for electrode in electrodes:
+    for electrode in made.electrodes:
         shape = electrode.footprint
-        assert isinstance(shape, Rectangle)
-        sizes = (shape.x, shape.y, shape.length, shape.width, electrode.thickness)
+        if isinstance(shape, Rectangle):
+            where = "" if electrode.face == "bottom" else " (top)"
+            sizes = (shape.x, shape.y, shape.length, shape.width, electrode.thickness)
+            cells = (f"{electrode.ceramic}{where}", *map(millimetres, sizes))
+        else:
+            ends = (f"{math.degrees(angle):.6g}°" for angle in (shape.start, shape.end))
+            cells = (electrode.name, *ends)
         poled = "away" if electrode.poling > 0 else "towards"
-        where = "" if electrode.face == "bottom" else " (top)"
-        rows.append(
-            (f"{electrode.ceramic}{where}", *map(millimetres, sizes), electrode.connection, poled)
-        )
-    return rows
-
-
-def sector_rows(electrodes: Sequence[Electrode]) -> list[tuple[str, ...]]:
-    """Rows of where each electrode begins and ends, and what it is joined to."""
-    rows = []
-    for electrode in electrodes:
-        shape = electrode.footprint
-        assert isinstance(shape, Sector)
-        ends = (f"{math.degrees(angle):.6g}°" for angle in (shape.start, shape.end))
-        poled = "away" if electrode.poling > 0 else "towards"
-        rows.append((electrode.name, *ends, electrode.connection, poled))
-    return rows
+        rows.append((*cells, electrode.connection, poled))
+    return CERAMICS if isinstance(made.display.actuator, RectangularPlate) else SECTORS, rows
 
 
 def lead_rows(made: Fabrication) -> list[tuple[str, ...]]:

@@ -23,7 +23,7 @@ from squeezefilm.design.fabrication.fabricate import Fabrication
 from squeezefilm.design.fabrication.report import sheet_parts
 from squeezefilm.design.fabrication.report.page import drawing_sheet
 from squeezefilm.design.fabrication.report.rectangular_sheet import rectangular_sheet
-from squeezefilm.design.fabrication.report.rows import electrode_rows, sector_rows
+from squeezefilm.design.fabrication.report.rows import layout_rows
 from squeezefilm.design.fabrication.report.section_view import Cut, best_cut, spans, stretch_for
 from squeezefilm.design.fabrication.report.sheet_parts import (
     LETTER,
@@ -319,9 +319,9 @@ def test_a_table_that_is_too_long_says_what_is_left_out() -> None:
 
 
 def test_rows_of_ceramics_and_sectors_are_in_millimetres_and_degrees(preset: Preset) -> None:
-    rows = electrode_rows(preset("biet2008-plate").electrodes)
+    _, rows = layout_rows(preset("biet2008-plate"))
     assert rows[1] == ("2", "12", "0", "11", "49", "1", "B", "away")
-    sectors = sector_rows(preset("biet2008-stator").electrodes)
+    _, sectors = layout_rows(preset("biet2008-stator"))
     assert sectors[1] == ("E2", "20°", "40°", "A", "towards")
 
 
