@@ -29,8 +29,7 @@ from squeezefilm.core.kit.page_style import (
 from squeezefilm.core.kit.sheet import pdf, sheet_figure, views_figure
 from squeezefilm.core.results import stamp
 from squeezefilm.design.analysis.report.rows import display_values, electronics_rows
-from squeezefilm.design.fabrication.report.rectangular_sheet import rectangular_sheet
-from squeezefilm.design.fabrication.report.round_sheet import round_sheet
+from squeezefilm.design.fabrication.report.plans import rectangular_sheet, round_sheet
 from squeezefilm.design.fabrication.report.rows import (
     BILL,
     EXPECTED,

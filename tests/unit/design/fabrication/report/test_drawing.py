@@ -22,7 +22,7 @@ from squeezefilm.core.kit.sheet import sheet_figure
 from squeezefilm.design.fabrication.fabricate import Fabrication
 from squeezefilm.design.fabrication.report import sheet_parts
 from squeezefilm.design.fabrication.report.page import drawing_sheet
-from squeezefilm.design.fabrication.report.rectangular_sheet import rectangular_sheet
+from squeezefilm.design.fabrication.report.plans import rectangular_sheet
 from squeezefilm.design.fabrication.report.rows import layout_rows
 from squeezefilm.design.fabrication.report.section_view import Cut, best_cut, spans, stretch_for
 from squeezefilm.design.fabrication.report.sheet_parts import (

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from squeezefilm import load_display
-from squeezefilm.design.fabrication.report.round_sheet import LETTER, NUMBER, _electrode
+from squeezefilm.design.fabrication.report.plans import LETTER, NUMBER, _electrode
 from squeezefilm.design.fabrication.report.sheet_parts import Sheet
 from squeezefilm.physics.plate.parts import Sector
 
