@@ -6,6 +6,7 @@ import dataclasses
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -57,7 +58,7 @@ class FolderCalibration(Result):
     file: Path | None = None
     _shown: ClassVar[str] = "calibration.fits calibration.after.interval file"
 
-    @property
+    @cached_property
     def display(self) -> Display:
         """The calibrated display, with its spreads and the record of its calibration."""
         return calibrated_display(self.calibration, self.recordings)
