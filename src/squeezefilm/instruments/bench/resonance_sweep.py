@@ -40,7 +40,6 @@ class ResonanceSweep:
 
     carriers: si.HertzArray
     pickup: si.FloatArray
-    voltage: si.Volt
     touched: bool
 
     @property
@@ -109,7 +108,7 @@ def sweep_resonance(
     host.stop()
     host.report(0.0)
     signal: si.FloatArray = np.sqrt(np.maximum(squares - floor, 0.0))
-    return ResonanceSweep(carriers, signal, voltage, touched)
+    return ResonanceSweep(carriers, signal, touched)
 
 
 def peak(x: si.FloatArray, y: si.FloatArray) -> tuple[float, float]:

@@ -117,14 +117,12 @@ class TextureTile:
     """A texture at even places along x, straight lines between, nothing outside.
 
     Attributes:
-        program: the texture it was sampled from.
         origin, pitch: place of the first amplitude and from each to the next (m), whole µm.
         amplitude: there (m, zero-to-peak), shape (size,).
         made_for: the finger's speed for which friction became amplitude, and the error in friction
             at half and double of it; None where no law was there to say.
     """
 
-    program: Program
     origin: si.Metre
     pitch: si.Metre
     amplitude: si.MetreArray
@@ -170,7 +168,6 @@ def tile_of(
     size = min(LONGEST_TILE, math.ceil((last - first) / (pitch * _MICROMETRE)) + 1)
     amplitude = _amplitudes(program, origin + pitch * np.arange(float(size)), speed)
     return TextureTile(
-        program=program,
         origin=origin * _MICROMETRE,
         pitch=pitch * _MICROMETRE,
         amplitude=amplitude,

@@ -178,10 +178,10 @@ def test_beginning_a_stream_opens_reports_arms_and_starts(play_of: PlayOf) -> No
     assert bench.notes == [("begin", {"mode": "stream", "frequency_Hz": FREQUENCY})]
 
 
-def test_beginning_a_tile_loads_it_and_follows(play_of: PlayOf, plan_of: PlanOf) -> None:
+def test_beginning_a_tile_loads_it_and_follows(play_of: PlayOf) -> None:
     # At 100 V per um: 80 V and 10 V.
     amplitude = np.array([0.8e-6, 0.1e-6, 0.8e-6])
-    tile = TextureTile(plan_of().program, 0.5e-3, 1e-3, amplitude, None)
+    tile = TextureTile(0.5e-3, 1e-3, amplitude, None)
     bench = Bench(play_of(tile=tile))
     bench.player.begin()
     kinds = [call[0] for call in bench.calls]
