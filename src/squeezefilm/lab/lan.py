@@ -9,7 +9,6 @@ fingerprint that the tablet's browser shows.
 from __future__ import annotations
 
 import datetime
-import hashlib
 import ipaddress
 import ssl
 from functools import partial
@@ -118,7 +117,7 @@ def certificate(address: str, file: Path) -> str:
         raise InputError(
             f"{file} cannot be written: {error.strerror}; move away what lies there, or free space"
         ) from error
-    return _spaced(made.public_bytes(serialization.Encoding.DER))
+    return made.fingerprint(hashes.SHA256()).hex(":").upper()
 
 
 def lan_application(lab: Lab, places: Places) -> Guard:
@@ -186,6 +185,7 @@ def lan_server(
 
 def _fingerprint_of(file: Path, address: str, until: datetime.datetime) -> str | None:
     from cryptography import x509
+    from cryptography.hazmat.primitives import hashes
 
     if file.is_symlink() or not file.is_file():
         return None
@@ -200,11 +200,4 @@ def _fingerprint_of(file: Path, address: str, until: datetime.datetime) -> str |
     fits = ipaddress.ip_address(address) in names.get_values_for_type(x509.IPAddress)
     if not fits or certificate.not_valid_after_utc < until:
         return None
-    from cryptography.hazmat.primitives.serialization import Encoding
-
-    return _spaced(certificate.public_bytes(Encoding.DER))
-
-
-def _spaced(certificate_bytes: bytes) -> str:
-    text = hashlib.sha256(certificate_bytes).hexdigest().upper()
-    return ":".join(text[k : k + 2] for k in range(0, len(text), 2))
+    return certificate.fingerprint(hashes.SHA256()).hex(":").upper()
