@@ -91,11 +91,5 @@ class WaveCompensation:
     def factor(self, x: si.MetreLike, y: si.MetreLike = 0.0) -> si.DimensionlessArray:
         """The factor at places (1), as the renderer reads it: linear between those of a period."""
         where = self.along.at(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        count = len(self.factors)
-        u = where / self.half_wavelength
-        u = (u - np.floor(u)) * count
-        below = np.floor(u)
-        i = below.astype(int) % count
-        table = np.array(self.factors)
-        f = u - below
-        return np.asarray((1.0 - f) * table[i] + f * table[(i + 1) % count])
+        places = np.arange(len(self.factors)) / len(self.factors)
+        return np.asarray(np.interp(where / self.half_wavelength, places, self.factors, period=1))
