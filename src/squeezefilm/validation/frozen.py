@@ -15,7 +15,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from types import MappingProxyType
-from typing import Any, Literal, cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -31,22 +31,15 @@ from squeezefilm.physics.contact.sharing.gas_table import film_table
 from squeezefilm.physics.display import Surface
 from squeezefilm.validation.values import ClaimValue, Computes, value_of
 
-Kind = Literal["balance", "closed form", "ridges"]
-
-MODELS: Mapping[str, Kind] = MappingProxyType(
-    {"partial-levitation": "balance", "levitation": "closed form", "levitation-ridges": "ridges"}
-)
-"""The models that published directions are asked of, and what each solves: the balance of a film
-with separate asperities, or a film that lifts the contact off over a length fitted to
-people, in closed form or solved over a ridge."""
-
-WORDS: Mapping[Kind, str] = MappingProxyType(
+MODELS: Mapping[str, str] = MappingProxyType(
     {
-        "balance": f"film and {AsperityLaw().words}; all that touches slides",
-        "closed form": "a film lifts the contact off over a length fitted to people on glass",
-        "ridges": "a film solved over each ridge lifts it off over a length fitted to people",
+        "partial-levitation": f"film and {AsperityLaw().words}; all that touches slides",
+        "levitation": "a film lifts the contact off over a length fitted to people on glass",
+        "levitation-ridges": "a film solved over each ridge lifts it off over a length fitted to "
+        "people",
     }
 )
+"""The models that published directions are asked of, with words for each."""
 
 
 def _evidence() -> Mapping[str, str]:
@@ -130,7 +123,7 @@ class FrozenContact:
         if ambient_pressure is not None:
             here = replace(here, gas=here.gas.at_pressure(ambient_pressure))
         law = here.law(model)
-        if skin is None or MODELS[model] != "balance":
+        if skin is None or law.kind.friction != "load":
             return float(law.ridge_friction(np.array([here.amplitude]))[0])
         films = film_table(here.frequency, here.finger.plateau_width, here.gas, here.slip)
         pressure = here.plateau_pressure
@@ -163,7 +156,7 @@ def _(model: str) -> ClaimValue:
         return (1 - inside) / (1 - at.relative_friction(model))
 
     shares = left("fukui-kaneko"), left("veijola")
-    if MODELS[model] == "closed form":
+    if model == "levitation":
         return ClaimValue(shares)
     path = FROZEN.gas.at_pressure(_THIN).mean_free_path
     return ClaimValue(

@@ -19,7 +19,7 @@ from squeezefilm.design.analysis.paper_procedure import PaperDesign
 from squeezefilm.design.analysis.published_claims import MEANINGS, missed_by
 from squeezefilm.design.analysis.report.rows import cited, missed_directions
 from squeezefilm.validation.command import ClaimResult, Reproduction
-from squeezefilm.validation.frozen import MODELS, WORDS
+from squeezefilm.validation.frozen import MODELS
 from squeezefilm.validation.report.prototype import Block, Item, Part, Table, prototype_parts
 
 if TYPE_CHECKING:
@@ -329,7 +329,7 @@ def direction_table(results: Iterable[ClaimResult]) -> Table:
 
 def model_sentences() -> list[str]:
     """The models that directions are asked of, each in a sentence."""
-    return [f"{name}: {WORDS[kind]}." for name, kind in MODELS.items()]
+    return [f"{name}: {words}." for name, words in MODELS.items()]
 
 
 def missed_lists() -> list[tuple[str, list[str]]]:
