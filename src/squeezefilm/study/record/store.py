@@ -9,6 +9,7 @@ folder of the same name with ``.traces``; their names are random.
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import json
 import secrets
@@ -52,10 +53,6 @@ class StudyStore(Database):
 
     Reads return plain rows; `StudyRun` and the functions of this room are what writes trials.
     """
-
-    def __init__(self, path: Path, *, new: bool = False) -> None:
-        super().__init__(path, new=new)
-        self._design: StudyDesign | None = None
 
     @classmethod
     def create(
@@ -193,14 +190,12 @@ class StudyStore(Database):
         """The row about the study itself."""
         return self.rows("SELECT * FROM study")[0]
 
-    @property
+    @functools.cached_property
     def design(self) -> StudyDesign:
         """The design the file was made with."""
-        if self._design is None:
-            from squeezefilm.core import config
+        from squeezefilm.core import config
 
-            self._design = config.load_text(StudyDesign, self.study["design"], file=self.path)
-        return self._design
+        return config.load_text(StudyDesign, self.study["design"], file=self.path)
 
     def rows(self, query: str, values: Iterable[Any] = ()) -> list[dict[str, Any]]:
         """Rows of a query, as dictionaries. Raises `RecordError` if the file cannot be read."""

@@ -27,7 +27,6 @@ from squeezefilm.physics.perception.percepts import Perceived, perceived
 from squeezefilm.physics.perception.senses import FINEST_PERIOD, Candidates, percept_deviation
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.study.adaptive.series import AdaptiveMethod, adaptive_method, hears_choice
-from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.design.tasks.task import Percepts
 from squeezefilm.study.design.trials import Trial, trials
 from squeezefilm.study.record.answers import Answers
@@ -101,31 +100,21 @@ class _Room:
             *(trial.stimulus for trial in design.catch),
         ]
         self.place = {surface.name: number for number, surface in enumerate(self.surfaces)}
-        self._chosen: dict[tuple[str, float], int] = {}
-        self._felt: dict[tuple[int, int, int], tuple[si.FloatArray, si.FloatArray]] = {}
         self.directions = tables.virtual.period.shape[-2]
+        self.chosen, self.felt = functools.cache(self._chosen), functools.cache(self._felt)
 
-    def chosen(self, series: str, intensity: float) -> int:
+    def _chosen(self, series: str, intensity: float) -> int:
         """The number of what an adaptive series presents at an intensity."""
-        key = series, intensity
-        if key not in self._chosen:
-            one = self.design.series(series)
-            self._chosen[key] = len(self.surfaces)
-            self.surfaces.append(self.design.comparison(one, intensity))
-        return self._chosen[key]
+        self.surfaces.append(self.design.comparison(self.design.series(series), intensity))
+        return len(self.surfaces) - 1
 
-    def felt(self, display: int, finger: int, surface: int) -> tuple[si.FloatArray, si.FloatArray]:
+    def _felt(self, display: int, finger: int, surface: int) -> tuple[si.FloatArray, si.FloatArray]:
         """Candidates of a surface under a finger, by direction: periods (m) and d′."""
-        key = display, finger, surface
-        if key not in self._felt:
-            known, shown = self.tables.virtual, len(self.design.stimuli)
-            if surface < shown:
-                found = known.period[key], known.d_prime[key]
-            else:
-                one = self.tables.felt(display, finger, self.surfaces[surface])
-                found = one.period, one.d_prime
-            self._felt[key] = found
-        return self._felt[key]
+        if surface < len(self.design.stimuli):
+            known, place = self.tables.virtual, (display, finger, surface)
+            return known.period[place], known.d_prime[place]
+        found = self.tables.felt(display, finger, self.surfaces[surface])
+        return found.period, found.d_prime
 
     def presented(
         self, display: si.IntArray, finger: si.IntArray, surface: si.IntArray
@@ -145,7 +134,11 @@ def _answer(
     design, observer = room.design, room.observer
     count, asked = len(schedules), len(schedules[0])
     task, reference = design.described, room.place.get(design.reference, -1)
-    methods: dict[tuple[int, str, str], AdaptiveMethod] = {}
+
+    @functools.cache
+    def standing(person: int, display: str, series: str) -> AdaptiveMethod:
+        """The method of a person's series, as the answers so far left it."""
+        return adaptive_method(design.series(series), task=design.task)
 
     def mine(values: NDArray[Any]) -> Any:
         return values.reshape(*values.shape[:-1], -1, asked)[..., begin : begin + count, :]
@@ -162,9 +155,8 @@ def _answer(
                 how = trial.reference_first, trial.answer
                 comparison, intensity[person, at] = reference, 0.0
                 if task.presents_comparison(*how):
-                    intensity[person, at] = _standing(
-                        methods, design, person, trial
-                    ).next_stimulus()
+                    method = standing(person, trial.display, trial.adaptive)
+                    intensity[person, at] = method.next_stimulus()
                     comparison = room.chosen(trial.adaptive, float(intensity[person, at]))
                 presented[:, person, at] = task.arranges(reference, comparison, *how)
         skill = 1.0 + observer.learning_excess * math.exp(-at / observer.learning_trials)
@@ -189,21 +181,8 @@ def _answer(
                 said: Any = design.answers[choice[person, at]]
                 if not hears_choice(design.series(row[at].adaptive), task):
                     said = said == row[at].answer
-                method = _standing(methods, design, person, row[at])
+                method = standing(person, row[at].display, row[at].adaptive)
                 method.update(float(intensity[person, at]), said)
-
-
-def _standing(
-    methods: dict[tuple[int, str, str], AdaptiveMethod],
-    design: StudyDesign,
-    person: int,
-    trial: Trial,
-) -> AdaptiveMethod:
-    key = person, trial.display, trial.adaptive
-    if key not in methods:
-        series = design.series(trial.adaptive)
-        methods[key] = adaptive_method(series, task=design.task)
-    return methods[key]
 
 
 _Judge = Callable[[list[Perceived], float, int], _Given]
