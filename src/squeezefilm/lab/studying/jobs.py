@@ -78,7 +78,5 @@ def report_of(path: Path) -> dict[str, Any]:
     """The analysis written as pages beside the study's file."""
     from squeezefilm.study.report.page import write_overview
 
-    with StudyStore.open(path) as store:
-        analyses = analyze_study(store)
-    page = write_overview(analyses, path.with_suffix(".results"))
+    page = write_overview(analyze_study(path), path.with_suffix(".results"))
     return {"pages": [str(page.relative_to(path.parent.parent))]}

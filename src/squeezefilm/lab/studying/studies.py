@@ -301,15 +301,13 @@ class Studies:
     def respond(self, id: str, token: str, response: Response) -> dict[str, Any]:
         """Record an answer; it is on the disk when this returns."""
         sitting = self.sittings.get(id)
-        if sitting.session is None:
-            raise InputError("this sitting was not consented to yet")
-        store = self.store(sitting.study)
+        run, store = self.run(sitting), self.store(sitting.study)
         query = "SELECT max(presented_utc) AS begun FROM presentation WHERE trial = ?"
         [known] = store.rows(query, [token])
         if known["begun"] is not None:
             # When it began to play or was put in place; the page's own clock may be anything.
             response = dataclasses.replace(response, started_utc=known["begun"])
-        told = self.run(sitting).respond(token, response)
+        told = run.respond(token, response)
         self.by_hand.over(id)
         [row] = store.rows("SELECT phase FROM trial WHERE uuid = ?", [token])
         feedback = row["phase"] == "practice"

@@ -132,22 +132,6 @@ def orders(
     return tuple(planned_orders)
 
 
-def trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Trial, ...]:
-    """All trials of a participant in the order in which they are presented.
-
-    Args:
-        design: what is planned.
-        participant_number: from 0, in the order of enrolment; it chooses rows of the squares.
-        seed: of the study; the same for all its participants.
-
-    Raises:
-        InputError: a number or seed below 0.
-    """
-    si.require("participant_number", participant_number, at_least=0)
-    si.require("seed", seed, at_least=0)
-    return _trials(design, participant_number, seed)
-
-
 class _Planned(NamedTuple):
     """A trial before it is numbered; the answer of one without is what is right of its stimuli."""
 
@@ -161,7 +145,19 @@ class _Planned(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def _trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Trial, ...]:
+def trials(design: StudyDesign, participant_number: int, seed: int) -> tuple[Trial, ...]:
+    """All trials of a participant in the order in which they are presented.
+
+    Args:
+        design: what is planned.
+        participant_number: from 0, in the order of enrolment; it chooses rows of the squares.
+        seed: of the study; the same for all its participants.
+
+    Raises:
+        InputError: a number or seed below 0.
+    """
+    si.require("participant_number", participant_number, at_least=0)
+    si.require("seed", seed, at_least=0)
     found: list[Trial] = []
     names = design.answers
 

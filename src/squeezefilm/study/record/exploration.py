@@ -156,7 +156,6 @@ LONGEST_STEP: si.Second = 1.5 * PATH_PERIOD
 """Longest time between two samples of a path; a longer one is a lifted finger."""
 MEASURES = ("peak_speed_m_per_s", "time_in_touch_s", "passes", "along_x_share", "coverage")
 """Keys of `measures`, units in the names."""
-NO_MEASURES: dict[str, float | None] = dict.fromkeys(MEASURES)
 
 
 def measures(store: StudyStore, display: str, traces: list[str]) -> dict[str, float | None]:
@@ -174,7 +173,7 @@ def measures(store: StudyStore, display: str, traces: list[str]) -> dict[str, fl
             except (ConfigError, InputError):
                 continue
     if not found:
-        return dict(NO_MEASURES)
+        return dict.fromkeys(MEASURES)
     values = (
         max(motion.peak_speed for motion in found),
         sum(motion.touched for motion in found),

@@ -21,7 +21,7 @@ from typing import Any, Literal
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
 from squeezefilm.study.design.study_design import StudyDesign
-from squeezefilm.study.record.exploration import NO_MEASURES, measures
+from squeezefilm.study.record.exploration import measures
 from squeezefilm.study.record.store import StudyStore
 
 
@@ -139,7 +139,7 @@ def trial_table(store: StudyStore) -> list[dict[str, Cell]]:
         names = json.loads(row.pop("stimuli"))
         row["task"] = design.task
         traces = json.loads(row["traces"])
-        row |= measures(store, row["display"], traces) if traces else NO_MEASURES
+        row |= measures(store, row["display"], traces)
         row["traces"] = " ".join(traces)
         row["correct"] = None if row["correct"] is None else bool(row["correct"])
         row |= surface_columns(design, names, row, cells)
