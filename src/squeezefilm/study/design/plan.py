@@ -287,12 +287,15 @@ def _of_range(design: StudyDesign, observer: Observer) -> list[str]:
 
 
 def _of_display(design: StudyDesign, name: str) -> list[str]:
-    """The stimuli that ask for less friction than a display makes."""
+    """The stimuli, a series' farthest comparison too, that ask for less friction than a display
+    makes."""
     # It solves a plate, which a plan without it need not load.
     from squeezefilm.physics.chain.prediction import predict
 
     least = float(predict(load_display(name)).relative_friction)
-    lacking = [one for one in _presented(design) if not one.texture and one.low < least]
+    chosen = [design.comparison(series, series.highest) for series in design.adaptive]
+    every = [*design.stimuli, *(trial.stimulus for trial in design.catch), *chosen]
+    lacking = [surface for surface in every if not surface.texture and surface.low < least]
     if not lacking:
         return []
     asked = ", ".join(f"'{stimulus.name}' for {stimulus.low:.3g}" for stimulus in lacking)
@@ -300,9 +303,3 @@ def _of_display(design: StudyDesign, name: str) -> list[str]:
         f"'{name}' reaches a relative friction of {least:.3g} at its largest amplitude, and the "
         f"design asks it: {asked}; take shallower surfaces, or another display"
     ]
-
-
-def _presented(design: StudyDesign) -> list[Stimulus]:
-    """Every surface that may be presented, a series' farthest comparison too."""
-    chosen = [design.comparison(series, series.highest) for series in design.adaptive]
-    return [*design.stimuli, *(trial.stimulus for trial in design.catch), *chosen]

@@ -48,21 +48,16 @@ def named_ticks(axes: Axes, names: Sequence[str], longest: int = 14) -> None:
 @style.drawn
 def confusion(analysis: IdentificationAnalysis) -> Figure:
     """The confusion matrix in the paper's layout: rows gratings, columns simulated periods."""
+    from matplotlib.colors import LinearSegmentedColormap
+    from matplotlib.patches import Rectangle
+
     matrix = analysis.matrix
     figure = style.new_figure(
         f"{100 * analysis.proportion_correct:.3g} % of the answers are right; {_worst(matrix)}",
         f"{data_of(analysis)}; per cent of each column, trials in brackets",
         1.7 + 0.62 * len(matrix.answers),
     )
-    _draw_confusion(figure.subplots(), matrix)
-    return figure
-
-
-def _draw_confusion(axes: Axes, matrix: ConfusionMatrix) -> None:
-    from matplotlib.colors import LinearSegmentedColormap
-    from matplotlib.patches import Rectangle
-
-    percent = matrix.percent
+    axes, percent = figure.subplots(), matrix.percent
     shades = LinearSegmentedColormap.from_list("share", [style.PAPER, style.PLUS, "#6fb0d8"])
     axes.imshow(np.nan_to_num(percent), cmap=shades, vmin=0, vmax=100, aspect="auto")
     for (i, j), value in np.ndenumerate(percent):
@@ -77,6 +72,7 @@ def _draw_confusion(axes: Axes, matrix: ConfusionMatrix) -> None:
     axes.set_yticks(range(len(matrix.answers)), [style.plain(name, 16) for name in matrix.answers])
     axes.set(xlabel="simulated", ylabel="answered")
     style.bare(axes)
+    return figure
 
 
 def _worst(matrix: ConfusionMatrix) -> str:

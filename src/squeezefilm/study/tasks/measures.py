@@ -279,7 +279,7 @@ def _by_difference(main: Answers, level: float, seed: int, tell: Tell) -> Measur
         () if main.design.described.ranks else condition_findings(main, level, seed),
         tuple(notes),
         more_numbers(main, people.bias, level),
-        people.functions(level),
+        people.functions(persons),
         robust,
     )
 

@@ -84,13 +84,11 @@ class PeopleOnGrid:
             people.append(PersonEstimate(name, estimate, trials, bool(unbounded)))
         return people
 
-    def functions(self, level: si.Dimensionless) -> dict[str, PersonFunction]:
-        """Each person's threshold, bias and lapse rate, to be drawn."""
+    def functions(self, persons: list[PersonEstimate]) -> dict[str, PersonFunction]:
+        """Each person's threshold, bias and lapse rate, to be drawn; `persons` are `estimates`."""
         return {
-            estimate.person: PersonFunction(estimate.estimate.value, bias, lapse)
-            for estimate, bias, lapse in zip(
-                self.estimates(level), self.bias, self.lapse, strict=True
-            )
+            person.person: PersonFunction(person.estimate.value, bias, lapse)
+            for person, bias, lapse in zip(persons, self.bias, self.lapse, strict=True)
         }
 
 
