@@ -272,11 +272,10 @@ def require_matching(
 
 def require_amounts(
     task: StudyTask,
-    judged: str,
+    judged: Varied,
     stimuli: Sequence[Stimulus],
     amounts: Sequence[float],
     reference: str,
-    in_amounts: bool,
 ) -> None:
     """Refuse a task that compares amounts where a surface has none of what is judged (NaN): a
     shape has no period; and a reference that is not flat where one is detected against it."""
@@ -304,9 +303,8 @@ def require_amounts(
                 "would be right; change it, or `judged`",
                 quantity="stimuli",
             )
-        if math.isnan(amount) or (
-            amount <= 0 and (task.ranks or task.model is not None) and not in_amounts
-        ):
+        takes_logarithms = (task.ranks or task.model) and not task.compares_amounts(judged)
+        if math.isnan(amount) or (amount <= 0 and takes_logarithms):
             raise InputError(
                 f"stimulus '{stimulus.name}' ({stimulus.kind}) has no {judged}, which "
                 f'{task.name} asks about; judge another, like judged = "friction_depth", or take '

@@ -142,9 +142,7 @@ class StudyDesign:
             self.task, self.matched_with, self.exploring, self.stimuli, self.alternatives, names
         )
         amounts = [self.judged_value(stimulus) for stimulus in self.stimuli]
-        require_amounts(
-            self.described, self.judged, self.stimuli, amounts, self.reference, self.in_amounts
-        )
+        require_amounts(self.described, self.judged, self.stimuli, amounts, self.reference)
         require_comparison(
             self.described,
             self.reference,
