@@ -244,11 +244,6 @@ class Database:
         finally:
             self._open(new=False)
 
-    def require_alone(self) -> None:
-        """Refuse while any other connection has the file open. Raises `RecordError`."""
-        with self.closed_meanwhile():
-            require_alone(self.path)
-
 
 def same_folders(path: Path) -> list[Path]:
     """Other studies whose names differ in the suffix only: they share all folders with this."""

@@ -21,7 +21,7 @@ from pathlib import Path
 from squeezefilm.core.errors import InputError, RecordError
 from squeezefilm.core.hard_limits import TRACE_BYTES
 from squeezefilm.core.regular_file import opened
-from squeezefilm.study.record.database import is_study, same_folders
+from squeezefilm.study.record.database import is_study, require_alone, same_folders
 from squeezefilm.study.record.erasure import erase_file, require_plain
 from squeezefilm.study.record.exports import LIST, export_again, exported_folders, own_files
 from squeezefilm.study.record.schema import is_trace, require_identifier
@@ -122,7 +122,8 @@ def _surveyed(
     for _, folder in exported_folders(store):
         own_files(folder)
     sittings.require_erasable()
-    store.require_alone()
+    with store.closed_meanwhile():
+        require_alone(store.path)
     store.require_whole()
     backups, unfinished = _backup_files(store)
     identifiers = {pseudonym} | _identifiers(store, pseudonym)
