@@ -231,9 +231,8 @@ def _true_way(setup: PlaySetup, trace: Trace, truth: Path, offset: si.Second) ->
 
 
 def tile_summary(plan: PlayPlan) -> Mapping[str, Any] | None:
-    """Mapping of what the tile of a plan was made for; None without one or where it is unknown."""
-    tile = plan.tile
-    return None if tile is None or tile.made_for is None else tile.made_for.summary()
+    """Mapping of what the tile of a plan was made for; None without one."""
+    return None if plan.tile is None else plan.tile.made_for.summary()
 
 
 def _last(trace: Trace, kind: str) -> Mapping[str, Any]:

@@ -134,7 +134,7 @@ def play_setup(
     )
     tile = None
     if how.mode == "tile":
-        tile = tile_of(loop.program, device.way or _TILE_WAY, speed=p.speed, law=p.friction)
+        tile = tile_of(loop.program, device.way or _TILE_WAY, p.speed, p.friction)
     announce(make_tick, "real-time loop", 20)
     plan = PlayPlan(
         loop=loop,

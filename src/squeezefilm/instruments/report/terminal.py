@@ -116,7 +116,7 @@ def play_rows(result: PlayResult) -> list[tuple[str, str, str]]:
         ),
     ]
     rows.append(("Finger", "", session.setup.display.whose_finger))
-    if plan.tile is not None and plan.tile.made_for is not None:
+    if plan.tile is not None:
         rows.append(("Tile", f"{plan.tile.amplitude.size} places", plan.tile.made_for.sentence()))
     rows += _judged_rows("Record", session.by_record)
     if session.by_truth is not None:

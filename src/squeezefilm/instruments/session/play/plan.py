@@ -22,7 +22,6 @@ from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.rows import COLUMNS
-from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.render.fidelity.rendered_stroke import RelativeFriction
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel
 from squeezefilm.physics.render.program.layout import FASTEST
@@ -120,21 +119,20 @@ class TextureTile:
         origin, pitch: place of the first amplitude and from each to the next (m), whole µm.
         amplitude: there (m, zero-to-peak), shape (size,).
         made_for: the finger's speed for which friction became amplitude, and the error in friction
-            at half and double of it; None where no law was there to say.
+            at half and double of it.
     """
 
     origin: si.Metre
     pitch: si.Metre
     amplitude: si.MetreArray
-    made_for: MadeForSpeed | None
+    made_for: MadeForSpeed
 
 
 def tile_of(
     program: Program,
     way: tuple[si.Metre, si.Metre],
-    *,
-    speed: si.MetrePerSecond = EXPLORING_SPEED,
-    law: RelativeFriction | None = None,
+    speed: si.MetrePerSecond,
+    law: RelativeFriction,
 ) -> TextureTile:
     """A steady texture sampled into a device's tile, as finely as it holds it.
 
@@ -171,7 +169,7 @@ def tile_of(
         origin=origin * _MICROMETRE,
         pitch=pitch * _MICROMETRE,
         amplitude=amplitude,
-        made_for=None if law is None else MadeForSpeed.of(law, amplitude, speed),
+        made_for=MadeForSpeed.of(law, amplitude, speed),
     )
 
 

@@ -9,7 +9,8 @@ from squeezefilm.core.errors import InputError, UnreachableError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.device.machine.playing import Tile
 from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
-from squeezefilm.instruments.session.play.plan import tile_of
+from squeezefilm.instruments.session.play.plan import TextureTile, tile_of
+from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.texture.composition import Composable
@@ -29,13 +30,22 @@ from squeezefilm.physics.render.texture.shapes import (
 WAY = (0.0, 5e-3)
 
 
+def _law(amplitude: FloatArray, speed: FloatArray) -> FloatArray:
+    """Friction that a faster finger keeps more of; speeds may stand in rows."""
+    return np.asarray(np.exp(-amplitude / (1e-6 + 10e-6 * speed)))
+
+
+def _tile(program: Program, way: tuple[float, float]) -> TextureTile:
+    return tile_of(program, way, EXPLORING_SPEED, _law)
+
+
 def _program(texture: Composable) -> Program:
     return lower(texture, largest_amplitude=1e-6)
 
 
 def test_a_tile_holds_the_textures_own_amplitudes() -> None:
     sine = Amplitude(SineWave(4e-3), 0.0, 1e-6)
-    tile = tile_of(_program(sine), (-2e-3, 18e-3))
+    tile = _tile(_program(sine), (-2e-3, 18e-3))
     assert tile.pitch == pytest.approx(40e-6)
     x = tile.origin + tile.pitch * np.arange(tile.amplitude.size)
     np.testing.assert_allclose(tile.amplitude, sine(x, 0.0, 0.0, 0.0), atol=1e-18)
@@ -43,7 +53,7 @@ def test_a_tile_holds_the_textures_own_amplitudes() -> None:
 
 def test_a_device_reads_from_it_what_the_texture_wants() -> None:
     square = Amplitude(SquareWave(2e-3), 0.1e-6, 0.8e-6)
-    tile = tile_of(_program(square), (0.0, 10e-3))
+    tile = _tile(_program(square), (0.0, 10e-3))
     volts = tile.amplitude / 1e-8
     device = Tile(0, 20, volts.size, [round(v * 1e6) for v in volts])
     for x in range(0, 10_000, 20):
@@ -64,7 +74,7 @@ def test_a_device_reads_from_it_what_the_texture_wants() -> None:
 )
 def test_what_is_not_steady_along_x_is_refused(pattern: Pattern, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        tile_of(_program(Amplitude(pattern, 0.0, 1e-6)), WAY)
+        _tile(_program(Amplitude(pattern, 0.0, 1e-6)), WAY)
 
 
 @pytest.mark.parametrize(
@@ -72,7 +82,7 @@ def test_what_is_not_steady_along_x_is_refused(pattern: Pattern, words: str) -> 
 )
 def test_a_tile_covers_the_way_as_finely_as_it_can(way: tuple[float, float]) -> None:
     first, last = way
-    tile = tile_of(_program(Amplitude(SquareWave(2e-3), 0.0, 1e-6)), way)
+    tile = _tile(_program(Amplitude(SquareWave(2e-3), 0.0, 1e-6)), way)
     origin, pitch, size = tile.origin, tile.pitch, tile.amplitude.size
     for length in (origin, pitch):
         assert length * 1e6 == pytest.approx(round(length * 1e6))
@@ -87,12 +97,7 @@ def test_a_tile_covers_the_way_as_finely_as_it_can(way: tuple[float, float]) -> 
 @pytest.mark.parametrize("way", [(0.1, 0.0), (0.02, 0.02)])
 def test_a_way_to_nowhere_has_no_tile(way: tuple[float, float]) -> None:
     with pytest.raises(InputError, match="covers nothing"):
-        tile_of(_program(Amplitude(SquareWave(2e-3), 0.0, 1e-6)), way)
-
-
-def _law(amplitude: FloatArray, speed: FloatArray) -> FloatArray:
-    """Friction that a faster finger keeps more of; speeds may stand in rows."""
-    return np.asarray(np.exp(-amplitude / (1e-6 + 10e-6 * speed)))
+        _tile(_program(Amplitude(SquareWave(2e-3), 0.0, 1e-6)), way)
 
 
 def _inverse() -> FrictionInverse:
@@ -107,27 +112,25 @@ def test_a_tile_of_friction_is_made_for_one_speed_and_says_what_others_cost() ->
     program = lower(texture, inverse=_inverse())
     assert program.wanted_depends_on == {"x"}
     for speed in (0.04, 0.16):
-        tile = tile_of(program, WAY, speed=speed, law=_law)
+        tile = tile_of(program, WAY, speed, _law)
         places = tile.pitch * np.arange(tile.amplitude.size)
         met = _law(tile.amplitude, np.full(places.size, speed))
         np.testing.assert_allclose(met, texture(places, 0.0, speed, 0.0), atol=1e-3)
         made = tile.made_for
-        assert made is not None
         assert made.speed == speed
         least = np.max(tile.amplitude)
         for error, pace in ((made.error_at_half, speed / 2), (made.error_at_double, 2 * speed)):
             assert error == pytest.approx(float(_law(least, pace) - _law(least, speed)), rel=0.05)
-    assert tile_of(program, WAY).made_for is None
     with pytest.raises(InputError, match="speed"):
-        tile_of(program, WAY, speed=0.0)
+        tile_of(program, WAY, 0.0, _law)
 
 
 def test_a_texture_that_asks_for_the_speed_is_no_tile_even_where_friction_does_too() -> None:
     gated = RelativeFriction(SpeedGate(above=0.01), 0.5, 0.9)
     with pytest.raises(InputError, match="depend on speed,"):
-        tile_of(lower(gated, inverse=_inverse()), WAY)
+        _tile(lower(gated, inverse=_inverse()), WAY)
 
 
 def test_a_texture_out_of_reach_makes_no_tile() -> None:
     with pytest.raises(UnreachableError, match=r"at (50\d) of \1"):
-        tile_of(_program(Amplitude.constant(2e-6)), WAY)
+        _tile(_program(Amplitude.constant(2e-6)), WAY)
