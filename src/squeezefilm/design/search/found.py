@@ -147,22 +147,17 @@ class DesignSearch(Result):
         )
 
     @functools.cached_property
-    def screened_and_solved(self) -> tuple[tuple[Evaluated, Evaluated], ...]:
-        """The designs that were solved, each as it was screened and as solved."""
-        before = {
-            candidate.design: candidate for candidate in self.screened if not candidate.reason
-        }
-        return tuple(
-            (before[solution.design], solution)
-            for solution in self.solved
-            if not solution.reason and solution.design in before
-        )
-
-    @functools.cached_property
     def ranks(self) -> dict[str, si.Dimensionless]:
         """Spearman's rank correlation of screened and solved numbers over the solved designs, by
         objective, where there are ten or more."""
-        pairs = self.screened_and_solved
+        before = {
+            candidate.design: candidate for candidate in self.screened if not candidate.reason
+        }
+        pairs = [
+            (before[solution.design], solution)
+            for solution in self.solved
+            if not solution.reason and solution.design in before
+        ]
         if len(pairs) < 10:
             return {}
         names = self.requirements.objectives

@@ -167,26 +167,21 @@ _FEWEST = 8
 """Smallest number of points that tell of shares."""
 
 
-@dataclass(frozen=True)
-class Share:
-    """Shares of the variance: by itself, with all interactions, and their standard errors (0 where
-    the shares are exact for the points)."""
-
-    first: si.Dimensionless
-    total: si.Dimensionless
-    first_error: si.Dimensionless
-    total_error: si.Dimensionless
+Share = tuple[si.Dimensionless, si.Dimensionless]
+"""A share of the variance, and its standard error (0 where it is exact for the points)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Effects:
-    """Shares of what decides one answer: a share for each varied value, and for each pair the share
-    that only both together explain, with its error; `explained` is what the fit explains of points
-    left out (None where nothing was fitted: the whole grid)."""
+    """Shares of what decides one answer: of each varied value the share that it explains by itself
+    (`first`) and with all interactions (`total`), and of each pair what only both together explain;
+    `explained` is what the fit explains of points left out (None where nothing was fitted: the
+    whole grid)."""
 
     column: SweptColumn
-    shares: tuple[Share, ...]
-    pairs: dict[tuple[int, int], tuple[si.Dimensionless, si.Dimensionless]]
+    first: Sequence[Share]
+    total: Sequence[Share]
+    pairs: Mapping[tuple[int, int], Share]
     explained: si.Dimensionless | None
     points: int
 
@@ -243,8 +238,8 @@ def _of_grid(column: SweptColumn, grid: si.FloatArray) -> Effects:
         (i, j): (max(explained([i, j]) - first[i] - first[j], 0.0), 0.0)
         for i, j in itertools.combinations(range(count), 2)
     }
-    shares = tuple(Share(f, t, 0.0, 0.0) for f, t in zip(first, total, strict=True))
-    return Effects(column, shares, pairs, None, grid.size)
+    alone, whole = ([(share, 0.0) for share in shares] for shares in (first, total))
+    return Effects(column, alone, whole, pairs, None, grid.size)
 
 
 def _of_points(
@@ -274,16 +269,12 @@ def _of_points(
     for _ in range(_REDRAWN):
         rows = random.integers(len(y), size=len(y))
         again.append(_sums(_coefficients(matrix[rows], y[rows]), terms, len(varied)))
-    errors = [np.std([row[k] for row in again], axis=0) for k in range(3)]
-    shares = tuple(
-        Share(float(f), float(t), float(ef), float(et))
-        for f, t, ef, et in zip(own[0], own[1], errors[0], errors[1], strict=True)
+    first, total, both = (
+        list(zip(shares.tolist(), np.std(drawn, axis=0).tolist(), strict=True))
+        for shares, *drawn in zip(own, *again, strict=True)
     )
-    every = list(itertools.combinations(range(len(varied)), 2))
-    pairs = {
-        pair: (float(s), float(e)) for pair, s, e in zip(every, own[2], errors[2], strict=True)
-    }
-    return Effects(column, shares, pairs, max(1.0 - left, 0.0), len(y))
+    pairs = dict(zip(itertools.combinations(range(len(varied)), 2), both, strict=True))
+    return Effects(column, first, total, pairs, max(1.0 - left, 0.0), len(y))
 
 
 def _functions(value: SweptColumn, there: NDArray[np.bool_]) -> list[si.FloatArray]:

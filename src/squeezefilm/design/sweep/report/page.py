@@ -121,8 +121,8 @@ def _decisive(effects: Sequence[Effects], varied: Sequence[SweptColumn]) -> str:
     out = ""
     for effect in effects:
         rows = [
-            (name_of(v), _share(s.first, s.first_error), _share(s.total, s.total_error))
-            for v, s in zip(varied, effect.shares, strict=True)
+            (name_of(value), _share(*first), _share(*total))
+            for value, first, total in zip(varied, effect.first, effect.total, strict=True)
         ]
         pairs = [
             (f"{name_of(varied[i])} and {name_of(varied[j])}", _share(share, error))
