@@ -132,9 +132,7 @@ class DesignStore:
         if read["asked"] != self._made_hash:
             return
         design = Design(int(read["shape"]), tuple(read["values"].items()))
-        intervals = {
-            key: (float(low), float(high)) for key, (low, high) in read["intervals"].items()
-        }
+        intervals = {key: (low, high) for key, (low, high) in read["intervals"].items()}
         self._made[design] = Made(
             read["draws"], read["kept"], read["broken"], intervals, read["effects"], read["failed"]
         )

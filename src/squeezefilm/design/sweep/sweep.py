@@ -272,7 +272,9 @@ class SweepRun:
         """The table of the answers there are."""
         plan, answers = self.plan, self._found.values()
         reasons = tuple(self._reason(k) for k in range(len(plan.points)))
-        follows = self._followed()
+        follows: tuple[FollowedMode, ...] = ()
+        if any(number.verb == FOLLOWED for number in plan.asked):
+            follows = followed_modes(self._modes(), plan.shape, plan.begin())
         columns: list[SweptColumn] = []
         for number in plan.asked:
             columns += self._columns(number, follows)
@@ -327,11 +329,6 @@ class SweepRun:
         """Modes that the points tell of; None where they say nothing."""
         answers = [self._found.get((k, FOLLOWED)) for k in range(len(self.plan.points))]
         return [None if answer is None else answer.modes for answer in answers]
-
-    def _followed(self) -> tuple[FollowedMode, ...]:
-        if all(number.verb != FOLLOWED for number in self.plan.asked):
-            return ()
-        return followed_modes(self._modes(), self.plan.shape, self.plan.begin())
 
 
 def sweep_until_stopped(asked: SweepRequest) -> tuple[Sweep, str]:

@@ -48,10 +48,12 @@ def sweep_figure(sweep: Sweep) -> Figure:
     panels = _panels(drawn) if beside is None else [[column] for column in drawn]
     panels = panels[:MOST_PANELS]
     over = " and ".join(name_of(axis) for axis in axes)
+    lost = len(sweep.reasons) - sweep.answered
+    crosses = f"; crosses: {lost} of {len(sweep.reasons)} points without an answer" if lost else ""
     figure = style.new_figure(
         f"{', '.join(map(_panel_name, panels))} over {over}",
         f"that of {' and '.join(_SAID.get(verb, verb) for verb in sweep.verbs)}; display "
-        f"{style.plain(sweep.title)}{_left_out(sweep)}",
+        f"{style.plain(sweep.title)}{crosses}",
         1.2 + 3.2 * -(-len(panels) // 2) if len(panels) > 1 else 4.6,
     )
     columns = 1 if len(panels) == 1 else 2
@@ -64,11 +66,6 @@ def sweep_figure(sweep: Sweep) -> Figure:
     for spare in grid.ravel()[len(panels) :]:
         spare.set_axis_off()
     return figure
-
-
-def _left_out(sweep: Sweep) -> str:
-    lost = len(sweep.reasons) - sweep.answered
-    return f"; crosses: {lost} of {len(sweep.reasons)} points without an answer" if lost else ""
 
 
 def _nothing_to_draw(sweep: Sweep, axes: int, drawn: int) -> str:
