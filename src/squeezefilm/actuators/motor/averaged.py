@@ -25,6 +25,8 @@ from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeErro
 
 SAMPLES: int = 256
 """Instants of a period: thrust within some 0.5 % of the preload times µ."""
+# Far beyond any slider, and far below what overflows.
+SliderSpeed = Annotated[si.MetrePerSecond, si.AtLeast(-1000.0), si.AtMost(1000.0)]
 # Two modes beat: so many periods of the first are averaged.
 _BEATING = 64
 _SCAN = 40
@@ -83,8 +85,8 @@ def averaged(
     motor: AssembledMotor,
     working: Working,
     *,
-    speed: si.MetrePerSecond = 0.0,
-    sideways_speed: si.MetrePerSecond = 0.0,
+    speed: SliderSpeed = 0.0,
+    sideways_speed: SliderSpeed = 0.0,
     samples: Annotated[int, si.AtLeast(16), si.AtMost(100_000)] = SAMPLES,
 ) -> AveragedMotor:
     """A motor in the mean over a period, its slider at a speed along and sideways (m/s).
