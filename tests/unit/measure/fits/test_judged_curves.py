@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,9 +14,10 @@ from scipy.stats import chi2
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.circuit.impedance import _wider
 from squeezefilm.measure.fits.estimate import Estimate
-from squeezefilm.measure.fits.friction.friction_curve import _adequacy, relative_friction
+from squeezefilm.measure.fits.friction.friction_curve import _adequacy
 from squeezefilm.measure.fits.friction.friction_scores import SHAPES, ModelScore
 from squeezefilm.measure.recordings.kinds import FrictionCurve, FrictionDecays, Told
+from squeezefilm.physics.chain.friction import where_known
 from squeezefilm.physics.chain.pad_law import MODEL_KINDS
 from squeezefilm.physics.display import load_display
 from squeezefilm.validation import populations
@@ -70,10 +72,9 @@ def test_a_law_that_refuses_one_amplitude_answers_at_the_others() -> None:
     def curve(amplitude: np.ndarray) -> np.ndarray:
         return np.array([at(value) for value in amplitude])
 
-    law: Any = SimpleNamespace(at=at, curve=curve)
     known = CURVE.vibration_amplitude
-    np.testing.assert_allclose(relative_friction(law, known), [1.0, 0.9, np.nan])
-    np.testing.assert_allclose(relative_friction(law, known[:2]), [1.0, 0.9])
+    np.testing.assert_allclose(where_known(curve, known), [1.0, 0.9, np.nan])
+    np.testing.assert_allclose(where_known(curve, known[:2]), [1.0, 0.9])
 
 
 def test_models_decays_are_fitted_like_the_published_ones(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -81,7 +82,7 @@ def test_models_decays_are_fitted_like_the_published_ones(monkeypatch: pytest.Mo
 
     def predicted(display: object, **given: Any) -> Any:
         asked.update(given)
-        law = SimpleNamespace(by=lambda model: model)
+        law = SimpleNamespace(by=lambda model: SimpleNamespace(curve=partial(curve, model)))
         return SimpleNamespace(law=law, normal_force=0.4, speed=0.025)
 
     hardly, silent, *_, last = MODEL_KINDS
@@ -92,7 +93,6 @@ def test_models_decays_are_fitted_like_the_published_ones(monkeypatch: pytest.Mo
         return SHAPES["gaussian"](amplitude / (60e-6 if model == hardly else 1.5e-6))
 
     monkeypatch.setattr(populations, "predict", predicted)
-    monkeypatch.setattr(populations, "relative_friction", curve)
     decays = FrictionDecays(
         np.linspace(1e-6, 2e-6, 101), np.full(101, 0.5), 35e3, told=Told(name="people")
     )
