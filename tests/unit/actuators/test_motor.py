@@ -374,7 +374,7 @@ def test_what_cannot_work_is_refused_in_words() -> None:
     there = motor()
     with pytest.raises(OutOfRangeError, match=r"900 V; from 333\.3 V on .* loses its poling"):
         averaged(there, Working(voltage=900.0))
-    with pytest.raises(InputError, match="speed = .* at most 1 km/s"):
+    with pytest.raises(InputError, match=r"speed = .* at most 1 km/s"):
         averaged(there, WORKING, speed=1e308)
     with pytest.raises(
         OutOfRangeError, match=r"over a nodal line .* between a node and an antinode"
