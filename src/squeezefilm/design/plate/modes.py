@@ -5,6 +5,7 @@ A rectangular plate is screened (see `screened_modes`), a disc or a stator solve
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -154,7 +155,13 @@ def _of_plate(
     label = plate.working_label
     working, forbidden = label_name(label), forbidden_by(plate, label)
     own = chosen(listed, working, wanted_frequency(plate))
-    solved = None if forbidden is not None else _solved(plate, band, tell)
+    solved = None
+    if forbidden is None:
+        tell("the display's own mode")
+        # It may have no solution in three dimensions, or lie outside of the band.
+        with contextlib.suppress(SqueezefilmError):
+            mode = working_mode(plate)
+            solved = mode if band[0] <= mode.resonance_frequency <= band[1] else None
     if solved is not None:
         listed, own = with_working_mode(listed, solved, plate)
     return ModeList(
@@ -170,19 +177,6 @@ def _of_plate(
         screened=tuple(driven),
         solved=solved,
     )
-
-
-def _solved(
-    plate: RectangularPlate, band: tuple[si.Hertz, si.Hertz], tell: SayProgress
-) -> WorkingMode | None:
-    """The plate's working mode where it lies in a band; None where it does not, or has no solution
-    in three dimensions."""
-    tell("the display's own mode")
-    try:
-        mode = working_mode(plate)
-    except SqueezefilmError:
-        return None
-    return mode if band[0] <= mode.resonance_frequency <= band[1] else None
 
 
 def _rules(plate: RectangularPlate) -> tuple[str, ...]:

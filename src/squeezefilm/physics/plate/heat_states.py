@@ -300,11 +300,10 @@ class WarmCase:
         if math.isinf(self.cooling.fixed):
             return (self._state(frequency, 0.0),)
         top = 10.0
-        while top < HOTTEST and self._surplus(frequency, top) > 0:
-            top = min(1.5 * top, HOTTEST)
         # Beyond where the plate cools at its resonance no other drive keeps it warm.
-        while top < HOTTEST and self._surplus(0.0, top) > 0:
-            top = min(1.5 * top, HOTTEST)
+        for drive in (frequency, 0.0):
+            while top < HOTTEST and self._surplus(drive, top) > 0:
+                top = min(1.5 * top, HOTTEST)
         grid = top * np.linspace(0, 1, _GRID) ** 2
         left = surpluses(grid, frequency, self.driven, self.drifts, self.cooling)
         stable = np.flatnonzero((left[:-1] > 0) & (left[1:] <= 0))

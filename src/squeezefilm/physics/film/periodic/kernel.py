@@ -21,6 +21,7 @@ from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.film.gas import NO_SLIP, CompiledGas
 from squeezefilm.physics.film.mobility import slip_factor
 from squeezefilm.physics.film.periodic.lanes import (
+    LANES,
     add,
     broadcast,
     div,
@@ -66,7 +67,7 @@ def _invert(S: si.FloatArray, start: int, nt: int, ntp: int, mask: si.FloatArray
     for k in range(nt):
         pivot_row = start + k * ntp
         pivot = broadcast(1.0 / item(S, pivot_row + k))
-        for v in range(0, ntp, 8):
+        for v in range(0, ntp, LANES):
             keep = load(mask, k * ntp + v)
             one = sub(broadcast(1.0), keep)
             store(S, pivot_row + v, mul(fma(load(S, pivot_row + v), keep, one), pivot))
@@ -74,7 +75,7 @@ def _invert(S: si.FloatArray, start: int, nt: int, ntp: int, mask: si.FloatArray
             if i != k:
                 at = start + i * ntp
                 factor = broadcast(-item(S, at + k))
-                for v in range(0, ntp, 8):
+                for v in range(0, ntp, LANES):
                     keep = load(mask, k * ntp + v)
                     row = load(S, pivot_row + v)
                     store(S, at + v, fma(factor, row, mul(load(S, at + v), keep)))
@@ -92,7 +93,7 @@ def _apply(
     accumulate: bool,
 ) -> None:
     """work[to:] (+)= Sᵀ work[at:] for the block at `start`, which holds the transposed inverse."""
-    for v in range(0, ntp, 8):
+    for v in range(0, ntp, LANES):
         result = load(work, to + v) if accumulate else broadcast(0.0)
         for j in range(nt):
             result = fma(broadcast(item(work, at + j)), load(S, start + j * ntp + v), result)
@@ -119,7 +120,7 @@ def _coefficients(
     if n == 1.0:
         half = broadcast(0.5)
         for i in range(m):
-            for v in range(0, ntp, 8):
+            for v in range(0, ntp, LANES):
                 at = i * ntp + v
                 dev = load(p, at)
                 P = add(one, dev)
@@ -141,7 +142,7 @@ def _coefficients(
     if law == NO_SLIP:
         for f in range(m + 1):
             geometry = broadcast(item(g, f))
-            for v in range(0, ntp, 8):
+            for v in range(0, ntp, LANES):
                 c = mul(geometry, load(Hf3, f * stride + v))
                 left, right = (f - 1) * ntp + v, f * ntp + v
                 a = load(work, Phi + left) if f > 0 else zero
@@ -156,7 +157,7 @@ def _coefficients(
         return
     for f in range(m + 1):
         if g[f] == 0.0:
-            for v in range(0, ntp, 8):
+            for v in range(0, ntp, LANES):
                 store(work, F + f * ntp + v, zero)
                 store(work, cl + f * ntp + v, zero)
                 store(work, cr + f * ntp + v, zero)
@@ -220,7 +221,7 @@ def newton(
             ol, cl = cl, ol
         for i in range(m):
             amount = broadcast(-item(vol, i))
-            for v in range(0, ntp, 8):
+            for v in range(0, ntp, LANES):
                 at = i * ntp + v
                 change = broadcast(0.0)
                 for j in range(nt):
@@ -235,7 +236,7 @@ def newton(
                 for j in range(nt):
                     row = start + j * ntp
                     diagonal = broadcast(item(work, ol + at + ntp + j) + item(work, our + at + j))
-                    for v in range(0, ntp, 8):
+                    for v in range(0, ntp, LANES):
                         unit = sub(broadcast(1.0), load(mask, j * ntp + v))
                         entry = mul(broadcast(item(vol, i)), load(DT, j * ntp + v))
                         entry = fma(diagonal, unit, entry)
@@ -247,19 +248,19 @@ def newton(
                         store(S, row + v, entry)
                 _invert(S, start, nt, ntp, mask)
             if i > 0:
-                for v in range(0, ntp, 8):
+                for v in range(0, ntp, LANES):
                     carried = mul(load(work, ol + at + v), load(work, z + at - ntp + v))
                     store(work, r + at + v, add(load(work, r + at + v), carried))
             _apply(S, start, nt, ntp, work, r + at, z + at, False)
         for i in range(m - 2, -1, -1):
             at = i * ntp
-            for v in range(0, ntp, 8):
+            for v in range(0, ntp, LANES):
                 carried = mul(load(work, our + at + ntp + v), load(work, z + at + ntp + v))
                 store(work, r + at + v, carried)
             _apply(S, i * block, nt, ntp, work, r + at, z + at, True)
         size_of_step = broadcast(0.0)
         for i in range(m):
-            for v in range(0, ntp, 8):
+            for v in range(0, ntp, LANES):
                 at = i * ntp + v
                 held = mul(load(H, i * stride + v), load(work, R + at))
                 size_of_step = largest_magnitude(size_of_step, div(load(work, z + at), held))
@@ -277,14 +278,14 @@ def newton(
         over = 0.0
         for i in range(m):
             part = broadcast(0.0)
-            for v in range(0, ntp, 8):
+            for v in range(0, ntp, LANES):
                 at = i * ntp + v
                 rise = mul(broadcast(scale), div(load(work, z + at), load(H, i * stride + v)))
                 if n == 1.0:
                     store(p, at, add(rise, load(p, at)))
                 else:
                     store(work, R + at, add(rise, load(work, R + at)))
-                    for t in range(at, at + 8):
+                    for t in range(at, at + LANES):
                         p[t] = math.exp(n * math.log(work[R + t])) - 1.0
                 part = fma(load(weight, i * stride + v), load(p, at), part)
             over += share[i] * total(part)

@@ -104,7 +104,7 @@ def collocation_times(nt: int) -> PeriodTimes:
 
     `nt` is odd: an even number leaves the highest harmonic without a derivative.
     """
-    ntp = 8 * ((nt + 7) // 8)
+    ntp = 8 * ((nt + 7) // 8)  # `lanes.LANES` at once: what names it loads numba
     DT = np.zeros((nt, ntp))
     DT[:, :nt] = derivative(nt).T
     return PeriodTimes(nt, ntp, DT.ravel(), 1.0 - np.eye(nt, ntp).ravel())

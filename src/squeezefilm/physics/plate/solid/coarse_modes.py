@@ -124,7 +124,6 @@ class CoarseModes:
     """Modes of one class on the coarse mesh, with what is taken from it; the `factor` is let go
     once they are refined."""
 
-    parity: Symmetry
     solved: PlateModel
     values: si.FloatArray
     vectors: si.FloatArray
@@ -189,7 +188,7 @@ def coarse_modes(
         values, vectors = pairs.values, pairs.vectors
     x, y, surface = surface_shapes(solved, vectors)
     labels = [label_of(top, x, y) for top in surface]
-    return CoarseModes(parity, solved, values, vectors, labels, factor)
+    return CoarseModes(solved, values, vectors, labels, factor)
 
 
 def chosen_modes(

@@ -107,7 +107,7 @@ def refined_modes(
     )
     for level, resolution in enumerate(LEVELS):
         try:
-            finer = plate_model(plate, highest, resolution, coarse.parity)
+            finer = plate_model(plate, highest, resolution, solved.parity)
         except InputError:
             if level == 0:
                 raise

@@ -192,7 +192,11 @@ def harmonic_response(
     driven electrode.
     """
     f = np.atleast_1d(np.asarray(frequencies, dtype=float))
-    _require_answered(plate, f)
+    si.require("frequencies", f, si.Unit("Hz"), above=0)
+    if f.size > 1 and np.any(np.diff(f) <= 0):
+        raise InputError("frequencies must ascend", quantity="frequencies")
+    if not np.any(drive_signs(plate)):
+        raise InputError("no electrode is driven; give at least one patch electrode = 'driven'")
     band = float(f[0]), float(f[-1])
     if steps is None:
         # With the modes about its middle known few are left that the space must find.
@@ -222,15 +226,6 @@ def harmonic_response(
     )
 
 
-def _require_answered(plate: RectangularPlate, frequencies: si.HertzArray) -> None:
-    """Refuse frequencies or a drive to which there is no response."""
-    si.require("frequencies", frequencies, si.Unit("Hz"), above=0)
-    if frequencies.size > 1 and np.any(np.diff(frequencies) <= 0):
-        raise InputError("frequencies must ascend", quantity="frequencies")
-    if not np.any(drive_signs(plate)):
-        raise InputError("no electrode is driven; give at least one patch electrode = 'driven'")
-
-
 def _reduced(
     plate: RectangularPlate,
     band: tuple[float, float],
@@ -245,7 +240,7 @@ def _reduced(
     for number, parity in enumerate(classes):
         if progress is not None:
             progress(f"response, {told_of(parity)}", number / len(classes))
-        known = next((piece for piece in solved if piece.found.parity == parity), None)
+        known = next((piece for piece in solved if piece.solved.parity == parity), None)
         if known is None or known.factor is None:
             part = reduced_class(plate, parity, band, steps, [], resolution)
         else:

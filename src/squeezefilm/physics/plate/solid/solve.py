@@ -157,7 +157,7 @@ def _modes_of(piece: RefinedModes, signs: si.FloatArray) -> PlateModes:
         errors=error,
         mesh_frequencies=np.sqrt(piece.values) / (2 * np.pi),
         labels=tuple(label_of(top, x, y) for top in surface),
-        parities=(piece.found.parity,) * frequency.size,
+        parities=(solved.parity,) * frequency.size,
         x=x,
         y=y,
         shapes=turn[:, None, None] * surface[..., 2],
@@ -284,7 +284,7 @@ def solved_classes(
         for number, (coarse, index) in enumerate(zip(found, chosen, strict=True)):
             if index.size:
                 share = _COARSE + (1 - _COARSE) * number / len(found)
-                tell(f"fine mesh, {told_of(coarse.parity)}", share)
+                tell(f"fine mesh, {told_of(coarse.solved.parity)}", share)
                 pieces.append(
                     refined_modes(
                         plate,

@@ -12,7 +12,7 @@ from squeezefilm.physics.plate.solid.coarse_modes import CoarseModes, chosen_mod
 def made(labels: list[Any], frequencies: list[float]) -> CoarseModes:
     values = (2 * np.pi * np.array(frequencies)) ** 2
     unused: Any = None
-    return CoarseModes(("S", "S"), unused, values, np.zeros((0, len(labels))), labels, unused)
+    return CoarseModes(unused, values, np.zeros((0, len(labels))), labels, unused)
 
 
 def test_the_mode_with_the_wanted_lines_is_refined_in_its_class_only() -> None:

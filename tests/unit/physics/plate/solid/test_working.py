@@ -49,7 +49,7 @@ def test_the_modes_are_those_of_solve_modes(mode: SolidMode) -> None:
     other = solve_modes(PLATE, mode=LABEL, tolerance=3e-3)
     assert np.array_equal(modes.frequencies, other.frequencies)
     assert np.array_equal(modes.frequencies, mode.modes.frequencies)
-    assert [piece.found.parity for piece in pieces] == list(dict.fromkeys(modes.parities))
+    assert [piece.solved.parity for piece in pieces] == list(dict.fromkeys(modes.parities))
 
 
 def test_within_the_band_nothing_is_solved_again(
