@@ -62,13 +62,6 @@ class FilmBatch:
     residual: si.DimensionlessArray
     cells: si.IntArray
     times: si.IntArray
-    squeeze_number: si.DimensionlessArray
-    excursion_ratio: si.DimensionlessArray
-    polytropic_exponent: si.DimensionlessArray
-    knudsen_number: si.DimensionlessArray
-    slip: str
-    shape: str
-    tolerance: float
     model: str
     status: str
 
@@ -128,7 +121,6 @@ def solve_films(
     u = compiled()
     films = Films(sigma, eps, n, kn, law, STRIP if shape == "strip" else DISC)
     solved = solve_all(films, tolerance, workers or os.cpu_count() or 1, progress, force=force)
-    films = films._replace(excursion_ratio=signed)
     batch = _as_batch(films, solved, inputs[0].shape, slip, tolerance)
     if not solved.met.all():
         at = int(np.flatnonzero(~solved.met)[0])
@@ -168,16 +160,9 @@ def _as_batch(
         "residual": out[:, u.RESIDUAL],
         "cells": np.where(out[:, u.ITERATIONS] > 0, CELLS[solved.cells], 0),
         "times": np.where(out[:, u.ITERATIONS] > 0, TIMES[solved.times], 0),
-        "squeeze_number": films.squeeze_number,
-        "excursion_ratio": films.excursion_ratio,
-        "polytropic_exponent": films.polytropic_exponent,
-        "knudsen_number": films.knudsen_number,
     }
     return FilmBatch(
         **{name: np.array(column.reshape(form)) for name, column in columns.items()},
-        slip=slip,
-        shape=films.planform,
-        tolerance=tolerance,
         model=f"periodic compressible Reynolds film, {films.planform}, {law}",
         status=(
             f"all {total} films within {tolerance:g} of their over-pressure"
