@@ -107,7 +107,7 @@ NOT_CALLED = {
     physics.film.periodic.nested.steadied physics.film.periodic.small.fill_small
     physics.film.periodic.small.reduced physics.film.periodic.solution.extrapolated_field
     physics.film.periodic.small.small_pressure
-    physics.film.periodic.small.small_film physics.film.periodic.varying.gap_rows
+    physics.film.periodic.small.small_film physics.film.periodic.grids.gap_rows
     physics.film.periodic.profile.interpolant
     physics.film.periodic.small.flow_factor physics.film.periodic.small.SmallVibration
     physics.film.planar.balance.Balance physics.film.planar.balance.Balancer

@@ -10,12 +10,12 @@ from squeezefilm.core.errors import ConvergenceError
 from squeezefilm.physics.film.gas import CompiledGas
 from squeezefilm.physics.film.periodic.batch import solve_films
 from squeezefilm.physics.film.periodic.film import solve_profile, solve_uniform
+from squeezefilm.physics.film.periodic.grids import Mesh, fill_cells, room_for
 from squeezefilm.physics.film.periodic.kernel import newton
 from squeezefilm.physics.film.periodic.profile import flexural_profile
 from squeezefilm.physics.film.periodic.resolution import (
-    Cells,
+    FilmResolution,
     GridGap,
-    SolveRoom,
     collocation_times,
 )
 
@@ -121,8 +121,9 @@ def edge_layer_constant(eps, n, tolerance):
 @pytest.mark.parametrize("n", [1.0, 1.4])
 def test_infinite_squeeze_number_and_edge_layer_law(eps, n):
     limit = trapped_load(eps, n)
-    batch = solve_films([500.0, 2000.0, 1e4], eps, polytropic_exponent=n, tolerance=1e-7)
-    law = limit - edge_layer_constant(eps, n, 1e-5 / 80.0) / np.sqrt(batch.squeeze_number)
+    sigma = np.array([500.0, 2000.0, 1e4])
+    batch = solve_films(sigma, eps, polytropic_exponent=n, tolerance=1e-7)
+    law = limit - edge_layer_constant(eps, n, 1e-5 / 80.0) / np.sqrt(sigma)
     np.testing.assert_allclose(batch.mean_load, law, atol=2e-6 * limit)
 
 
@@ -182,16 +183,15 @@ def load_on_one_grid(cells, nt, sigma=30.0, eps=0.6):
     from squeezefilm.physics.film.periodic import uniform as u
 
     times = collocation_times(nt)
-    ntp = times.row
-    H, H3, w, c, s = (np.empty(ntp) for _ in range(5))
-    g, vol, share = np.zeros(cells + 1), np.zeros(cells + 1), np.zeros(cells + 1)
-    u.gap(nt, ntp, eps, H, H3)
-    u.load_weights(nt, ntp, eps, 1.0, H, w, c, s)
-    u.grid(cells, 0, sigma, 0.3, g, vol, share)
-    p, work = np.zeros(cells * ntp), np.zeros(10 * (cells + 1) * ntp)
+    H, w, c, s = (np.empty(times.row) for _ in range(4))
+    mesh = Mesh(np.empty(2 * cells + 1), np.empty(2 * cells + 1), True)
+    u.fill_times(times, eps, 1.0, H, w, c, s)
+    u.fill_mesh(0, 0.3, mesh)
+    room = room_for(FilmResolution(cells, times, times))
+    fill_cells(cells, sigma, mesh, room.cells)
     over, _, left = newton(
-        cells, times, Cells(g, vol, share), GridGap(H, H, H3, w, 0), CompiledGas(1.0, 0.0, 0), p,
-        SolveRoom(work, np.empty(cells * nt * ntp)), 1e-12,
+        cells, times, room.cells, GridGap(H, w, 0, 0), CompiledGas(1.0, 0.0, 0), room.p,
+        room.newton, 1e-12,
     )  # fmt: skip
     assert left < 1e-9
     return over

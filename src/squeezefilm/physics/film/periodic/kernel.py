@@ -38,7 +38,7 @@ from squeezefilm.physics.film.periodic.lanes import (
 from squeezefilm.physics.film.periodic.resolution import Cells, GridGap, PeriodTimes, SolveRoom
 
 # `reassoc` and `contract` only: NaN must stay visible, so `nnan` and `ninf` stay off.
-_FAST = {"reassoc", "contract", "arcp", "nsz"}
+FAST = {"reassoc", "contract", "arcp", "nsz"}
 
 MOST_STEPS = 60
 
@@ -56,7 +56,7 @@ class _Flow(NamedTuple):
     right: int
 
 
-@compiled(fastmath=_FAST, error_model="numpy")
+@compiled(fastmath=FAST, error_model="numpy")
 def _invert(S: si.FloatArray, start: int, nt: int, ntp: int, mask: si.FloatArray) -> None:
     """Invert the nt × nt block at `start` in place, without pivoting.
 
@@ -81,7 +81,7 @@ def _invert(S: si.FloatArray, start: int, nt: int, ntp: int, mask: si.FloatArray
                     store(S, at + v, fma(factor, row, mul(load(S, at + v), keep)))
 
 
-@compiled(fastmath=_FAST, error_model="numpy")
+@compiled(fastmath=FAST, error_model="numpy")
 def _apply(
     S: si.FloatArray,
     start: int,
@@ -100,7 +100,13 @@ def _apply(
         store(work, to + v, result)
 
 
-@compiled(fastmath=_FAST, error_model="numpy")
+@compiled(inline="always")
+def _face(gap: GridGap, f: int) -> int:
+    """Where the gap's row of a face begins; that of a wall, where nothing flows, is any."""
+    return max(gap.first + f * gap.stride - gap.stride // 2, 0)
+
+
+@compiled(fastmath=FAST, error_model="numpy")
 def _coefficients(
     m: int,
     ntp: int,
@@ -113,7 +119,7 @@ def _coefficients(
 ) -> None:
     """Fill the rows of `flow` at p: the slope of the flux F is −∂F/∂M left of the face, ∂F/∂M right
     of it."""
-    H, Hf, Hf3, _, stride = gap
+    H, _, first, stride = gap
     n, kn, law = gas
     R, q, Phi, F, cl, cr = flow
     one = broadcast(1.0)
@@ -125,7 +131,7 @@ def _coefficients(
                 dev = load(p, at)
                 P = add(one, dev)
                 store(work, R + at, P)
-                store(work, q + at, div(one, load(H, i * stride + v)))
+                store(work, q + at, div(one, load(H, first + i * stride + v)))
                 # p + p²/2 keeps its digits where p is small; (P² − 1)/2 would not.
                 store(work, Phi + at, mul(dev, fma(half, dev, one)))
     else:
@@ -136,14 +142,15 @@ def _coefficients(
                 P = 1.0 + p[at]
                 root = math.exp(inverse * math.log(P))
                 work[R + at] = root
-                work[q + at] = n * P / (H[i * stride + t] * root)
+                work[q + at] = n * P / (H[first + i * stride + t] * root)
                 work[Phi + at] = share * (P * root - 1.0)
     zero = broadcast(0.0)
     if law == NO_SLIP:
         for f in range(m + 1):
-            geometry = broadcast(item(g, f))
+            geometry, face = broadcast(item(g, f)), _face(gap, f)
             for v in range(0, ntp, LANES):
-                c = mul(geometry, load(Hf3, f * stride + v))
+                h = load(H, face + v)
+                c = mul(geometry, mul(mul(h, h), h))
                 left, right = (f - 1) * ntp + v, f * ntp + v
                 a = load(work, Phi + left) if f > 0 else zero
                 b = load(work, Phi + right) if f < m else zero
@@ -162,6 +169,7 @@ def _coefficients(
                 store(work, cl + f * ntp + v, zero)
                 store(work, cr + f * ntp + v, zero)
             continue
+        face = _face(gap, f)
         for t in range(ntp):
             left, right = (f - 1) * ntp + t, f * ntp + t
             Phi_a, R_a, q_a, p_a = 0.0, 1.0, 1.0, 0.0
@@ -171,9 +179,10 @@ def _coefficients(
             if f < m:
                 Phi_b, R_b, q_b, p_b = work[Phi + right], work[R + right], work[q + right], p[right]
             mean = 1.0 + 0.5 * (p_a + p_b)
-            local = kn / (mean * Hf[f * stride + t])
+            h = H[face + t]
+            local = kn / (mean * h)
             factor, slope = slip_factor(law, local)
-            c = g[f] * Hf3[f * stride + t]
+            c = g[f] * (h * h * h)
             rise = Phi_b - Phi_a
             bend = -0.5 * slope * local / mean * rise
             work[F + right] = c * factor * rise
@@ -181,7 +190,7 @@ def _coefficients(
             work[cr + right] = c * (factor * R_b + bend) * q_b
 
 
-@compiled(fastmath=_FAST, error_model="numpy")
+@compiled(fastmath=FAST, error_model="numpy")
 def newton(
     m: int,
     times: PeriodTimes,
@@ -199,7 +208,7 @@ def newton(
     """
     nt, ntp, DT, mask = times
     g, vol, share = cells
-    H, _, _, weight, stride = gap
+    H, weight, first, stride = gap
     n = gas.polytropic_exponent
     work, S = room
     size = m * ntp
@@ -225,7 +234,7 @@ def newton(
                 at = i * ntp + v
                 change = broadcast(0.0)
                 for j in range(nt):
-                    M = broadcast(item(work, R + i * ntp + j) * item(H, i * stride + j))
+                    M = broadcast(item(work, R + i * ntp + j) * item(H, first + i * stride + j))
                     change = fma(M, load(DT, j * ntp + v), change)
                 flow = sub(load(work, F + at + ntp), load(work, F + at))
                 store(work, r + at, fma(amount, change, flow))
@@ -262,7 +271,7 @@ def newton(
         for i in range(m):
             for v in range(0, ntp, LANES):
                 at = i * ntp + v
-                held = mul(load(H, i * stride + v), load(work, R + at))
+                held = mul(load(H, first + i * stride + v), load(work, R + at))
                 size_of_step = largest_magnitude(size_of_step, div(load(work, z + at), held))
         largest = peak(size_of_step)
         # A full step must leave gas everywhere; 0.8 keeps a margin for the logarithm.
@@ -272,7 +281,9 @@ def newton(
             for i in range(m):
                 for t in range(nt):
                     at = i * ntp + t
-                    deepest = max(deepest, -work[z + at] / (H[i * stride + t] * work[R + at]))
+                    deepest = max(
+                        deepest, -work[z + at] / (H[first + i * stride + t] * work[R + at])
+                    )
             if deepest > 0.8:
                 scale = 0.8 / deepest
         over = 0.0
@@ -280,14 +291,16 @@ def newton(
             part = broadcast(0.0)
             for v in range(0, ntp, LANES):
                 at = i * ntp + v
-                rise = mul(broadcast(scale), div(load(work, z + at), load(H, i * stride + v)))
+                rise = mul(
+                    broadcast(scale), div(load(work, z + at), load(H, first + i * stride + v))
+                )
                 if n == 1.0:
                     store(p, at, add(rise, load(p, at)))
                 else:
                     store(work, R + at, add(rise, load(work, R + at)))
                     for t in range(at, at + LANES):
                         p[t] = math.exp(n * math.log(work[R + t])) - 1.0
-                part = fma(load(weight, i * stride + v), load(p, at), part)
+                part = fma(load(weight, (first + i * stride) // 2 + v), load(p, at), part)
             over += share[i] * total(part)
         if not abs(over) < 1e300:
             return math.nan, iteration, math.inf
@@ -308,47 +321,3 @@ def newton(
         fresh = scale < 1.0 or largest > 0.03 or (largest > 0.1 * before and not fresh)
         before = largest
     return over, iteration, remaining
-
-
-@compiled(fastmath=_FAST, error_model="numpy")
-def prolong(coarse: si.FloatArray, m: int, ntp: int, closed: bool, fine: si.FloatArray) -> None:
-    """Carry m rows of p to the grid with twice the cells, by cubics.
-
-    With `closed`, node 0 is a plane of symmetry and the edge follows node m − 1 (2m rows come
-    out); without, both neighbours outside are edges (2m + 1 rows come out).
-    """
-    for t in range(ntp):
-        if closed:
-            for i in range(m):
-                a = coarse[i * ntp + t]
-                b = coarse[(i + 1) * ntp + t] if i + 1 < m else 0.0
-                fine[2 * i * ntp + t] = a
-                before = coarse[abs(i - 1) * ntp + t] if m > 1 or i > 1 else 0.0
-                if i + 1 < m:
-                    after = coarse[(i + 2) * ntp + t] if i + 2 < m else 0.0
-                    middle = (9.0 * (a + b) - before - after) / 16.0
-                elif m == 1:
-                    middle = 0.75 * a
-                else:
-                    second = coarse[abs(i - 2) * ntp + t]
-                    middle = (15.0 * a - 5.0 * before + second) / 16.0
-                fine[(2 * i + 1) * ntp + t] = middle
-        else:
-            for i in range(m + 1):
-                a = coarse[(i - 1) * ntp + t] if i > 0 else 0.0
-                b = coarse[i * ntp + t] if i < m else 0.0
-                if i > 0:
-                    fine[(2 * i - 1) * ntp + t] = a
-                if m < 3:
-                    middle = 0.5 * (a + b)
-                elif i == 0:
-                    middle = (15.0 * b - 5.0 * coarse[ntp + t] + coarse[2 * ntp + t]) / 16.0
-                elif i == m:
-                    before = coarse[(m - 2) * ntp + t]
-                    second = coarse[(m - 3) * ntp + t]
-                    middle = (15.0 * a - 5.0 * before + second) / 16.0
-                else:
-                    before = coarse[(i - 2) * ntp + t] if i > 1 else 0.0
-                    after = coarse[(i + 1) * ntp + t] if i + 1 < m else 0.0
-                    middle = (9.0 * (a + b) - before - after) / 16.0
-                fine[2 * i * ntp + t] = middle

@@ -62,27 +62,18 @@ by more times on the coarsest grid that is the error in time: where the gap vari
 grid sees less of it."""
 
 
-def levels_of(
-    keep: si.FloatArray,
-    resolution: FilmResolution,
-    closed: bool,
-    share: Callable[[int], si.FloatArray],
-) -> list[Level]:
-    """The levels that a compiled solve left in `keep`; `share(m)` of the nodes of m cells."""
-    cells, levels, start = resolution.cells, [], 0
-    quarter = cells // 4
-    times = resolution.times
-    for m, now in (
-        (quarter, resolution.check),
-        (quarter, times),
-        (cells // 2, times),
-        (cells, times),
-    ):
-        unknowns = m if closed else m - 1
-        p = keep[start : start + unknowns * now.row].reshape(unknowns, now.row)[:, : now.number]
-        start += unknowns * now.row
-        edge = np.zeros((1, now.number))
-        levels.append(Level(np.vstack([p, edge] if closed else [edge, p, edge]), share(m)))
+def levels_of(keep: si.FloatArray, resolution: FilmResolution, closed: bool) -> list[Level]:
+    """The levels that a compiled solve left in `keep`."""
+    cells, times, levels, start = resolution.cells, resolution.times, [], 0
+    grids = ((cells // 4, resolution.check), *((cells // part, times) for part in (4, 2, 1)))
+    for m, now in grids:
+        # At an edge p is 0, whatever its share.
+        p, share, first = np.zeros((m + 1, now.number)), np.zeros(m + 1), 0 if closed else 1
+        size = (m - first) * now.row
+        p[first:m] = keep[start : start + size].reshape(-1, now.row)[:, : now.number]
+        share[first:m] = keep[start + size : start + size + m - first]
+        start += size + m - first
+        levels.append(Level(p, share))
     return levels
 
 

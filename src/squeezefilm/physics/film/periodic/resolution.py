@@ -58,13 +58,13 @@ class Cells(NamedTuple):
 
 
 class GridGap(NamedTuple):
-    """The gap at nodes and faces, its cube there, and the weights of p in the mean load; rows of
-    times with `stride` from one node to the next, 0 where the gap does not depend on position."""
+    """The gap at the nodes and faces of the finest grid, one after the other, and the weights of p
+    in the mean load at its nodes: rows of times. The gap's row at a grid's first node begins at
+    `first`, that at the next `stride` further on: 0 where the gap does not depend on position."""
 
-    node: si.FloatArray
-    face: si.FloatArray
-    face_cubed: si.FloatArray
+    gap: si.FloatArray
     weight: si.FloatArray
+    first: int
     stride: int
 
 

@@ -1,9 +1,4 @@
-"""The compiled solve of a film whose gap is the same everywhere: strip and disc, one or many.
-
-Three grids with N/4, N/2 and N cells, each started from the one before, give the over-pressure
-with its h² error removed and the size of what is left; the coarsest grid solved again with more
-times gives the error of the time discretisation.
-"""
+"""The compiled solve of films whose gap is the same everywhere: strip and disc, one or many."""
 
 from __future__ import annotations
 
@@ -14,16 +9,14 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.physics.film.gas import CompiledGas
-from squeezefilm.physics.film.periodic.kernel import newton, prolong
-from squeezefilm.physics.film.periodic.resolution import (
-    STRIP,
-    Cells,
-    FilmResolution,
-    Films,
-    GridGap,
-    PeriodTimes,
-    SolveRoom,
+from squeezefilm.physics.film.periodic.grids import (
+    GapRows,
+    Mesh,
+    kept_size,
+    room_for,
+    solve_nested,
 )
+from squeezefilm.physics.film.periodic.resolution import STRIP, FilmResolution, Films, PeriodTimes
 
 # Columns of a result row.
 OVER, ERROR, STIFFNESS, DAMPING, ITERATIONS, RESIDUAL, SPACE, TIME, COARSE, MIDDLE, FINE, CHECK = (
@@ -44,10 +37,9 @@ def edge_grading(sigma: float, eps: float) -> float:
     return 0.44 * local / (local + 10.0)
 
 
-@compiled(error_model="numpy")
-def load_weights(
-    nt: int,
-    ntp: int,
+@compiled(error_model="numpy", forceinline=True)
+def fill_times(
+    times: PeriodTimes,
     eps: float,
     n: float,
     H: si.FloatArray,
@@ -55,11 +47,13 @@ def load_weights(
     c: si.FloatArray,
     s: si.FloatArray,
 ) -> None:
-    """Weights of p at the nt times for the mean force and its first harmonic.
+    """H = 1 + ε cos T at the times, 1 in the padding, and the weights of p there for the mean force
+    and its first harmonic, 0 in it.
 
     Ψ = P Hⁿ is nearly constant in time, P is not. So the trigonometric interpolant of Ψ − Hⁿ is
     integrated against H^-n exactly, through the Fourier coefficients of H^-n.
     """
+    nt = times.number
     most = nt // 2
     a = np.zeros(most + 3)
     if n == 1.0:
@@ -82,12 +76,11 @@ def load_weights(
             for k in range(most + 3):
                 a[k] += value * now
                 before, now = now, turn * now - before
-    for t in range(ntp):
-        w[t] = 0.0
-        c[t] = 0.0
-        s[t] = 0.0
+    H[:] = 1.0
+    w[:], c[:], s[:] = 0.0, 0.0, 0.0
     for t in range(nt):
         angle = 2.0 * math.pi * t / nt
+        H[t] = 1.0 + eps * math.cos(angle)
         turn = 2.0 * math.cos(angle)
         before, now = 1.0, math.cos(angle)
         mean, even, odd = a[0], 2.0 * a[1], 0.0
@@ -104,49 +97,20 @@ def load_weights(
         s[t] = odd / nt * power
 
 
-@compiled(error_model="numpy")
-def grid(
-    m: int,
-    shape: int,
-    sigma: float,
-    a: float,
-    g: si.FloatArray,
-    vol: si.FloatArray,
-    share: si.FloatArray,
-) -> None:
-    """Face conductances, σ × volumes and shares of the area for m cells between centre and edge.
+@compiled(error_model="numpy", forceinline=True)
+def fill_mesh(shape: int, a: float, mesh: Mesh) -> None:
+    """Fill the grid from centre to edge, graded by a.
 
-    The map is odd in ξ about the centre and the same for every m, so that the error of the
-    solution is a series in even powers of 1/m, which the extrapolation needs.
+    The map is odd in ξ about the centre and the same for every number of cells, so that the error
+    of the solution is a series in even powers of it, which the extrapolation needs.
     """
-    step = 1.0 / m
+    count = len(mesh.slope)
     length = 0.5 if shape == STRIP else 1.0
-    g[0] = 0.0
-    for i in range(m):
+    step = 1.0 / (count - 1)
+    for i in range(count):
         x = i * step
-        slope = length * (1.0 + a - 3.0 * a * x * x)
-        h = (i + 0.5) * step
-        face_slope = length * (1.0 + a - 3.0 * a * h * h)
-        volume = step * slope
-        conductance = 1.0 / (step * face_slope)
-        if shape == STRIP:
-            if i == 0:
-                volume *= 0.5
-        else:
-            radius = h * (1.0 + a * (1.0 - h * h))
-            conductance *= radius
-            volume = volume * x * (1.0 + a * (1.0 - x * x)) if i > 0 else 0.5 * radius * radius
-        g[i + 1] = conductance
-        vol[i] = sigma * volume
-        share[i] = 2.0 * volume
-
-
-@compiled(error_model="numpy")
-def gap(nt: int, ntp: int, eps: float, H: si.FloatArray, H3: si.FloatArray) -> None:
-    """H = 1 + ε cos T at the nt times, and its cube; 1 in the padding."""
-    for t in range(ntp):
-        H[t] = 1.0 + eps * math.cos(2.0 * math.pi * t / nt) if t < nt else 1.0
-        H3[t] = H[t] * H[t] * H[t]
+        mesh.slope[i] = length * (1.0 + a - 3.0 * a * x * x)
+        mesh.width[i] = 1.0 if shape == STRIP else x * (1.0 + a * (1.0 - x * x))
 
 
 @compiled(error_model="numpy")
@@ -191,6 +155,33 @@ def rounding(sigma: float, n: float, over: float) -> float:
     return 4e-18 * sigma + 1e-13 * abs(over) + (0.0 if n == 1.0 else 4e-17)
 
 
+@compiled(error_model="numpy", forceinline=True)
+def judge(
+    over: si.FloatArray,
+    sigma: float,
+    local: float,
+    n: float,
+    depth: float,
+    cells: int,
+    shape: int,
+    margin: float,
+    out: si.FloatArray,
+) -> None:
+    """Fill a result row, which has its residual, with the over-pressure and its error.
+
+    `over` is as by `solve_nested`, `local` σ of the gas as it flows, `depth` the largest relative
+    excursion, `cells` those from the centre to an edge, `margin` what the error in time is of what
+    more times change.
+    """
+    check, coarse, middle, fine = over[0], over[1], over[2], over[3]
+    best = fine + (fine - middle) / 3.0 if not math.isnan(check) else math.nan
+    out[OVER], out[CHECK], out[COARSE], out[MIDDLE], out[FINE] = best, check, coarse, middle, fine
+    out[SPACE] = space_error(coarse, middle, fine, local, depth, cells, shape)
+    out[TIME] = margin * abs(check - (coarse if cells > 4 else middle))
+    lost = out[RESIDUAL] * abs(best) + rounding(sigma, n, best)
+    out[ERROR] = out[SPACE] + out[TIME] + lost
+
+
 @compiled(error_model="numpy")
 def solve_rows(
     start: int,
@@ -203,108 +194,66 @@ def solve_rows(
 ) -> None:
     """Fill rows start:stop of `out` for the films of those rows, all with the same resolution.
 
-    The number of cells is a multiple of 4. NaN marks a film that did not converge. `keep`, if
-    not empty, receives p of the last film: on the coarsest grid with the times that check, then
-    on the three grids, one after the other.
+    NaN marks a film that did not converge. `keep`, if not empty, receives what `solve_nested` keeps
+    of the last film.
     """
     sigma, eps, n, kn, law, shape = films
     cells, times, fuller = resolution
-    nt, ntp = times.number, times.row
-    wide = max(ntp, fuller.row)
-    rows = cells + 1
-    H, H3 = np.empty(wide), np.empty(wide)
-    w, c, s = np.empty(wide), np.empty(wide), np.empty(wide)
-    g, vol, share = np.empty(rows), np.empty(rows), np.empty(rows)
-    p, other = np.empty(rows * wide), np.empty(rows * wide)
-    blocks = max(cells * nt * ntp, max(cells // 4, 2) * fuller.number * fuller.row)
-    room = SolveRoom(np.zeros(10 * rows * wide), np.empty(blocks))
-    nodes, gaps = Cells(g, vol, share), GridGap(H, H, H3, w, 0)
-    close = 0.03 * tolerance
-    # Over-pressure and first harmonic, of the three grids and of the check.
+    room = room_for(resolution)
+    mesh = Mesh(np.empty(2 * cells + 1), np.empty(2 * cells + 1), True)
+    # Rows of the gap and of the weights for the mean, for cos T and for sin T.
+    size, more = times.row, fuller.row
+    H, w, c, s = np.empty(size), np.empty(size), np.empty(size), np.empty(size)
+    H2, w2, c2, s2 = np.empty(more), np.empty(more), np.empty(more), np.empty(more)
+    at_times, at_checks = GapRows(H, w, 0), GapRows(H2, w2, 0)
+    kept = keep if keep.size > 0 else np.empty(kept_size(resolution))
+    # Over-pressure and first harmonic, of the check and of the three grids.
     level, harmonic = np.empty(4), np.empty(4, dtype=np.complex128)
-    coarsest = cells // 4
-    # A single node does not see how the time error varies over the film.
-    checked = max(coarsest, 2)
     for case in range(start, stop):
         sig, e, poly, rare = sigma[case], eps[case], n[case], kn[case]
         # A disc of radius R films like a strip about 1.5 R wide.
         wide_sigma = sig if shape == STRIP else 2.25 * sig
-        a = edge_grading(wide_sigma, e)
+        fill_mesh(shape, edge_grading(wide_sigma, e), mesh)
+        fill_times(times, e, poly, H, w, c, s)
+        fill_times(fuller, e, poly, H2, w2, c2, s2)
         gas = CompiledGas(poly, rare, law)
-        gap(fuller.number, fuller.row, e, H, H3)
-        load_weights(fuller.number, fuller.row, e, poly, H, w, c, s)
-        grid(checked, shape, sig, a, g, vol, share)
-        p[: checked * fuller.row] = 0.0
-        check, its, left = newton(checked, fuller, nodes, gaps, gas, p, room, close)
-        level[3] = check
-        harmonic[3] = _first_harmonic(checked, fuller, share, c, s, p)
-        kept = 0
-        if keep.size > 0:
-            kept = checked * fuller.row
-            keep[:kept] = p[:kept]
-        gap(nt, ntp, e, H, H3)
-        load_weights(nt, ntp, e, poly, H, w, c, s)
-        p[: coarsest * ntp] = 0.0
-        grid(coarsest, shape, sig, a, g, vol, share)
-        m = coarsest
-        for stage in range(3):
-            if stage > 0:
-                prolong(p, m, ntp, True, other)
-                p, other = other, p
-                m *= 2
-                grid(m, shape, sig, a, g, vol, share)
-            over, more, remains = newton(m, times, nodes, gaps, gas, p, room, close)
-            its += more
-            left = max(left, remains)
-            level[stage] = over
-            harmonic[stage] = _first_harmonic(m, times, share, c, s, p)
-            if math.isnan(over):
-                break
-            if keep.size > 0:
-                keep[kept : kept + m * ntp] = p[: m * ntp]
-                kept += m * ntp
-        out[case, ITERATIONS] = its
-        out[case, RESIDUAL] = left
-        if math.isnan(over) or math.isnan(check):
-            out[case, OVER] = math.nan
-            out[case, ERROR] = math.nan
-            continue
-        L1, L2, L3 = level[0], level[1], level[2]
-        best = L3 + (L3 - L2) / 3.0
-        out[case, COARSE], out[case, MIDDLE], out[case, FINE] = L1, L2, L3
-        out[case, CHECK] = check
-        out[case, OVER] = best
+        row = out[case]
+        row[ITERATIONS], row[RESIDUAL] = solve_nested(
+            sig, gas, mesh, at_times, at_checks, resolution, tolerance, room, level, kept
+        )
         local = wide_sigma / (poly * (1.0 + 6.0 * rare))
-        same = 0 if checked == coarsest else 1
-        out[case, SPACE] = space_error(L1, L2, L3, local, e, cells, shape)
-        out[case, TIME] = 2.0 * abs(check - level[same])
-        lost = left * abs(best) + rounding(sig, poly, best)
-        out[case, ERROR] = out[case, SPACE] + out[case, TIME] + lost
+        judge(level, sig, local, poly, e, cells, shape, 2.0, row)
+        if math.isnan(row[OVER]):
+            continue
+        m = max(cells // 4, 2)
+        harmonic[0] = _first_harmonic(m, fuller, c2, s2, kept, 0)
+        at, m = m * (fuller.row + 1), cells // 4
+        for grid in range(1, 4):
+            harmonic[grid] = _first_harmonic(m, times, c, s, kept, at)
+            at, m = at + m * (times.row + 1), 2 * m
         # p = Re[F e^{iT}] with F = −(fk + i fd) ε.
-        F1, F2, F3 = harmonic[0], harmonic[1], harmonic[2]
+        F0, F1, F2, F3 = harmonic[0], harmonic[1], harmonic[2], harmonic[3]
         force = -(F3 + (F3 - F2) / 3.0) / e
-        out[case, STIFFNESS], out[case, DAMPING] = force.real, force.imag
-        out[case, FORCE_SPACE] = space_error(F1, F2, F3, local, e, cells, shape) / e
-        out[case, FORCE_TIME] = 2.0 * abs(harmonic[3] - harmonic[same]) / e
-        out[case, FORCE_ERROR] = out[case, FORCE_SPACE] + out[case, FORCE_TIME] + lost / e
+        row[STIFFNESS], row[DAMPING] = force.real, force.imag
+        row[FORCE_SPACE] = space_error(F1, F2, F3, local, e, cells, shape) / e
+        row[FORCE_TIME] = 2.0 * abs(F0 - (F1 if cells > 4 else F2)) / e
+        lost = row[RESIDUAL] * abs(row[OVER]) + rounding(sig, poly, row[OVER])
+        row[FORCE_ERROR] = row[FORCE_SPACE] + row[FORCE_TIME] + lost / e
 
 
-@compiled(error_model="numpy")
+@compiled(error_model="numpy", forceinline=True)
 def _first_harmonic(
-    m: int,
-    times: PeriodTimes,
-    share: si.FloatArray,
-    c: si.FloatArray,
-    s: si.FloatArray,
-    p: si.FloatArray,
+    m: int, times: PeriodTimes, c: si.FloatArray, s: si.FloatArray, kept: si.FloatArray, at: int
 ) -> complex:
-    """F of the area mean Re[F e^{iT}] of p: `c` weighs cos T, `s` weighs sin T, which is −Im F."""
-    real, imag = 0.0, 0.0
+    """F of the area mean Re[F e^{iT}] of p on m nodes, kept from `at` on: `c` weighs cos T, `s`
+    weighs sin T, which is −Im F."""
+    real, imag, shares = 0.0, 0.0, at + m * times.row
     for i in range(m):
         even, odd = 0.0, 0.0
         for t in range(times.number):
-            even += c[t] * p[i * times.row + t]
-            odd += s[t] * p[i * times.row + t]
-        real += share[i] * even
-        imag += share[i] * odd
+            p = kept[at + i * times.row + t]
+            even += c[t] * p
+            odd += s[t] * p
+        real += kept[shares + i] * even
+        imag += kept[shares + i] * odd
     return complex(real, -imag)

@@ -7,8 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.physics.film.periodic.kernel import MOST_STEPS, prolong
-from squeezefilm.physics.film.periodic.resolution import DISC, STRIP, Films, resolution_of
+from squeezefilm.physics.film.periodic.grids import Mesh, fill_cells, kept_size, prolong
+from squeezefilm.physics.film.periodic.kernel import MOST_STEPS
+from squeezefilm.physics.film.periodic.resolution import (
+    DISC,
+    STRIP,
+    Cells,
+    Films,
+    collocation_times,
+    resolution_of,
+)
 from squeezefilm.physics.film.periodic.uniform import (
     CHECK,
     COARSE,
@@ -27,9 +35,8 @@ from squeezefilm.physics.film.periodic.uniform import (
     STIFFNESS,
     TIME,
     edge_grading,
-    gap,
-    grid,
-    load_weights,
+    fill_mesh,
+    fill_times,
     rounding,
     solve_rows,
     space_error,
@@ -46,13 +53,12 @@ def test_the_grading_grows_with_the_layers_sharpness() -> None:
 
 @pytest.mark.parametrize("n", [1.0, 1.4, 5 / 3])
 @pytest.mark.parametrize("eps", [0.0, 0.4, 0.9])
-@pytest.mark.parametrize(("nt", "ntp"), [(5, 8), (9, 16)])
+@pytest.mark.parametrize("nt", [5, 9])
 def test_weights_in_time_integrate_what_is_nearly_constant_exactly(
-    nt: int, ntp: int, eps: float, n: float
+    nt: int, eps: float, n: float
 ) -> None:
-    H, H3, w, c, s = (np.full(ntp, np.nan) for _ in range(5))
-    gap(nt, ntp, eps, H, H3)
-    load_weights(nt, ntp, eps, n, H, w, c, s)
+    H, w, c, s = (np.full(8 if nt == 5 else 16, np.nan) for _ in range(4))
+    fill_times(collocation_times(nt), eps, n, H, w, c, s)
     times, fine = 2 * np.pi * np.arange(nt) / nt, 2 * np.pi * np.arange(2000) / 2000
     for seed in range(3):
         even, odd = np.random.default_rng(seed).standard_normal((2, nt // 2 + 1))
@@ -71,13 +77,20 @@ def test_weights_in_time_integrate_what_is_nearly_constant_exactly(
         assert np.all(one[nt:] == 0.0)
     assert np.all(H[nt:] == 1.0)
     assert H[:nt] == pytest.approx(1 + eps * np.cos(times))
-    assert pytest.approx(H**3) == H3
+
+
+def grid(m: int, shape: int, sigma: float, a: float) -> Cells:
+    """The cells of a grid of m, which is a coarser one of what it is taken from."""
+    mesh = Mesh(np.empty(4 * m + 1), np.empty(4 * m + 1), True)
+    fill_mesh(shape, a, mesh)
+    cells = Cells(np.empty(m + 1), np.empty(m), np.empty(m))
+    assert fill_cells(m, sigma, mesh, cells) == m
+    return cells
 
 
 def sums(m: int, shape: int, a: float) -> tuple[float, float, np.ndarray]:
     """The mean of 1 − (2x)⁴ (1 − r⁴ on the disc), σ × the half width or area, fluxes of x²."""
-    g, vol, share = np.empty(m + 1), np.empty(m), np.empty(m)
-    grid(m, shape, 7.0, a, g, vol, share)
+    g, vol, share = grid(m, shape, 7.0, a)
     xi = np.arange(m + 1) / m
     place = (0.5 if shape == STRIP else 1.0) * xi * (1 + a * (1 - xi**2))
     assert g[0] == 0.0
@@ -107,12 +120,11 @@ def test_a_grids_shares_and_faces_are_those_of_the_film_to_second_order(
 
 
 def test_a_discs_middle_cell_is_a_small_disc_and_volumes_go_with_the_squeeze_number() -> None:
-    g, vol, share = np.empty(5), np.empty(4), np.empty(4)
-    grid(4, DISC, 3.0, 0.2, g, vol, share)
+    _, vol, share = grid(4, DISC, 3.0, 0.2)
     radius = 0.125 * (1 + 0.2 * (1 - 0.125**2))
     assert share[0] == pytest.approx(radius**2)
     assert vol == pytest.approx(1.5 * share)
-    grid(4, STRIP, 3.0, 0.2, g, vol, share)
+    _, vol, share = grid(4, STRIP, 3.0, 0.2)
     # Half a cell of 1/4 at the middle, where the map has the slope (1 + a)/2.
     assert share[0] == pytest.approx(0.125 * 1.2)
     assert vol == pytest.approx(1.5 * share)
@@ -154,18 +166,17 @@ def test_rounding_is_of_the_solve_the_value_and_a_pressure_not_kept_by_its_exces
 def answers(
     cells: int, shape: int, *, n: float = 1.0, kn: float = 0.0, tolerance: float = 1e-11
 ) -> tuple[np.ndarray, Any, np.ndarray]:
+    """The row of answers, the resolution, and what is kept of the three grids."""
     resolution = resolution_of(cells, 9)
-    row = resolution.times.row
     films = Films(*(np.array([v]) for v in (20.0, 0.5, n, kn)), 1 if kn else 0, shape)
-    check = max(cells // 4, 2) * resolution.check.row
-    size = check + (cells // 4 + cells // 2 + cells) * row
-    out, keep = np.full((1, COLUMNS), np.nan), np.full(size, np.nan)
+    check = max(cells // 4, 2) * (resolution.check.row + 1)
+    out, keep = np.full((1, COLUMNS), np.nan), np.full(kept_size(resolution), np.nan)
     solve_rows(0, 1, films, resolution, tolerance, out, keep)
     bare = np.full((1, COLUMNS), np.nan)
     solve_rows(0, 1, films, resolution, tolerance, bare, np.empty(0))
     assert bare == pytest.approx(out, abs=0, nan_ok=True)
     assert np.all(np.isfinite(keep))
-    return out[0], resolution, keep[check:].reshape(-1, row)
+    return out[0], resolution, keep[check:]
 
 
 @pytest.mark.parametrize("shape", [STRIP, DISC])
@@ -193,20 +204,14 @@ def test_a_row_of_answers_is_what_its_grids_say(
     assert row[ITERATIONS] == int(row[ITERATIONS])
     # After those of the check, the pressures kept are those of the three grids.
     nt, ntp = resolution.times.number, resolution.times.row
-    H, H3, w, c, s = (np.empty(ntp) for _ in range(5))
-    gap(nt, ntp, 0.5, H, H3)
-    load_weights(nt, ntp, 0.5, n, H, w, c, s)
+    H, w, c, s = (np.empty(ntp) for _ in range(4))
+    fill_times(resolution.times, 0.5, n, H, w, c, s)
     found = []
-    quarter, half = cells // 4, cells // 2
-    for m, p in (
-        (quarter, keep[:quarter]),
-        (half, keep[quarter : quarter + half]),
-        (cells, keep[quarter + half :]),
-    ):
-        g, vol, share = np.empty(m + 1), np.empty(m), np.empty(m)
+    for m in (cells // 4, cells // 2, cells):
+        p, share, keep = np.split(keep, [m * ntp, m * (ntp + 1)])
         a = edge_grading(20.0 * (1.0 if shape == STRIP else 2.25), 0.5)
-        grid(m, shape, 20.0, a, g, vol, share)
-        found.append([share @ p[:, :nt] @ one[:nt] for one in (w, c, s)])
+        assert share == pytest.approx(grid(m, shape, 20.0, a).share, rel=1e-12)
+        found.append([share @ p.reshape(m, ntp)[:, :nt] @ one[:nt] for one in (w, c, s)])
     coarse, middle, fine = np.array(found)
     assert coarse[0] == pytest.approx(row[COARSE], rel=1e-7)
     assert (middle[0], fine[0]) == pytest.approx((row[MIDDLE], row[FINE]), rel=1e-7)

@@ -11,6 +11,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.physics.film.gas import CompiledGas
+from squeezefilm.physics.film.periodic.grids import Mesh, gap_rows, room_for, solve_nested
+from squeezefilm.physics.film.periodic.nested import levels_of
 from squeezefilm.physics.film.periodic.resolution import STRIP, FilmResolution, collocation_times
 from squeezefilm.physics.film.periodic.uniform import (
     CHECK,
@@ -24,10 +26,10 @@ from squeezefilm.physics.film.periodic.uniform import (
     RESIDUAL,
     SPACE,
     TIME,
+    judge,
     rounding,
     space_error,
 )
-from squeezefilm.physics.film.periodic.varying import Profile, gap_rows, solve_varying
 
 # Two harmonics in time at five points.
 EVEN = np.array([[1.0, 1.1, 1.2, 1.3, 1.4], [0.3, 0.2, 0.1, 0.0, -0.2], [0.05] * 5])
@@ -69,8 +71,8 @@ def solved(
     gap: Any, closed: bool, sigma: float = 10.0, cells: int = 16, *, n: float = 1.0,
     kn: float = 0.0, law: int = 0, times: tuple[int, int] = (9, 13),
     stretch: float = 0.0, tolerance: float = 1e-3,
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
-    """The result row, the kept pressures and X on the finest grid; X = ½ ξ (1 + a (1 − ξ²)).
+) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:  # fmt: skip
+    """The result row, p on the three grids and X on the finest; X = ½ ξ (1 + a (1 − ξ²)).
 
     `gap(X)` gives the series: rows of cosine, then rows of sine coefficients.
     """
@@ -78,22 +80,21 @@ def solved(
     x = 0.5 * xi * (1 + stretch * (1 - xi**2))
     slope = 0.5 * (1 + stretch - 3 * stretch * xi**2)
     even, odd = (np.array(part) + 0.0 * x for part in gap(x))
-    out = np.full(COLUMNS, np.nan)
+    out, over = np.full(COLUMNS, np.nan), np.empty(4)
     resolution = FilmResolution(cells, *(collocation_times(one) for one in times))
-    ntp = resolution.times.row
-    first = cells // 4 if closed else cells // 4 - 1
-    check = first * resolution.check.row
-    others = sum(cells // part if closed else cells // part - 1 for part in (4, 2, 1))
-    keep = np.full(check + others * ntp, np.nan)
+    keep = np.full(cells // 4 * (7 * (resolution.times.row + 1) + resolution.check.row + 1), np.nan)
     rows = gap_rows(even - 1j * odd, n, resolution.times, 60)
     check_rows = gap_rows(even - 1j * odd, n, resolution.check, 70)
-    solve_varying.py_func(
-        sigma, CompiledGas(n, kn, law), Profile(slope, rows, check_rows, 0.5, closed), resolution,
-        tolerance, out, keep,
+    out[ITERATIONS], out[RESIDUAL] = solve_nested.py_func(  # type: ignore[attr-defined]
+        sigma, CompiledGas(n, kn, law), Mesh(slope, np.ones_like(slope), closed), rows, check_rows,
+        resolution, tolerance, room_for(resolution), over, keep,
     )  # fmt: skip
+    local = sigma / (n * (1 + 6 * kn))
+    judge(over, sigma, local, n, 0.5, cells if closed else cells // 2, STRIP, 3.0, out)
+    _, *levels = levels_of(keep, resolution, closed)
     if np.isfinite(out[OVER]):
-        assert np.all(np.isfinite(keep))
-    return out, keep[check:].reshape(-1, ntp), x
+        assert all(np.all(np.isfinite(p)) and np.all(np.isfinite(share)) for p, share in levels)
+    return out, [level.pressure for level in levels], x
 
 
 def uniform(x: np.ndarray) -> Any:
@@ -128,17 +129,15 @@ def test_half_of_a_symmetric_film_is_the_whole() -> None:
         half[[OVER, COARSE, MIDDLE, FINE, CHECK]], rel=1e-6
     )
     assert whole[[SPACE, TIME]] == pytest.approx(half[[SPACE, TIME]], rel=1e-3)
-    # Two, four and eight rows of half a film, 3, 7 and 15 of the whole: from the plane of symmetry.
-    assert p[:2, :9] == pytest.approx(q[1:3, :9], abs=1e-7)
-    assert p[2:6, :9] == pytest.approx(q[3 + 3 : 3 + 7, :9], abs=1e-7)
-    assert p[6:14, :9] == pytest.approx(q[10 + 7 : 10 + 15, :9], abs=1e-7)
-    assert p[2:6, :9] == pytest.approx(p[6:14:2, :9], abs=0.02)
+    # Half a film is from the plane of symmetry to the edge.
+    for m, part, all_of_it in zip((2, 4, 8), p, q, strict=True):
+        assert part == pytest.approx(all_of_it[m:], abs=1e-7)
+    assert p[1] == pytest.approx(p[2][::2], abs=0.02)
 
 
 def test_the_film_obeys_the_balance_of_its_cells() -> None:
     cells, sigma = 8, 20.0
-    out, keep, _ = solved(tilted, False, sigma, cells, tolerance=1e-9)
-    p = np.vstack([np.zeros((1, 9)), keep[1 + 3 : 1 + 3 + cells - 1, :9], np.zeros((1, 9))])
+    out, (_, _, p), _ = solved(tilted, False, sigma, cells, tolerance=1e-9)
     T = 2 * np.pi * np.arange(9) / 9
     X = np.linspace(-0.5, 0.5, 2 * cells + 1)[:, None]
     H = 1 + 0.3 * X + (0.3 + 0.1 * X) * np.cos(T) + 0.2 * X * np.sin(T)
