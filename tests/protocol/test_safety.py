@@ -22,7 +22,7 @@ from .adversary import LIMITS
         ({"insulation": " "}, "touch-side insulation"),
         ({"slew": 5999.0}, "at least 6000 V/s"),
         ({"continuous_voltage": 61.0}, "continuous_voltage"),
-        ({"highest_frequency": 1e3}, "below lowest_frequency"),
+        ({"highest_frequency": 1e3}, "which is lowest_frequency"),
         ({"voltage": float("nan")}, "voltage"),
         ({"voltage": 2001.0}, "at most 2 kV"),
         ({"duty": 1.01}, "duty"),

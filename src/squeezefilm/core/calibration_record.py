@@ -126,7 +126,7 @@ class JointSpread:
     amplitude_share_deviation: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] = 0.0
     friction_offset: Annotated[si.Dimensionless, si.AtLeast(-1), si.AtMost(1)] = 0.0
     friction_offset_deviation: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] = 0.0
-    draws: tuple[tuple[si.Dimensionless, ...], ...] = ()
+    draws: tuple[tuple[Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)], ...], ...] = ()
 
     def __post_init__(self) -> None:
         if len(self.draws) > _MOST_DRAWS or len(self.paths) > 100:
@@ -143,8 +143,6 @@ class JointSpread:
                 "differ; take the table as a calibration wrote it",
                 quantity="draws",
             )
-        if self.draws and not (np.min(self.draws) >= 0 and np.max(self.draws) <= 1):
-            raise InputError("a share in draws is not from 0 to 1", quantity="draws")
 
     def _common(
         self, paths: tuple[str, ...], points: si.FloatArray

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -75,12 +76,8 @@ class LogNormal:
     """A quantity whose logarithm is `Normal`: as people differ around a median. Raises `InputError`
     for a median or a standard deviation of the logarithm that is not above 0."""
 
-    median: float
-    log_deviation: float
-
-    def __post_init__(self) -> None:
-        si.require("median", self.median, above=0)
-        si.require("log_deviation", self.log_deviation, above=0)
+    median: Annotated[float, si.Above(0)]
+    log_deviation: Annotated[float, si.Above(0)]
 
     @property
     def of_logarithm(self) -> Normal:

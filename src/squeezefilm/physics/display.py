@@ -128,13 +128,9 @@ class ActiveRegion:
     """
 
     x_from: Annotated[si.Metre, *_FACE]
-    x_to: Annotated[si.Metre, *_FACE]
+    x_to: Annotated[si.Metre, *_FACE, si.AtLeast("x_from")]
     y_from: Annotated[si.Metre, *_FACE]
-    y_to: Annotated[si.Metre, *_FACE]
-
-    def __post_init__(self) -> None:
-        si.require("x_to", self.x_to, si.Unit("m"), at_least=self.x_from)
-        si.require("y_to", self.y_to, si.Unit("m"), at_least=self.y_from)
+    y_to: Annotated[si.Metre, *_FACE, si.AtLeast("y_from")]
 
 
 @si.checked_numbers

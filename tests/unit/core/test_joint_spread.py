@@ -43,7 +43,7 @@ def test_moved_points_have_the_means_and_correlation_of_the_draws() -> None:
     [
         (("a",), ((0.1, 0.2),), "every row"),
         (("a", "a"), ((0.1, 0.2),), "every row"),
-        (("a",), ((1.1,),), "from 0 to 1"),
+        (("a",), ((1.1,),), "at most 1"),
         (("a",), ((0.5,),) * 4097, "at most 4096"),
     ],
 )

@@ -6,8 +6,9 @@ registers it. Both refuse to give a number that is not finite: arguments so extr
 cannot hold what comes of them raise `OutOfRangeError`.
 
 Bounds stand in the annotation too (`squeezefilm.core.quantities.require`), or a hard limit
-(`squeezefilm.core.hard_limits`): ``Annotated[Metre, SIDE]``. What depends on other values, or is
-refused in another way, stands with `require`.
+(`squeezefilm.core.hard_limits`): ``Annotated[Metre, SIDE]``; another argument or field may be the
+bound: ``Annotated[Metre, Above("inner_radius")]``. What depends on more, or is refused in another
+way, stands with `require`.
 """
 
 from __future__ import annotations
@@ -26,9 +27,9 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.core.quantities.require import bounds_of
+from squeezefilm.core.quantities.require import bounds_of, named_bounds_of, require
 from squeezefilm.core.quantities.rules import Rule, rule_of
-from squeezefilm.core.quantities.units import hints_of
+from squeezefilm.core.quantities.units import Unit, hints_of, unit_of
 
 __all__ = ["CLOSED_FORMS", "checked_numbers", "closed_form", "outermost_checked"]
 
@@ -72,23 +73,40 @@ class _Arguments:
         more: Mapping[str, dict[str, float]],
         made: type[Any] | None,
     ) -> None:
-        self.names = list(inspect.signature(function).parameters)
+        parameters = inspect.signature(function).parameters
+        self.names = list(parameters)
+        self._defaults = {
+            name: p.default for name, p in parameters.items() if p.default is not p.empty
+        }
         self._function, self._more, self._made = function, more, made
         if unknown := set(more) - set(self.names):
             raise TypeError(f"{function.__qualname__} has no argument {sorted(unknown)}")
 
     @functools.cached_property
+    def _hints(self) -> dict[str, Any]:
+        if self._made is not None:
+            return hints_of(self._made)
+        # The result's annotation may be imported for type checking only.
+        annotations = dict(inspect.get_annotations(self._function))
+        annotations.pop("return", None)
+        taken = types.SimpleNamespace(__annotations__=annotations)
+        names_there = getattr(inspect.unwrap(self._function), "__globals__", {})
+        return typing.get_type_hints(taken, names_there, include_extras=True)
+
+    @functools.cached_property
+    def named_bounds(self) -> tuple[tuple[str, Unit, str, str], ...]:
+        """Name and unit of each argument that another one bounds, how, and the other's name."""
+        return tuple(
+            (name, unit_of(self._hints[name]) or Unit("1"), word, other)
+            for name in self.names
+            if name in self._hints
+            for word, other in named_bounds_of(self._hints[name])
+        )
+
+    @functools.cached_property
     def rules(self) -> tuple[tuple[int, str, Rule, bool], ...]:
         """Place, name and rule of each argument that is checked; True for those that broadcast."""
-        function, rules = self._function, []
-        if self._made is not None:
-            hints = hints_of(self._made)
-        else:
-            # The result's annotation may be imported for type checking only.
-            taken = types.SimpleNamespace(__annotations__=dict(inspect.get_annotations(function)))
-            taken.__annotations__.pop("return", None)
-            names_there = getattr(inspect.unwrap(function), "__globals__", {})
-            hints = typing.get_type_hints(taken, names_there, include_extras=True)
+        function, hints, rules = self._function, self._hints, []
         for place, name in enumerate(self.names):
             if name not in hints:
                 continue
@@ -122,7 +140,24 @@ class _Arguments:
                 shapes.append((name, value.shape))
         if len(shapes) > 1:
             _require_broadcast(shapes)
+        if self.named_bounds:
+            self._require_order(
+                self._defaults | dict(zip(self.names, given, strict=False)) | kwargs
+            )
         return given
+
+    def _require_order(self, asked: Mapping[str, Any]) -> None:
+        for name, unit, word, other in self.named_bounds:
+            first, *rest = other.split(".")
+            value, bound = asked.get(name), asked.get(first)
+            for part in rest:
+                bound = getattr(bound, part, None)
+            if value is None or bound is None:
+                continue
+            try:
+                require(name, value, unit, **{word: bound})
+            except InputError as error:
+                raise InputError(f"{error}, which is {other}", quantity=name) from None
 
     def beyond(self, args: Sequence[Any], kwargs: Mapping[str, Any], why: str) -> OutOfRangeError:
         """The error of a call whose arguments leave the range of a float."""

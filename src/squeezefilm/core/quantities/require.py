@@ -44,9 +44,10 @@ ROWS = (tuple, list, collections.abc.Sequence)
 
 @dataclass(frozen=True, slots=True)
 class _Bound:
-    """Bound in an annotation: how a number, or every number, lies to a value (SI)."""
+    """Bound in an annotation: how a number, or every number, lies to a value (SI); or to another
+    argument or field by its name ("voltage", "limits.voltage"), where both are given."""
 
-    value: float
+    value: float | str
 
 
 class Above(_Bound):
@@ -77,10 +78,17 @@ class Limit(Protocol):
 
 
 def bounds_of(hint: Any) -> tuple[dict[str, Any], tuple[Limit, ...]]:
-    """The bounds in an annotation, as `require` takes them, and its other limits."""
+    """The bounds of an annotation that are numbers, as `require` takes them; its other limits."""
     parts = list(_beside(hint))
-    bounds = {_WORDS[type(part)]: float(part.value) for part in parts if isinstance(part, _Bound)}
+    given = [part for part in parts if isinstance(part, _Bound)]
+    bounds = {_WORDS[type(b)]: float(b.value) for b in given if not isinstance(b.value, str)}
     return bounds, tuple(bound for bound in parts if hasattr(bound, "refuse_outside"))
+
+
+def named_bounds_of(hint: Any) -> list[tuple[str, str]]:
+    """The bounds in an annotation that are others' values: word of `require`, name of the other."""
+    bounds = (part for part in _beside(hint) if isinstance(part, _Bound))
+    return [(_WORDS[type(b)], b.value) for b in bounds if isinstance(b.value, str)]
 
 
 def _beside(hint: Any) -> Iterator[Any]:

@@ -114,7 +114,7 @@ class Limits:
     confidence: Literal["nominal", "95 %"] = "nominal"
     least_area: Annotated[si.Dimensionless, *_SHARE] | None = None
     most_finest_period: Annotated[si.Metre, hard.SIDE] | None = None
-    least_frequency: Annotated[si.Hertz, hard.FREQUENCY] | None = None
+    least_frequency: Annotated[si.Hertz, hard.FREQUENCY, si.AtMost("most_frequency")] | None = None
     most_frequency: Annotated[si.Hertz, hard.FREQUENCY] | None = None
     least_squeeze_number: Annotated[si.Dimensionless, si.Above(0.0)] | None = None
     most_current: Annotated[si.Ampere, si.Above(0.0)] | None = None
@@ -130,16 +130,6 @@ class Limits:
     most_sound_level: Annotated[si.Decibel, si.Above(0.0)] | None = None
     most_cost: Annotated[int, si.AtLeast(1), si.AtMost(9)] | None = None
     least_yield: Annotated[si.Dimensionless, *_SHARE] | None = None
-
-    def __post_init__(self) -> None:
-        low, high = self.least_frequency, self.most_frequency
-        if low is not None and high is not None and low > high:
-            raise InputError(
-                f"least_frequency is {si.format_quantity(low, si.Unit('Hz'))}, above a "
-                f"most_frequency of {si.format_quantity(high, si.Unit('Hz'))}: no plate is between "
-                "them; make the least at most the other",
-                quantity="least_frequency",
-            )
 
     @property
     def unasked_of_made(self) -> tuple[str, ...]:

@@ -64,7 +64,7 @@ class Strips(Shape):
     room between two gaps that a ceramic takes (1: all of it)."""
 
     least_lines: Lines
-    most_lines: Lines
+    most_lines: Annotated[Lines, si.AtLeast("least_lines")]
     gap: Annotated[si.Metre, hard.PLACE] = 1e-3
     both_faces: bool = False
     least_cover: Annotated[si.Dimensionless, si.AtLeast(0.2), si.AtMost(1.0)] = 1.0
@@ -171,7 +171,7 @@ class EdgeStrips(Shape):
     """
 
     least_lines: Lines
-    most_lines: Lines
+    most_lines: Annotated[Lines, si.AtLeast("least_lines")]
     least_strip: Annotated[si.Metre, hard.SIDE] = 3e-3
     most_strip: Annotated[si.Metre, hard.SIDE] = 10e-3
     glue: GlueLayer | None = None
@@ -244,7 +244,7 @@ class Disc(Shape):
     contact beyond either end, is its least diameter."""
 
     least_circles: Annotated[int, si.AtLeast(1), si.AtMost(20)] = 1
-    most_circles: Annotated[int, si.AtLeast(1), si.AtMost(20)] = 1
+    most_circles: Annotated[int, si.AtLeast("least_circles"), si.AtMost(20)] = 1
     least_cover: Annotated[si.Dimensionless, si.AtLeast(0.2), si.AtMost(1.0)] = 0.6
     glue: GlueLayer | None = None
     type: Literal["disc"] = "disc"
@@ -286,7 +286,7 @@ class Ring(Shape):
     its width is the track's, which a finger follows."""
 
     least_diameters: Annotated[int, si.AtLeast(2), si.AtMost(40)] = 3
-    most_diameters: Annotated[int, si.AtLeast(2), si.AtMost(40)] = 12
+    most_diameters: Annotated[int, si.AtLeast("least_diameters"), si.AtMost(40)] = 12
     glue: GlueLayer | None = None
     type: Literal["ring"] = "ring"
 

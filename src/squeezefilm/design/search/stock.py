@@ -186,10 +186,5 @@ class Shape:
 
 
 def counts(name: str, least: int, most: int) -> Variable:
-    """A count that may be chosen. Raises `InputError` where its range ends before it begins."""
-    if most < least:
-        raise InputError(
-            f"{name} may be from {least} to {most}, which is no range; make most at least least",
-            quantity=f"most_{name}",
-        )
+    """A count that may be chosen, from the least to the most."""
     return step(name, {"": tuple(float(count) for count in range(least, most + 1))}, "1")

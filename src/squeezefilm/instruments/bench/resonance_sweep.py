@@ -11,6 +11,7 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 
@@ -54,11 +55,14 @@ class ResonanceSweep:
         return peak(self.carriers, self.pickup)
 
 
+@si.checked_numbers
 def sweep_resonance(
     host: DeviceHost,
     limits: Limits,
-    carriers: si.HertzArray,
-    voltage: si.Volt,
+    carriers: Annotated[
+        si.HertzArray, si.AtLeast("limits.lowest_frequency"), si.AtMost("limits.highest_frequency")
+    ],
+    voltage: Annotated[si.Volt, si.Above(0.0), si.AtMost("limits.voltage")],
     *,
     settle: si.Second,
     wait: Callable[[si.Second], None] = time.sleep,
@@ -77,15 +81,6 @@ def sweep_resonance(
         InputError: a carrier or voltage outside the limits.
         DeviceError: a device that refuses, faults or goes silent, or a finger that stays on it.
     """
-    si.require("voltage", voltage, si.Unit("V"), above=0.0, at_most=limits.voltage)
-    for carrier in (float(carriers[0]), float(carriers[-1])):
-        si.require(
-            "carriers",
-            carrier,
-            si.Unit("Hz"),
-            at_least=limits.lowest_frequency,
-            at_most=limits.highest_frequency,
-        )
     if not host.open(limits).has_pickup:
         return None
     host.report(REPORT_PERIOD)

@@ -80,10 +80,10 @@ class LoopAims:
         InputError: a value outside its range, or limits in the wrong order.
     """
 
-    lowest_frequency: Annotated[si.Hertz, si.Above(0.0)]
+    lowest_frequency: Annotated[si.Hertz, si.Above(0.0), si.Below("highest_frequency")]
     highest_frequency: Annotated[si.Hertz, si.Above(0.0)]
     highest_voltage: Annotated[si.Volt, si.Above(0.0), si.AtMost(2000.0)]
-    search_voltage: Annotated[si.Volt, si.Above(0.0)]
+    search_voltage: Annotated[si.Volt, si.Above(0.0), si.AtMost("highest_voltage")]
     lowest_voltage: Annotated[si.Volt, si.AtMost(0.0), si.AtLeast(-2000.0)] = 0.0
     interval: Annotated[si.Second, si.AtLeast(1e-5), si.AtMost(1e-3)] = 100e-6
     tracking_bandwidth: Annotated[si.Hertz, si.Above(0.0)] = 700.0
@@ -92,20 +92,6 @@ class LoopAims:
     floor: Annotated[si.Volt, si.AtLeast(1e-6), si.AtMost(10.0)] = 1e-3
     noise: Annotated[si.Volt, si.AtLeast(0.0), si.AtMost(1.0)] = 0.0
     heaviest_load: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(60.0)] = 15.0
-
-    def __post_init__(self) -> None:
-        if self.lowest_frequency >= self.highest_frequency:
-            raise InputError(
-                f"the lowest frequency, {self.lowest_frequency:g} Hz, must be below the highest, "
-                f"{self.highest_frequency:g} Hz",
-                quantity="lowest_frequency",
-            )
-        if self.search_voltage > self.highest_voltage:
-            raise InputError(
-                f"search_voltage = {self.search_voltage:g} V is above the highest, "
-                f"{self.highest_voltage:g} V; take less",
-                quantity="search_voltage",
-            )
 
 
 @si.checked_numbers

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.motion.stroke import FingerPath
 from squeezefilm.physics.texture_files.trajectories import Motion, motion_from
 
@@ -51,14 +50,12 @@ class Hand:
     motion: Motion
     normal_force: Annotated[si.Newton, si.Above(0.0), si.AtMost(20.0)] = 0.5
     begin: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.1
-    repeats: int | None = None
+    repeats: Annotated[int, si.AtLeast(1)] | None = None
     lift: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
     press: Annotated[si.Second, si.AtLeast(1e-06), si.AtMost(_LONGEST)] = 0.05
 
     def __post_init__(self) -> None:
         si.require("the motion's duration", self.motion.duration, si.Unit("s"), at_most=_LONGEST)
-        if self.repeats is not None and self.repeats < 1:
-            raise InputError(f"repeats = {self.repeats} must be at least 1; None is for ever")
 
     def path(self, tick: int) -> tuple[si.FloatArray, NDArray[np.int64]]:
         """One motion as places (m), shape (2, n), and the plan, shape (7,), for `wanted`.

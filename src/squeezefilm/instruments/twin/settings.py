@@ -164,7 +164,7 @@ class TwinSettings:
     seed: Annotated[int, si.AtLeast(0), si.Below(2**53)] = 1
     tick: Annotated[si.Second, si.AtLeast(1e-05), si.AtMost(0.001)] = 100e-6
     steps_per_tick: Annotated[int, si.AtLeast(1), si.AtMost(100)] = 2
-    truth_period: si.Second = 1e-3
+    truth_period: Annotated[si.Second, si.AtLeast("tick")] = 1e-3
     truth_rows: Annotated[int, si.AtLeast(1)] = 200_000
     highest_amplitude_ratio: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(100.0)] = 2.0
     drift: PlateDrift = PlateDrift()
@@ -176,7 +176,6 @@ class TwinSettings:
     friction_lag: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(0.1)] = FRICTION_LAG
 
     def __post_init__(self) -> None:
-        si.require("truth_period", self.truth_period, si.Unit("s"), at_least=self.tick)
         if not _whole(self.tick * 1e6):
             raise InputError(f"tick = {self.tick:g} s must be a whole number of microseconds")
         if self.tick_us % self.steps_per_tick:

@@ -48,14 +48,11 @@ class SensoryChannel:
 
     name: str
     low: Annotated[si.Hertz, si.AtLeast(0.0)]
-    high: si.Hertz
+    high: Annotated[si.Hertz, si.Above("low")]
     threshold: Annotated[si.Metre, si.Above(0.0)]
     spatial: bool = False
     masking: Annotated[si.Dimensionless, si.AtLeast(0.0)] = 0.0
     speed_exponent: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] = 1.0
-
-    def __post_init__(self) -> None:
-        si.require("high", self.high, si.Unit("Hz"), above=self.low)
 
     def noise(self, mean_displacement: si.MetreLike) -> si.MetreLike:
         """Amplitude (m, zero-to-peak) of a sine inside the band that has d′ = 1 on skin whose mean

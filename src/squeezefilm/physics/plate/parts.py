@@ -37,13 +37,11 @@ class Sector:
     """A footprint about the origin: a disc, a ring, or what lies of one between two angles."""
 
     inner_radius: Annotated[si.Metre, si.AtLeast(0.0)]
-    outer_radius: Annotated[si.Metre, si.Above(0.0)]
+    outer_radius: Annotated[si.Metre, si.Above(0.0), si.Above("inner_radius")]
     start: si.Radian = 0.0
-    end: si.Radian = WHOLE_TURN
+    end: Annotated[si.Radian, si.Above("start")] = WHOLE_TURN
 
     def __post_init__(self) -> None:
-        si.require("outer_radius", self.outer_radius, si.Unit("m"), above=self.inner_radius)
-        si.require("end", self.end, si.Unit("rad"), above=self.start)
         si.require("end", self.end, si.Unit("rad"), at_most=self.start + WHOLE_TURN + 1e-9)
 
     @property
@@ -75,11 +73,8 @@ class Part:
     density: Annotated[si.KilogramPerCubicMetre, si.Above(0.0)]
     footprint: Footprint
     bottom: si.Metre
-    top: si.Metre
+    top: Annotated[si.Metre, si.Above("bottom")]
     assumed: str = ""
-
-    def __post_init__(self) -> None:
-        si.require("top", self.top, si.Unit("m"), above=self.bottom)
 
     @property
     def thickness(self) -> si.Metre:

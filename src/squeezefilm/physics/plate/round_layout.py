@@ -44,8 +44,8 @@ class AnnularStator:
     quality_factor: Annotated[si.Dimensionless, hard.QUALITY]
     reference_amplitude: Annotated[si.Metre, si.Above(0), hard.VIBRATION]
     reference_voltage: Annotated[si.Volt, si.Above(0)]
-    tooth_pitch: si.Metre | None = None
-    slot_width: si.Metre | None = None
+    tooth_pitch: Annotated[si.Metre, si.Above(0)] | None = None
+    slot_width: Annotated[si.Metre, si.Above(0), si.Below("tooth_pitch")] | None = None
     type: Literal["annular_stator"] = "annular_stator"
     lines_across: ClassVar[Literal["length", "width"]] = "length"
 
@@ -59,9 +59,6 @@ class AnnularStator:
             raise GeometryError(
                 "tooth_pitch and slot_width belong together; give both, or neither for a plain ring"
             )
-        if self.tooth_pitch is not None and self.slot_width is not None:
-            si.require("tooth_pitch", self.tooth_pitch, _M, above=0)
-            si.require("slot_width", self.slot_width, _M, above=0, below=self.tooth_pitch)
         waves = self.wavelengths_around
         if abs(waves - round(waves)) > 0.05 or round(waves) < 1:
             raise GeometryError(
@@ -102,8 +99,10 @@ class DiscPlate:
     ceramic: Piezoceramic
     ceramic_outer_diameter: Annotated[si.Metre, hard.SIDE]
     ceramic_thickness: Annotated[si.Metre, hard.LAYER]
-    inner_diameter: si.Metre = 0.0
-    ceramic_inner_diameter: si.Metre = 0.0
+    inner_diameter: Annotated[si.Metre, si.AtLeast(0), si.Below("diameter")] = 0.0
+    ceramic_inner_diameter: Annotated[
+        si.Metre, si.AtLeast(0), si.Below("ceramic_outer_diameter")
+    ] = 0.0
     nodal_circles: Annotated[int, hard.NODAL_CIRCLES] = 1
     nodal_diameters: Annotated[int, hard.NODAL_CIRCLES] = 0
     sectors: int = 0
@@ -112,14 +111,6 @@ class DiscPlate:
     lines_across: ClassVar[Literal["length", "width"]] = "length"
 
     def __post_init__(self) -> None:
-        si.require("inner_diameter", self.inner_diameter, _M, at_least=0, below=self.diameter)
-        si.require(
-            "ceramic_inner_diameter",
-            self.ceramic_inner_diameter,
-            _M,
-            at_least=0,
-            below=self.ceramic_outer_diameter,
-        )
         self._check_ceramic()
         m = self.nodal_diameters
         if m == 0 and self.sectors:

@@ -57,7 +57,7 @@ class AdaptiveCondition:
     varied: Varied = "spatial_period"
     start: si.Dimensionless = 0.4
     lowest: Annotated[si.Dimensionless, si.Above(0.0)] = 0.005
-    highest: si.Dimensionless = 0.9
+    highest: Annotated[si.Dimensionless, si.Above("lowest"), si.AtMost(100.0)] = 0.9
     step: si.Dimensionless = 0.1
     down: Annotated[int, si.AtLeast(1), si.AtMost(10)] = 2
     count: Annotated[int, si.AtLeast(1), si.AtMost(10000)] = 60
@@ -69,7 +69,6 @@ class AdaptiveCondition:
 
     def __post_init__(self) -> None:
         require_name(self.name)
-        si.require("highest", self.highest, above=self.lowest, at_most=100.0)
         if self.in_runs:
             si.require("step", self.step, above=0.0)
         if self.method == "staircase":
@@ -141,17 +140,11 @@ class TrialRules:
     """
 
     slowest: _Speed | None = None
-    fastest: _Speed | None = None
+    fastest: Annotated[_Speed, si.Above("slowest")] | None = None
     lightest: _Force | None = None
-    hardest: _Force | None = None
+    hardest: Annotated[_Force, si.Above("lightest")] | None = None
     shortest_way: Annotated[si.Metre, si.AtLeast(0.0), si.AtMost(10.0)] | None = None
     least_touch: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(1.0)] | None = None
-
-    def __post_init__(self) -> None:
-        for low, high, unit in (("slowest", "fastest", "m/s"), ("lightest", "hardest", "N")):
-            least = getattr(self, low)
-            if least is not None and getattr(self, high) is not None:
-                si.require(high, getattr(self, high), si.Unit(unit), above=least)
 
     def broken(
         self,

@@ -108,7 +108,7 @@ def test_a_hand_in_words_takes_the_other_arguments() -> None:
     assert (hand.normal_force, hand.begin, hand.repeats) == (0.7, 0.3, 2)
     assert hand.motion.duration == pytest.approx(0.75)
     assert Hand(LINE, repeats=1).repeats == 1
-    with pytest.raises(InputError, match="repeats = 0 must be at least 1"):
+    with pytest.raises(InputError, match=r"repeats = 0 .* at least 1"):
         Hand(LINE, repeats=0)
     day = FingerPath(np.array([0.0, 86_401.0]), np.array([0.0, 0.1]), np.zeros(2))
     with pytest.raises(InputError, match="the motion's duration"):

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 from enum import Enum
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -237,25 +237,19 @@ class PlayPlan:
 
     loop: LoopPlan
     limits: Limits
-    frequency: si.Hertz
+    frequency: Annotated[
+        si.Hertz, si.AtLeast("limits.lowest_frequency"), si.AtMost("limits.highest_frequency")
+    ]
     tile: TextureTile | None = None
     device: KnownDevice = NOTHING_KNOWN
     hold: tuple[IdentifiedPlate, LoopAims] | None = None
 
     def __post_init__(self) -> None:
-        limits = self.limits
-        si.require(
-            "frequency",
-            self.frequency,
-            si.Unit("Hz"),
-            at_least=limits.lowest_frequency,
-            at_most=limits.highest_frequency,
-        )
-        highest = self.loop.voltage_limit
-        if highest > limits.voltage * (1 + 1e-9):
+        highest, most = self.loop.voltage_limit, self.limits.voltage
+        if highest > most * (1 + 1e-9):
             raise InputError(
-                f"the loop may command {highest:.4g} V and the limits allow {limits.voltage:.4g} "
-                "V; lower the loop's",
+                f"the loop may command {highest:.4g} V and the limits allow {most:.4g} V; lower "
+                "the loop's",
                 quantity="loop",
             )
 

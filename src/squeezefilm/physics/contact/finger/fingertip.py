@@ -216,7 +216,7 @@ class Finger:
     ridge_amplitude: Annotated[si.Metre, RIDGE_AMPLITUDE]
     ridge_period: Annotated[si.Metre, RIDGE_PERIOD]
     normal_force: Annotated[si.Newton, FORCE]
-    plateau_width: Annotated[si.Metre, RIDGE_PERIOD] = 250e-6
+    plateau_width: Annotated[si.Metre, RIDGE_PERIOD, si.AtMost("ridge_period")] = 250e-6
     contact_area_exponent: Annotated[si.Dimensionless, si.AtLeast(0), si.AtMost(1)] = 1 / 3
     contact_area_force: Annotated[si.Newton, FORCE] | None = None
     ridge_angle: Annotated[si.Radian, si.AtLeast(-math.pi), si.AtMost(math.pi)] = 0.0
@@ -242,13 +242,6 @@ class Finger:
                 quantity="shear_strength",
             )
         _require_ridges(self.contact_length, self.ridge_period)
-        if self.plateau_width > self.ridge_period:
-            raise InputError(
-                f"plateau_width = {si.format_quantity(self.plateau_width, si.Unit('m'))} is wider "
-                f"than the ridge_period of {si.format_quantity(self.ridge_period, si.Unit('m'))}; "
-                "make it narrower",
-                quantity="plateau_width",
-            )
 
     @property
     def mean_pressure(self) -> si.Pascal:

@@ -63,7 +63,6 @@ def soft_teeth(
     )
 
 
-_M = si.Unit("m")
 # Half a nanometre: what two edges may differ by and still be the same edge.
 _SAME = 5e-10
 
@@ -79,14 +78,10 @@ class RingLayer:
     """
 
     inner_radius: Annotated[si.Metre, si.AtLeast(0)]
-    outer_radius: si.Metre
+    outer_radius: Annotated[si.Metre, si.Above("inner_radius")]
     bottom: si.Metre
-    top: si.Metre
+    top: Annotated[si.Metre, si.Above("bottom")]
     solid: Medium
-
-    def __post_init__(self) -> None:
-        si.require("outer_radius", self.outer_radius, _M, above=self.inner_radius)
-        si.require("top", self.top, _M, above=self.bottom)
 
     @property
     def thickness(self) -> si.Metre:

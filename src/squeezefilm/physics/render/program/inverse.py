@@ -42,16 +42,15 @@ class FrictionTable:
     Raises `InputError` for arrays of other shapes, knots that do not rise, or friction beyond 0…1.
     """
 
-    amplitude: si.MetreArray
-    speed: si.MetrePerSecondArray
-    relative_friction: si.DimensionlessArray
+    amplitude: Annotated[si.MetreArray, si.AtLeast(0.0)]
+    speed: Annotated[si.MetrePerSecondArray, si.AtLeast(0.0)]
+    relative_friction: Annotated[
+        si.DimensionlessArray, si.AtLeast(-_ROUNDING), si.AtMost(1.0 + _ROUNDING)
+    ]
     nominal_speed: si.MetrePerSecond
 
     def __post_init__(self) -> None:
         a, v, known = self.amplitude, self.speed, self.relative_friction
-        si.require("amplitude", a, si.Unit("m"), at_least=0.0)
-        si.require("speed", v, si.Unit("m/s"), at_least=0.0)
-        si.require("relative_friction", known, at_least=-_ROUNDING, at_most=1.0 + _ROUNDING)
         object.__setattr__(self, "relative_friction", np.clip(known, 0.0, 1.0))
         rise = a.ndim == v.ndim == 1 and np.all(np.diff(a) > 0.0) and np.all(np.diff(v) > 0.0)
         if not rise or a.size < 2 or a[0] != 0.0 or known.shape != (v.size, a.size):

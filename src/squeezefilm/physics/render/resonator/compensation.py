@@ -79,13 +79,15 @@ class DrivenEnvelope:
         )
 
     @si.checked_numbers
-    def new_state(self, amplitude: si.Metre = 0.0) -> si.FloatArray:
+    def new_state(
+        self,
+        amplitude: Annotated[si.Metre, si.AtLeast(0.0), si.AtMost("self.amplitude_limit")] = 0.0,
+    ) -> si.FloatArray:
         """A compensator's state where the resonator has `amplitude` (m); shape (5,).
 
         Raises:
             InputError: an amplitude below 0 or above the limit.
         """
-        si.require("amplitude", amplitude, si.Unit("m"), at_least=0.0, at_most=self.amplitude_limit)
         state = np.zeros(kernel.STATE_SIZE)
         state[kernel.AMPLITUDE] = amplitude
         return state
@@ -210,8 +212,8 @@ def square_swing_compensated(
     spatial_period: Annotated[si.MetreLike, si.Above(0.0)],
     speed: Annotated[si.MetrePerSecondLike, si.Above(0.0)],
     envelope: DrivenEnvelope,
-    low: si.Metre,
-    high: si.Metre,
+    low: Annotated[si.Metre, si.AtLeast(0.0), si.Below("high")],
+    high: Annotated[si.Metre, si.AtMost("envelope.amplitude_limit")],
     compensation: Compensating = "inverse",
 ) -> si.DimensionlessLike:
     """Swing of amplitude left of a square grating of duty ½ in the steady state (1).
@@ -230,8 +232,6 @@ def square_swing_compensated(
         InputError: a period or speed not above 0, or not 0 ≤ low < high ≤ limit.
     """
     half = np.asarray(spatial_period, dtype=float) / (2 * np.asarray(speed, dtype=float))
-    si.require("low", low, si.Unit("m"), at_least=0.0, below=high)
-    si.require("high", high, si.Unit("m"), at_most=envelope.amplitude_limit)
     rise = np.exp(-half / envelope.rise_time_constant)
     fall = np.exp(-half / envelope.fall_time_constant)
     bare = compensation == "none"
@@ -251,8 +251,8 @@ def square_swing_compensated(
 def fastest_compensated_speed(
     spatial_period: si.Metre,
     envelope: DrivenEnvelope,
-    low: si.Metre,
-    high: si.Metre,
+    low: Annotated[si.Metre, si.AtLeast(0.0), si.Below("high")],
+    high: Annotated[si.Metre, si.AtMost("envelope.amplitude_limit")],
     compensation: Compensating = "inverse",
     kept: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.9,
 ) -> si.MetrePerSecond:

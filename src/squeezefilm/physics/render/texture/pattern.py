@@ -215,12 +215,10 @@ class SpeedScaled(Pattern):
     pattern: Pattern
     reference_speed: Annotated[si.MetrePerSecond, si.AtLeast(1e-06), si.AtMost(10.0)]
     slowest: Annotated[si.MetrePerSecond, si.AtLeast(1e-06), si.AtMost(10.0)] = 0.001
-    fastest: si.MetrePerSecond = 1.0
+    fastest: Annotated[si.MetrePerSecond, si.AtLeast("slowest"), si.AtMost(10.0)] = 1.0
 
     def __post_init__(self) -> None:
         require_pattern("pattern", self.pattern)
-        unit = si.Unit("m/s")
-        si.require("fastest", self.fastest, unit, at_least=self.slowest, at_most=10.0)
 
     def _lower(self, assembler: Assembler) -> None:
         low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed

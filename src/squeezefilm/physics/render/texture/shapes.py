@@ -30,7 +30,6 @@ from squeezefilm.physics.render.opcodes import (
     Assembler,
 )
 from squeezefilm.physics.render.texture.coordinate import (
-    METRE,
     X_AXIS,
     Coordinate,
     FromPoint,
@@ -179,12 +178,11 @@ class Band(_Along):
     """
 
     start: Place
-    end: Place
+    end: Annotated[Place, si.Above("start")]
     fade: si.Metre = 0.0
     along: Coordinate = X_AXIS
 
     def __post_init__(self) -> None:
-        si.require("end", self.end, METRE, above=self.start)
         require_fade(self.fade, self.end - self.start)
         _Along.__post_init__(self)
 
@@ -240,7 +238,6 @@ class Bump(_Along):
         assembler.emit(BUMP, self.centre, self.width, sign)
 
 
-_SPEED = si.Unit("m/s")
 _FASTEST: si.MetrePerSecond = 1000.0
 _LONGEST: si.Second = 86_400.0
 
@@ -256,14 +253,13 @@ class SpeedGate(Pattern):
     """
 
     above: Annotated[si.MetrePerSecond, si.AtLeast(0.0), si.Below(_FASTEST)] | None = None
-    below: si.MetrePerSecond | None = None
+    below: (
+        Annotated[si.MetrePerSecond, si.Above(0.0), si.Above("above"), si.AtMost(_FASTEST)] | None
+    ) = None
 
     def __post_init__(self) -> None:
         if self.above is None and self.below is None:
             raise InputError("a speed gate needs a speed above or below which it is open")
-        if self.below is not None:
-            least = 0.0 if self.above is None else self.above
-            si.require("below", self.below, _SPEED, above=least, at_most=_FASTEST)
 
     def _lower(self, assembler: Assembler) -> None:
         assembler.emit(SPEED)
