@@ -144,11 +144,13 @@ class _Stop:
     """SIGINT as `KeyboardInterrupt`, once, and not in the middle of a message on the pipe."""
 
     def __init__(self) -> None:
-        self._held, self._late = False, False
+        self._asked, self._held, self._late = False, False, False
         signal.signal(signal.SIGINT, self._hear)
 
     def _hear(self, *_: object) -> None:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        if self._asked:
+            return
+        self._asked = True
         if self._held:
             self._late = True
         else:
