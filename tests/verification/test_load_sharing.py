@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
+from tests.plateau import mean_pressure, over_pressure
 
 from squeezefilm.core.errors import InputError, OutOfRangeError, UnreachableError
 from squeezefilm.core.materials import Gas
@@ -71,7 +72,7 @@ def test_the_mean_over_the_period_is_not_the_pressure_at_the_mean_gap(table: Fil
     for a in np.array([0.5, 1, 1.5, 2, 3]) * 1e-6:
 
         def excess(u: float, a: float = a) -> float:
-            return float(table.over_pressure(u, a) + LAW.pressure(u)) - 5e3
+            return float(over_pressure(table, u, a) + LAW.pressure(u)) - 5e3
 
         u = brentq(excess, a / 0.98, 12e-6)
         found.append(float(LAW.pressure(u)) / 5e3)
@@ -99,7 +100,7 @@ def test_the_table_is_within_its_bound_of_films_solved_elsewhere(ambient: float,
     rng = np.random.default_rng(7)
     for _ in range(40):
         u, eps = rng.uniform(1e-6, 8e-6), rng.uniform(0.02, DEEPEST_EXCURSION - 0.005)
-        found = float(table.over_pressure(u, eps * u))
+        found = float(over_pressure(table, u, eps * u))
         solved = over_pressure_solved(table, u, eps, 1e-5)
         assert found == pytest.approx(ambient * solved, rel=table.relative_error)
     assert 0 < table.relative_error <= table.tolerance
@@ -113,7 +114,7 @@ def test_tables_across_frequencies_are_within_their_bound(slip: str) -> None:
         frequency, u = rng.uniform(15e3, 90e3), rng.uniform(1e-6, 8e-6)
         eps = rng.uniform(0.02, DEEPEST_EXCURSION - 0.005)
         table = FilmTable(frequency, 250e-6, GAS, slip)
-        found = float(table.over_pressure(u, eps * u))
+        found = float(over_pressure(table, u, eps * u))
         solved = over_pressure_solved(table, u, eps, 1e-5)
         assert found == pytest.approx(1e5 * solved, rel=table.relative_error)
         assert 0 < table.relative_error <= table.tolerance
@@ -129,12 +130,11 @@ def test_the_deepest_panels_are_within_their_bound(slip: str) -> None:
     rng = np.random.default_rng(8)
     for _ in range(8):
         u, eps = rng.uniform(2e-6, 8e-6), rng.uniform(0.985, DEEPEST_EXCURSION)
-        found = float(table.over_pressure(u, eps * u))
+        found = float(over_pressure(table, u, eps * u))
         solved = over_pressure_solved(table, u, eps, 1e-4)
         assert found == pytest.approx(1e5 * solved, rel=table.relative_error + 1e-4)
     assert 0 < table.relative_error <= table.tolerance
-    with pytest.raises(InputError, match="amplitude / mean_gap"):
-        table.over_pressure(4e-6, 4e-6 * (DEEPEST_EXCURSION + 1e-3))
+    assert math.isnan(over_pressure(table, 4e-6, 4e-6 * (DEEPEST_EXCURSION + 1e-3)))
 
 
 def test_a_finer_table_changes_the_friction_by_less_than_the_coarse_bound() -> None:
@@ -237,7 +237,7 @@ def test_period_means_agree_with_quadrature_and_with_the_compiled_code(heights: 
             ),
             0, math.pi, epsabs=1e-13 * mean, limit=200,
         )  # fmt: skip
-        assert float(law.mean_pressure(u, a)) == pytest.approx(mean, rel=1e-9)
+        assert float(mean_pressure(law, u, a)) == pytest.approx(mean, rel=1e-9)
         assert asperity_mean(law.compiled(), u, a) == pytest.approx((mean, first), rel=1e-8)
 
 
@@ -255,7 +255,7 @@ def test_gaussian_heights_share_the_load_like_their_tangent_exponential(table: F
 
 
 def test_the_mean_of_the_exponential_law_holds_for_swings_of_many_decay_lengths() -> None:
-    value = float(AsperityLaw(5e3, 2e-6, 0.1e-6).mean_pressure(50e-6, 40e-6))
+    value = float(mean_pressure(AsperityLaw(5e3, 2e-6, 0.1e-6), 50e-6, 40e-6))
     assert value > 0
     assert math.isfinite(value)
 
@@ -357,9 +357,8 @@ def test_the_pad_is_the_mean_of_its_ridges(table: FilmTable) -> None:
     pad = over(table, points, 9.35e-3)
     assert pad.relative_friction[0] == pytest.approx(float(np.mean(each.relative_friction)))
     tied = share_load_tied(table, LAW, each.amplitude, 5e3)
-    total = table.over_pressure(tied.mean_gap, each.amplitude) + LAW.mean_pressure(
-        tied.mean_gap, each.amplitude
-    )
+    at = tied.mean_gap, each.amplitude
+    total = over_pressure(table, *at) + mean_pressure(LAW, *at)
     assert float(np.mean(total)) == pytest.approx(5e3, rel=1e-8)
 
 

@@ -1,4 +1,4 @@
-"""Pressure of the roughness of skin and surface at a gap: asperity laws and period means.
+"""Pressure of the roughness of skin and surface at a gap: laws of asperities.
 
 A law gives the pressure p_a (Pa) of the asperities on a plateau as a function of the gap h between
 the mean planes, and of nothing else: it does not know the load, nor the frequency. Two laws:
@@ -119,23 +119,6 @@ class AsperityLaw:
         # Beyond 20 deviations no asperity reaches.
         overlap = np.where(separation <= _HIGHEST, overlap, 0.0)
         return np.asarray(self.reference_pressure * overlap / reference)[()]
-
-    @si.checked_numbers
-    def mean_pressure(self, mean_gap: si.MetreLike, amplitude: si.MetreLike) -> si.PascalLike:
-        """⟨p_a(u − a cos T)⟩ over a period (Pa); broadcasts.
-
-        Closed form (I0) for exponential heights; for Gaussian ones the trapezoidal rule over the
-        period, which converges spectrally (128 points; below 1e-9 for a up to 33 λ_r).
-        """
-        if self.heights == "exponential":
-            from scipy.special import i0e
-
-            least = self.pressure(np.asarray(mean_gap) - np.asarray(amplitude))
-            return np.asarray(least * i0e(np.asarray(amplitude) / self.decay_length))[()]
-        u, a = np.broadcast_arrays(np.asarray(mean_gap, float), np.asarray(amplitude, float))
-        phase = np.cos(2 * np.pi * np.arange(128) / 128)
-        gap = u[..., None] - a[..., None] * phase
-        return np.asarray(np.mean(self.pressure(gap), axis=-1))[()]
 
     @si.checked_numbers
     def scaled(self, factor: Annotated[si.Dimensionless, si.Above(0.0)]) -> AsperityLaw:

@@ -10,7 +10,6 @@ every node is a solved film, and each panel is checked against films solved betw
 
 from __future__ import annotations
 
-import math
 import threading
 from collections.abc import Callable, Mapping
 from functools import lru_cache
@@ -245,40 +244,6 @@ class FilmTable:
     def relative_error(self) -> si.Dimensionless:
         """The bound on the relative error of the over-pressure; 0 where no film was needed."""
         return 0.0 if self.error is None else self.error
-
-    @property
-    def least_gap(self) -> si.Metre:
-        """The least mean gap of the table (m)."""
-        return math.exp(FIRST_COLUMN) * self.length
-
-    @property
-    def largest_gap(self) -> si.Metre:
-        """The mean gap (m) that is the table's end."""
-        return math.exp(FIRST_COLUMN + COLUMNS) * self.length
-
-    @si.checked_numbers
-    def over_pressure(self, mean_gap: si.MetreLike, amplitude: si.MetreLike) -> si.PascalLike:
-        """⟨p_gas⟩ − p0 (Pa), mean over plateau and period; broadcasts.
-
-        Raises `InputError` for an amplitude above `DEEPEST_EXCURSION` of the gap or a gap off
-        the table.
-        """
-        from squeezefilm.physics.contact.sharing.kernel import film_value
-
-        u, a = np.broadcast_arrays(np.asarray(mean_gap, float), np.asarray(amplitude, float))
-        si.require("mean_gap", u, si.Unit("m"), above=0)
-        si.require("amplitude", a, si.Unit("m"), at_least=0)
-        si.require("amplitude / mean_gap", a / u, at_most=DEEPEST_EXCURSION)
-        least, most = self.least_gap, self.largest_gap
-        si.require("mean_gap", u, si.Unit("m"), at_least=least, below=most)
-        out = np.empty(u.size)
-        for k, (gap, swing) in enumerate(zip(u.ravel().tolist(), a.ravel().tolist(), strict=True)):
-            value, lack = film_value(0, gap, swing, self.compiled)
-            while lack >= 0:
-                self.build(lack)
-                value, lack = film_value(0, gap, swing, self.compiled)
-            out[k] = value
-        return out.reshape(u.shape)[()]
 
     def build(self, panel: int) -> None:
         """Solve the films of one panel (by its number), with more nodes until its check holds.

@@ -172,7 +172,6 @@ class Balance:
     harmonics: si.ComplexArray
     residual: float
     iterations: int
-    factorizations: int
     converged: bool
 
     @property
@@ -271,7 +270,7 @@ class Balancer:
         else:
             m = start.copy()
         self._fresh = False
-        made = factored = 0
+        made = 0
         good = False
         change, last = np.inf, np.inf
         parts = self._assemble(m)
@@ -282,7 +281,6 @@ class Balancer:
                     self._factors.factor(self.storage, parts)
                 except np.linalg.LinAlgError:
                     break
-                factored += 1
             step = self._factors.solve(-parts.residual)
             relative = step / m
             change = float(np.abs(relative).max())
@@ -296,13 +294,11 @@ class Balancer:
             parts = self._assemble(m)
             # Kept factors converge by a constant factor a step; new ones are worth their price
             # only where that factor is poor or the iterate is still far off.
-            self._fresh = change < 0.1 and (factored > 0) and change < 0.3 * last
+            self._fresh = change < 0.1 and change < 0.3 * last
             last = change
-        return self._report(m, change, made, factored, good)
+        return self._report(m, change, made, good)
 
-    def _report(
-        self, m: si.FloatArray, change: float, made: int, factored: int, good: bool
-    ) -> Balance:
+    def _report(self, m: si.FloatArray, change: float, made: int, good: bool) -> Balance:
         grid, n = self.grid, self.film.gas.polytropic_exponent
         count = max(_OVERSAMPLE * self.count, 48)
         T = times(count)
@@ -319,6 +315,5 @@ class Balancer:
             harmonics=np.asarray(spectrum[1:9]),
             residual=change,
             iterations=made,
-            factorizations=factored,
             converged=good and bool(ratio.min() > 0.0),
         )
