@@ -87,8 +87,7 @@ class AnalyzedActuator(NamedTuple):
         title = as_html(described.title)
         foot = stamped(stamped_with, "SHA-256 of the numbers")
         files["report.html"] = page(title, title, as_html(described.name), body, foot)
-        write_folder(folder, files)
-        return folder / "report.html"
+        return write_folder(folder, files)
 
 
 def analyze_actuator(

@@ -54,10 +54,11 @@ def _cell(value: object) -> str:
     return f"'{text}" if risky and not _NUMBER.fullmatch(text) else text
 
 
-def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:
-    """Write files by name, each whole. If one cannot be, those before it are as they were.
+def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> Path:
+    """Write files by name, each whole; the path of the last, which is the page of the others.
 
-    Raises `InputError` where the folder cannot be written to.
+    If one cannot be written, those before it are as they were. Raises `InputError` where the
+    folder cannot be written to.
     """
     before: dict[Path, bytes | None] = {}
     try:
@@ -73,6 +74,7 @@ def write_folder(folder: Path, files: Mapping[str, str | bytes]) -> None:
             else:
                 write_whole(file, old)
         raise
+    return file
 
 
 def checkout(root: Path | None = None) -> Path:

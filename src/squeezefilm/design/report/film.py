@@ -83,8 +83,7 @@ def film_pressure(answer: FilmAnswer) -> Figure:
 def write_film_map(films: FilmMap, folder: Path) -> Path:
     """Write film-map.json and film-map.png into `folder`; the picture's path."""
     data, picture = json_text(films.summary()), style.png(film_map(films))
-    write_folder(folder, {"film-map.json": data, "film-map.png": picture})
-    return folder / "film-map.png"
+    return write_folder(folder, {"film-map.json": data, "film-map.png": picture})
 
 
 def show_film(answer: FilmAnswer) -> None:

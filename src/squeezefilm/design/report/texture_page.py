@@ -234,8 +234,7 @@ def write_render(
         }
     files["fidelity.json"] = json_text(summary)
     files["index.html"] = _page(result, figures, sorted({*files, "index.html"}))
-    write_folder(folder, files)
-    return folder / "index.html"
+    return write_folder(folder, files)
 
 
 def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:

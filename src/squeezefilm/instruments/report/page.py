@@ -198,8 +198,7 @@ def write_play(
     there = {*files, *(file.name for file in folder.glob("*"))}
     beside = sorted(name for name in there if Path(name).suffix in (".sqft", ".csv", ".json"))
     files["play.html"] = _page(result, figures, beside)
-    write_folder(folder, files)
-    return folder / "play.html"
+    return write_folder(folder, files)
 
 
 def _page(result: PlayResult, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:

@@ -131,8 +131,7 @@ def write_calibration(calibrated: FolderCalibration, folder: Path) -> Path:
             stamped(summary["stamp"], "SHA-256 of the description that was calibrated"),
         ),
     }
-    write_folder(folder, files)
-    return folder / PAGE
+    return write_folder(folder, files)
 
 
 def value_rows(calibrated: FolderCalibration) -> list[tuple[str, ...]]:

@@ -200,8 +200,7 @@ def write_checks(checked: FolderCheck, folder: Path) -> Path:
         body,
         stamped(stamped_with, _READ),
     )
-    write_folder(folder, files)
-    return folder / "check.html"
+    return write_folder(folder, files)
 
 
 def write_fit(
@@ -231,8 +230,7 @@ def write_fit(
     files["fit.html"] = page(
         f"{title}: a fit", title, escape(check.kind), body, stamped(summary["stamp"], _READ)
     )
-    write_folder(folder, files)
-    return folder / "fit.html"
+    return write_folder(folder, files)
 
 
 def fit_summary(

@@ -133,8 +133,7 @@ def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERA
         + section("Files", f"<p>{links(name for name in files if name != 'boards.png')}</p>"),
         stamped(numbers["provenance"], "SHA-256 of the design") + ".",  # type: ignore[arg-type] # made above
     )
-    write_folder(folder, files)
-    return folder / "index.html"
+    return write_folder(folder, files)
 
 
 def _numbers(board: Board) -> dict[str, object]:

@@ -87,8 +87,7 @@ def write_study(
     files[_numbers_file(analysis)] = json_text(summary)
     files["index.html"] = study_page(analysis, figures, summary["provenance"])
     tell("writing the report")
-    write_folder(folder, files)
-    return folder / "index.html"
+    return write_folder(folder, files)
 
 
 def write_overview(
@@ -114,8 +113,7 @@ def write_overview(
         sections + more,
         "What to read first, by display.",
     )
-    write_folder(folder, {"index.html": text})
-    return folder / "index.html"
+    return write_folder(folder, {"index.html": text})
 
 
 def _folders_of(displays: Iterable[str]) -> list[str]:

@@ -88,7 +88,7 @@ def show_plan(plan: StudyPlan) -> None:
     if plan.doubts:
         heading(console, "To be looked at before anybody is asked")
         for said in plan.doubts:
-            console.print(said, highlight=False)
+            console.print(said)
     if plan.assumed:
         heading(console, "Assumed")
         console.print(", ".join(plan.assumed))
@@ -116,7 +116,7 @@ def show_boards(head: tuple[str, ...], rows: list[tuple[str, ...]], says: Iterab
     heading(console, "Boards to be made")
     table(console, head, rows)
     for say in says:
-        console.print(say, highlight=False)
+        console.print(say)
 
 
 def show_status(store: StudyStore) -> None:

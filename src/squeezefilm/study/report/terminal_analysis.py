@@ -35,7 +35,7 @@ def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
     for display, analysis in analyses.items():
         heading(console, f"{display}: {whose(analysis.origin)}")
         for sentence in read_first(analysis):
-            console.print(sentence, highlight=False)
+            console.print(sentence)
         for part in answer_parts(analysis):
             if part.heading != "People" or len(part.rows) <= _SHOWN_PEOPLE:
                 table(console, part.head, part.rows, fixed=(0,))
@@ -43,7 +43,7 @@ def show_analyses(analyses: Mapping[str, StudyAnalysis]) -> None:
             table(console, *screening_rows(analysis.screening, named=True), fixed=(0, 1))
         table(console, ("", "", ""), key_rows(analysis), fixed=(0,))
         for note in analysis.notes:
-            console.print(f"  {note}", style="dim", highlight=False)
+            console.print(f"  {note}", style="dim")
 
 
 def show_power(power: PlannedPower) -> None:
@@ -58,8 +58,7 @@ def show_power(power: PlannedPower) -> None:
     console.print(f"{people_needed(curve, f'reach {100 * curve.target:.0f} % power')}.")
     console.print(
         f"{sides} test over people at {curve.alpha:g}; the pool's own {own} is "
-        f"{power.difference:.3g} (0 for nothing); {_rests_on(power, curve.studies)}",
-        highlight=False,
+        f"{power.difference:.3g} (0 for nothing); {_rests_on(power, curve.studies)}"
     )
 
 
@@ -83,12 +82,10 @@ def show_precision(precision: PlannedPrecision) -> None:
         console.print(
             f"With {', '.join(map(str, short))} people the interval holds the value less often "
             f"than the 95 % that it promises: it takes people's values to be {normal}, which those "
-            "of these people are not.",
-            highlight=False,
+            "of these people are not."
         )
     console.print(
-        f"The people's own value is {precision.truth:.3g}; {_rests_on(precision, curve.studies)}",
-        highlight=False,
+        f"The people's own value is {precision.truth:.3g}; {_rests_on(precision, curve.studies)}"
     )
 
 
@@ -127,7 +124,7 @@ def show_simulated(study: SimulatedStudy) -> None:
             table(console, *confusion_rows(study.confusion(index)))
             console.print("Per cent of each column; rows are what was answered, columns simulated.")
         table(console, *evidence_rows(study.tables, index))
-    console.print(f"Finger: {printable(study.tables.whose_finger)}.", highlight=False)
-    console.print(evidence_said(study.tables), highlight=False)
+    console.print(f"Finger: {printable(study.tables.whose_finger)}.")
+    console.print(evidence_said(study.tables))
     for said in remarks(study.tables.design):
-        console.print(said, highlight=False)
+        console.print(said)

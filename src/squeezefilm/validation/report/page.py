@@ -176,8 +176,7 @@ def write_reproduction(
         "claims.json": json_text(summary),
         "reproduction.html": page(title, title, source, body, foot, images=""),
     }
-    write_folder(folder, files)
-    return folder / "reproduction.html"
+    return write_folder(folder, files)
 
 
 def _html(part: Part) -> str:

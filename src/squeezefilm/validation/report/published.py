@@ -330,8 +330,7 @@ def write_comparisons(compared: FolderComparison, folder: Path) -> Path:
         body,
         stamped(summary_stamp, "SHA-256 of curves and answers"),
     )
-    write_folder(folder, files)
-    return folder / "measured-curves.html"
+    return write_folder(folder, files)
 
 
 def write_friction_docs(compared: FolderComparison, root: Path | None = None) -> Path:

@@ -58,8 +58,7 @@ def write_analysis(
     tell("writing the report")
     data = json_text(result_data(analysis, summary))
     files = {"result.json": data, "report.html": report_page(analysis, summary, drawn)}
-    write_folder(folder, files)
-    return folder / "report.html"
+    return write_folder(folder, files)
 
 
 def _figures(analysis: Analysis) -> dict[str, str]:

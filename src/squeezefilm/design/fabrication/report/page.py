@@ -95,8 +95,7 @@ def write_fabrication(made: Fabrication, folder: Path) -> Path:
     }
     names = [*files, *([PREDICTION] if made.blind is not None and made.blind.sha256 else [])]
     files["index.html"] = _page(made, drawing, views, sorted(names))
-    write_folder(folder, files)
-    return folder / "index.html"
+    return write_folder(folder, files)
 
 
 def display_toml(made: Fabrication) -> str:

@@ -102,8 +102,7 @@ def write_plate(result: SolvedBody, folder: Path) -> Path:
     files["index.html"] = plate_page(result, figures)
     if isinstance(result, PlateAnalysis):
         write_mode(result, folder / "mode.vtu")
-    write_folder(folder, files)
-    return folder / "index.html"
+    return write_folder(folder, files)
 
 
 def write_mode(result: PlateAnalysis, file: Path) -> Path:

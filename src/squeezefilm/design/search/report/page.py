@@ -69,8 +69,7 @@ def write_design(search: DesignSearch, folder: Path, *, fabrication: str = "") -
     }
     files |= {DATA: json_text(search.summary()), TABLE: front_csv(search)}
     files[PAGE] = design_page(search, fabrication=fabrication)
-    write_folder(folder, files)
-    return folder / PAGE
+    return write_folder(folder, files)
 
 
 def front_csv(search: DesignSearch) -> str:

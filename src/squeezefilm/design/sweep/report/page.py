@@ -209,7 +209,7 @@ def write_sweep(
         else parquet_of_columns(sweep.table(), summary["provenance"]),
         "sweep.json": json_text(summary),
     }
-    files |= sweep_page(sweep, list(files), better)
-    files.setdefault("sweep.png", style.png(sweep_figure(sweep)))
-    write_folder(folder, files)
-    return folder / "index.html"
+    page_files = sweep_page(sweep, list(files), better)
+    if "sweep.png" not in page_files:
+        files["sweep.png"] = style.png(sweep_figure(sweep))
+    return write_folder(folder, files | page_files)
