@@ -6,7 +6,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers
 from squeezefilm.actuators.analysis.motor import MotorAnalysis, analyze_motor
@@ -21,13 +21,14 @@ from squeezefilm.actuators.report.skin_stretch import (
 )
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.provenance import Provenance
-from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import Row
 from squeezefilm.core.kit.page_style import (
+    Pictures,
     as_html,
     bullets,
     page,
+    picture_files,
     picture_sections,
     section,
     stamped,
@@ -37,9 +38,6 @@ from squeezefilm.core.kit.terminal import bullets as terminal_bullets
 from squeezefilm.core.kit.terminal import show_rows
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.results import stamp
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def assumed_words(provenance: Mapping[str, Provenance]) -> str:
@@ -57,7 +55,7 @@ class AnalyzedActuator(NamedTuple):
 
     analysis: MotorAnalysis | SkinStretchAnalysis
     rows: Callable[[Any], list[Row]]
-    figures: Callable[[Any], dict[str, tuple[str, Figure]]]
+    figures: Callable[[Any], Pictures]
     answers: Mapping[str, str]
 
     def show(self) -> None:
@@ -74,9 +72,7 @@ class AnalyzedActuator(NamedTuple):
         folder, described = require_folder(folder), self.analysis.described
         summary, figures = self.analysis.summary(), self.figures(self.analysis)
         stamped_with = stamp(summary)
-        files: dict[str, str | bytes] = {
-            f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()
-        }
+        files = picture_files(figures)
         files["result.json"] = json_text(summary | {"stamp": stamped_with})
         warned = [*self.analysis.warnings, assumed_words(described.provenance)]
         head = ("quantity", "value", "remark")

@@ -179,10 +179,12 @@ class FigureOf:
     has: Callable[[Any], object] = _always
 
 
-def drawn_figures(
-    figures: Iterable[FigureOf], result: Any, prefix: str = ""
-) -> dict[str, tuple[str, Figure]]:
-    """The figures that a result has by the name of their file: heading and drawing."""
+Pictures = dict[str, tuple[str, "Figure"]]
+"""Figures by the name of their file beside a page: heading and drawing."""
+
+
+def drawn_figures(figures: Iterable[FigureOf], result: Any, prefix: str = "") -> Pictures:
+    """The figures that a result has."""
     return {
         prefix + (figure.file or figure.key): (figure.heading, figure.draw(result))
         for figure in figures
@@ -209,12 +211,12 @@ def figure_section(item: FigureOf, svg: str) -> str:
     return section(escape(item.heading), body, "figure")
 
 
-def picture_files(figures: Mapping[str, tuple[str, Figure]]) -> dict[str, str | bytes]:
+def picture_files(figures: Pictures) -> dict[str, str | bytes]:
     """The pictures NAME.png that `picture_sections` shows."""
     return {f"{name}.png": style.png(figure) for name, (_, figure) in figures.items()}
 
 
-def picture_sections(figures: Mapping[str, tuple[str, Figure]]) -> str:
+def picture_sections(figures: Pictures) -> str:
     """A section for each picture NAME.png beside the page: its heading; its message is read out."""
     return "".join(
         section(

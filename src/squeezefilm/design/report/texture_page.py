@@ -17,6 +17,7 @@ from squeezefilm.core.formats.wav import Waveform, wav_bytes
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, S, V, printable, shown
 from squeezefilm.core.kit.page_style import (
+    Pictures,
     bullets,
     drawn_figures,
     links,
@@ -34,8 +35,6 @@ from squeezefilm.physics.render.program.renderer import MadeForSpeed
 from squeezefilm.physics.texture_files.hjif import HjifExport, ReferenceDevice, hjif_of
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from squeezefilm.physics.chain.rendered_texture import RenderAnalysis
 
 
@@ -237,7 +236,7 @@ def write_render(
     return write_folder(folder, files)
 
 
-def _page(result: RenderAnalysis, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:
+def _page(result: RenderAnalysis, figures: Pictures, files: list[str]) -> str:
     title = escape(printable(result.played.name))
     stamp = result.provenance()
     head = ("Quantity", "Value", "Remark")

@@ -16,6 +16,7 @@ from squeezefilm.core.kit.folder import json_text, write_folder
 from squeezefilm.core.kit.numbers import HZ, M, S, printable, shown
 from squeezefilm.core.kit.page_style import (
     FigureOf,
+    Pictures,
     bullets,
     drawn_figures,
     links,
@@ -201,7 +202,7 @@ def write_play(
     return write_folder(folder, files)
 
 
-def _page(result: PlayResult, figures: dict[str, tuple[str, Figure]], files: list[str]) -> str:
+def _page(result: PlayResult, figures: Pictures, files: list[str]) -> str:
     session = result.session
     title = escape(printable(session.setup.name))
     stamp = session.trace.metadata

@@ -8,12 +8,13 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.folder import json_text, write_folder
 from squeezefilm.core.kit.numbers import printable, shown
 from squeezefilm.core.kit.page_style import (
+    Pictures,
     bullets,
     page,
     picture_files,
@@ -32,9 +33,6 @@ from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
 from squeezefilm.measure.report.figures import recording_figure
 from squeezefilm.measure.report.fit_figures import fit_figure
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _KNOWN = ("m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "S", "H", "m/V", "m/s", "N/m")
 
@@ -212,7 +210,7 @@ def write_fit(
     Returns the path of the page. Raises `InputError` for a folder that cannot be written to.
     """
     name = check.recording.told.name
-    figures: dict[str, tuple[str, Figure]] = {}
+    figures: Pictures = {}
     fitted = fit_figure(check, fit)
     if fitted is not None:
         figures["fit"] = ("Recorded, fitted and what is left", fitted)

@@ -14,6 +14,7 @@ from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import M, printable, shown
 from squeezefilm.core.kit.page_style import (
     FigureOf,
+    Pictures,
     as_html,
     bullets,
     drawn_figures,
@@ -39,8 +40,6 @@ from squeezefilm.study.report.words import (
 from squeezefilm.study.tasks.findings import TaskAnalysis
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from squeezefilm.study.design.study_design import StudyDesign
     from squeezefilm.study.simulated.answers import SimulatedStudy
     from squeezefilm.study.simulated.chain_tables import ChainTables
@@ -125,7 +124,7 @@ def _folders_of(displays: Iterable[str]) -> list[str]:
     ]
 
 
-def study_figures(analysis: StudyAnalysis) -> dict[str, tuple[str, Figure]]:
+def study_figures(analysis: StudyAnalysis) -> Pictures:
     """The figures by key: heading and drawing. What was not measured has none."""
     return drawn_figures(_figures_of(analysis), analysis)
 
@@ -140,7 +139,7 @@ def _numbers_file(analysis: StudyAnalysis) -> str:
 
 def study_page(
     analysis: StudyAnalysis,
-    figures: Mapping[str, tuple[str, Figure]],
+    figures: Pictures,
     provenance: dict[str, Any],
 ) -> str:
     """The page as text; `figures` lie beside it, by the names of their files."""

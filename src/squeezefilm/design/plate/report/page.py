@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,6 +14,7 @@ from squeezefilm.core.errors import InputError, optional
 from squeezefilm.core.kit.folder import json_text, write_folder
 from squeezefilm.core.kit.numbers import M, V, printable, shown
 from squeezefilm.core.kit.page_style import (
+    Pictures,
     drawn_figures,
     page,
     picture_files,
@@ -35,8 +35,6 @@ from squeezefilm.design.plate.report.terminal import (
 from squeezefilm.design.plate.ring import RingAnalysis
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from squeezefilm.core.quantities import FloatArray, Volt
     from squeezefilm.design.plate.solved import SolvedBody
     from squeezefilm.physics.plate.solid.modes import PlateModes
@@ -50,7 +48,7 @@ LARGEST_DISPLACEMENT = 1e-6
 """The largest displacement (m) that a mode shape is scaled to in the file."""
 
 
-def plate_page(result: SolvedBody, figures: Mapping[str, tuple[str, Figure]]) -> str:
+def plate_page(result: SolvedBody, figures: Pictures) -> str:
     """The text of index.html; figures (heading and drawing) are the PNG files beside it by name."""
     title = escape(printable(result.display.title))
     body = (

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +15,7 @@ from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import csv_text, json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.kit.page_style import (
+    Pictures,
     bullets,
     links,
     page,
@@ -41,9 +41,6 @@ from squeezefilm.design.sweep.swept import (
     varied_values,
 )
 from squeezefilm.design.sweep.tradeoffs import non_dominated
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _MOST_ROWS = 20
 
@@ -85,7 +82,7 @@ def sweep_page(
 ) -> dict[str, str | bytes]:
     """The page index.html and its pictures by name; `better` as of `wishes`."""
     varied, effects = varied_values(sweep), effects_of(sweep)
-    figures: dict[str, tuple[str, Figure]] = {}
+    figures: Pictures = {}
     if not any(axis.sampled for axis in sweep.axes):
         figures["sweep"] = ("The sweep", sweep_figure(sweep))
     figures["effects"] = ("Main effects", effects_figure(sweep))
