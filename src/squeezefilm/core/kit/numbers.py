@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 import re
 import unicodedata
 
 from squeezefilm.core import quantities as si
 
 Row = tuple[str, str, str]
+NUMBERS = ("Quantity", "Value", "Remark")
+"""Heads of the columns of such rows on a page."""
 
 M, HZ, S, N, V = si.Unit("m"), si.Unit("Hz"), si.Unit("s"), si.Unit("N"), si.Unit("V")
 _TYPED_MICRO = re.compile(r"(?<=\d )u(?=[msNVAFWH]\b)")
@@ -19,8 +22,10 @@ A, W, SPEED, PER_VOLT = si.Unit("A"), si.Unit("W"), si.Unit("m/s"), si.Unit("m/V
 KELVIN, OHM, HENRY, FARAD = si.Unit("K"), si.Unit("ohm"), si.Unit("H"), si.Unit("F")
 
 
-def shown(value: float, unit: si.Unit, digits: int = 4) -> str:
-    """A quantity as a person reads it, e.g. ``"2 µm"``."""
+def shown(value: float | None, unit: si.Unit, digits: int = 4, none: str = "–") -> str:
+    """A quantity as a person reads it, e.g. ``"2 µm"``; `none` where it is not known."""
+    if value is None:
+        return none
     if unit.symbol == "Hz" and 0 < abs(value) < 1:
         return f"{value:.{digits}g} Hz"  # nobody reads millihertz
     text = si.format_quantity(value, unit, digits)
@@ -32,6 +37,11 @@ def shown(value: float, unit: si.Unit, digits: int = 4) -> str:
     if known and abs(float(number)) >= 100:
         return f"{float(number) / 1000:.{digits}g} {larger[symbol[0]]}{base}"
     return text
+
+
+def decimals(value: float | None, count: int) -> str:
+    """A number with so many decimals; a dash for none, or one that is not finite."""
+    return "–" if value is None or not math.isfinite(value) else f"{value:.{count}f}"
 
 
 def signed(value: float, unit: si.Unit, digits: int = 3) -> str:

@@ -12,7 +12,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core.kit import read_out, style
-from squeezefilm.core.kit.numbers import printable, unit_stays
+from squeezefilm.core.kit.numbers import NUMBERS, Row, printable, unit_stays
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -258,6 +258,11 @@ def html_table(
 def text_table(caption: str, head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     """A table of plain texts; the first cell of a row heads it."""
     return html_table(as_html(caption), map(as_html, head), [[*map(as_html, row)] for row in rows])
+
+
+def rows_section(heading: str, caption: str, rows: Iterable[Row]) -> str:
+    """A section with quantities, values and remarks; plain texts but for the heading."""
+    return section(heading, text_table(caption, NUMBERS, rows))
 
 
 def as_html(text: str) -> str:

@@ -11,7 +11,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, write_folder
 from squeezefilm.core.kit.model_looks import look_of
-from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, V, printable, shown
+from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, V, decimals, printable, shown
 from squeezefilm.core.kit.page_style import FigureOf, drawn_figures, picture_files
 from squeezefilm.core.kit.terminal import heading, plain_console, table
 from squeezefilm.design.analysis.report.rows import (
@@ -240,8 +240,7 @@ def show_friction(result: FrictionAnalysis) -> None:
     table(console, ("", "", ""), _rows(result), fixed=(0,))
     heading(console, "The same finger by other models")
     others: list[tuple[str, str]] = [
-        (curve.model, "–" if (at := curve.at(p.vibration_amplitude)) is None else f"{at:.3f}")
-        for curve in result.curves
+        (curve.model, decimals(curve.at(p.vibration_amplitude), 3)) for curve in result.curves
     ]
     table(console, ("model", "µ′/µ"), others)
     show_missed(console, p.model)

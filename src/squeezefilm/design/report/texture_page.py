@@ -24,9 +24,9 @@ from squeezefilm.core.kit.page_style import (
     page,
     picture_files,
     picture_sections,
+    rows_section,
     section,
     stamped,
-    text_table,
 )
 from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, table
 from squeezefilm.design.report import texture_figures as draw
@@ -239,14 +239,13 @@ def write_render(
 def _page(result: RenderAnalysis, figures: Pictures, files: list[str]) -> str:
     title = escape(printable(result.played.name))
     stamp = result.provenance()
-    head = ("Quantity", "Value", "Remark")
-    numbers = text_table("What was asked for and what the finger meets", head, render_rows(result))
+    caption = "What was asked for and what the finger meets"
     beside = links(name for name in files if not name.endswith((".png", ".html")))
     return page(
         f"{title}: rendered texture",
         title,
         f"rendered on <code>{escape(printable(result.display.name))}</code> by squeezefilm",
-        section("Numbers", numbers)
+        rows_section("Numbers", caption, render_rows(result))
         + picture_sections(figures)
         + section("Warnings", bullets(result.prediction.warnings)),
         f"{stamped(stamp, 'SHA-256 of display, texture and motion')} ·\n"

@@ -23,9 +23,9 @@ from squeezefilm.core.kit.page_style import (
     page,
     picture_files,
     picture_sections,
+    rows_section,
     section,
     stamped,
-    text_table,
 )
 from squeezefilm.instruments.report.terminal import play_rows, play_warnings
 from squeezefilm.instruments.session.loop import rows as column
@@ -206,17 +206,13 @@ def _page(result: PlayResult, figures: Pictures, files: list[str]) -> str:
     session = result.session
     title = escape(printable(session.setup.name))
     stamp = session.trace.metadata
-    numbers = text_table(
-        "What the finger met, how late the loop was, what the link lost",
-        ("Quantity", "Value", "Remark"),
-        play_rows(result),
-    )
+    caption = "What the finger met, how late the loop was, what the link lost"
     return page(
         f"{title}: a session",
         title,
         f"played on <code>{escape(printable(session.setup.display.name))}</code>,\n"
         f"drive <code>{escape(printable(str(stamp.get('drive', ''))))}</code>, by squeezefilm",
-        section("Numbers", numbers)
+        rows_section("Numbers", caption, play_rows(result))
         + picture_sections(figures)
         + section("Warnings", bullets(play_warnings(session))),
         f"{stamped(stamp, 'SHA-256 of display, texture and settings', 'begun')} ·\n"

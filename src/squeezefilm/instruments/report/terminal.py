@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.kit.numbers import HZ, M, S, V, printable, shown
+from squeezefilm.core.kit.numbers import HZ, M, S, V, decimals, printable, shown
 from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, table
 from squeezefilm.physics.render.fidelity.report import contrast_rows, lag_rows
 
@@ -77,19 +77,15 @@ def view_line(view: PlayView) -> str:
     parts = [
         f"{view.time:7.2f} s",
         view.state.name.lower() + (f" ({view.fault.name.lower()})" if view.fault else ""),
-        f"x {_number(view.x, 1e3):>7} mm",
-        f"µ′/µ {_number(view.relative_friction, 1.0, 3)}",
-        f"amplitude {_number(view.amplitude, 1e6)} µm",
-        f"lag {_number(view.lag, 1e3, 3)} mm",
-        f"late {_number(view.lateness, 1e6, 0)} µs",
+        f"x {decimals(1e3 * view.x, 2):>7} mm",
+        f"µ′/µ {decimals(view.relative_friction, 3)}",
+        f"amplitude {decimals(1e6 * view.amplitude, 2)} µm",
+        f"lag {decimals(1e3 * view.lag, 3)} mm",
+        f"late {decimals(1e6 * view.lateness, 0)} µs",
         *(() if view.held is None else (view.held.words,)),
         *view.flags,
     ]
     return ", ".join(parts)
-
-
-def _number(value: float, scale: float, digits: int = 2) -> str:
-    return "–" if not math.isfinite(value) else f"{scale * value:.{digits}f}"
 
 
 def show_play(result: PlayResult) -> None:
@@ -167,9 +163,9 @@ def _loop_rows(loop: Mapping[str, Any]) -> list[tuple[str, str, str]]:
         (
             "Ticks lost",
             f"{100 * late['lost'] / max(due, 1):.3f} %",
-            f"{late['lost']} of {due}; late {_micro(late['p50_s'])} median, "
-            f"{_micro(late['p99_s'])} at 99 %, {_micro(late['p99_9_s'])} at 99.9 %, "
-            f"{_micro(late['longest_s'])} at most",
+            f"{late['lost']} of {due}; late {shown(late['p50_s'], S, 3)} median, "
+            f"{shown(late['p99_s'], S, 3)} at 99 %, {shown(late['p99_9_s'], S, 3)} at 99.9 %, "
+            f"{shown(late['longest_s'], S, 3)} at most",
         )
     ]
     if "real_time_priority" in loop:
@@ -195,8 +191,8 @@ def _link_rows(session: PlayedSession) -> list[tuple[str, str, str]]:
                 f"{link.get('lost', 0)} lost",
                 f"of {link.get('sent', 0)} frames; {link.get('damaged', 0)} damaged, "
                 f"{link.get('refused', 0)} refused; round trip "
-                f"{_micro(link.get('mean_round_trip_s'))} on average, "
-                f"{_micro(link.get('longest_round_trip_s'))} at most",
+                f"{shown(link.get('mean_round_trip_s'), S, 3)} on average, "
+                f"{shown(link.get('longest_round_trip_s'), S, 3)} at most",
             )
         )
     if end:
@@ -209,10 +205,6 @@ def _link_rows(session: PlayedSession) -> list[tuple[str, str, str]]:
             )
         )
     return rows
-
-
-def _micro(seconds: float | None) -> str:
-    return "–" if seconds is None else shown(seconds, S, 3)
 
 
 def play_warnings(session: PlayedSession) -> list[str]:

@@ -12,9 +12,10 @@ from typing import Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.folder import json_text, write_folder
-from squeezefilm.core.kit.numbers import printable, shown
+from squeezefilm.core.kit.numbers import decimals, shown
 from squeezefilm.core.kit.page_style import (
     Pictures,
+    as_html,
     bullets,
     page,
     picture_files,
@@ -33,8 +34,6 @@ from squeezefilm.measure.recordings.read import FolderCheck, RecordingCheck
 from squeezefilm.measure.report.figures import recording_figure
 from squeezefilm.measure.report.fit_figures import fit_figure
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL
-
-_KNOWN = ("m", "Hz", "s", "N", "Pa", "V", "A", "W", "J", "F", "C", "S", "H", "m/V", "m/s", "N/m")
 
 _READ = "SHA-256 of what was read"
 
@@ -90,8 +89,8 @@ def model_rows(compared: CurveComparison) -> list[tuple[str, ...]]:
     return [
         (
             model_words(score.model),
-            number_words(score.difference, 3),
-            number_words(score.in_spreads, 1),
+            decimals(score.difference, 3),
+            decimals(score.in_spreads, 1),
             f"{score.answered} of {len(compared.inside)}",
             str(score.fitted),
         )
@@ -104,11 +103,6 @@ def model_words(model: str) -> str:
     if model in NO_PHYSICS:
         return f"{model} (no physics)"
     return f"{model} (the default)" if model == DEFAULT_MODEL else model
-
-
-def number_words(value: float | None, digits: int) -> str:
-    """A number with so many decimals; a dash for none."""
-    return "–" if value is None else f"{value:.{digits}f}"
 
 
 def inside_words(compared: CurveComparison) -> str:
@@ -131,10 +125,10 @@ def estimate_rows(fit: FitResult) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for name, estimate in estimates(fit):
         digits = _digits(estimate.value, estimate.standard_error)
-        low, high = (valued(value, estimate.unit, digits) for value in estimate.interval)
-        error = valued(estimate.standard_error, estimate.unit, 2)
-        value = valued(estimate.value, estimate.unit, digits)
-        rows.append((name, value, f"{low} to {high}", error))
+        unit = si.Unit(estimate.unit or "1")
+        low, high = (shown(value, unit, digits) for value in estimate.interval)
+        error = shown(estimate.standard_error, unit, 2)
+        rows.append((name, shown(estimate.value, unit, digits), f"{low} to {high}", error))
     return rows
 
 
@@ -164,15 +158,6 @@ def estimates(node: Any, path: str = "") -> Iterator[tuple[str, Estimate]]:
     elif isinstance(node, tuple):
         for number, member in enumerate(node, 1):
             yield from estimates(member, f"{path} {number}" if len(node) > 1 else path)
-
-
-def valued(value: float, unit: str, digits: int = 4) -> str:
-    """A value of an estimate in its own unit, prefixed where that is read more easily."""
-    if unit in ("", "1"):
-        return f"{value:.{digits}g}"
-    if unit in _KNOWN:
-        return printable(shown(value, si.Unit(unit), digits))
-    return f"{value:.{digits}g} {unit}"
 
 
 def write_checks(checked: FolderCheck, folder: Path) -> Path:
@@ -218,13 +203,13 @@ def write_fit(
     summary = fit_summary(check, fit, response)
     files = {**picture_files(figures), "fit.json": json_text(summary)}
     word = "adequate" if fit.adequacy.adequate else "not adequate"
-    body = section(f"The fit is {word}", f"<p>{_text(fit.adequacy.sentence)}</p>")
+    body = section(f"The fit is {word}", f"<p>{as_html(fit.adequacy.sentence)}</p>")
     for title, part in (("Estimates", fit), ("Of the response that the signals give", response)):
         rows = [] if part is None else estimate_rows(part)
         if rows:
             body += section(title, text_table("What was fitted", HEAD, rows))
     body += picture_sections(figures) + _as_read(check)
-    title = _text(name)
+    title = as_html(name)
     files["fit.html"] = page(
         f"{title}: a fit", title, escape(check.kind), body, stamped(summary["stamp"], _READ)
     )
@@ -259,10 +244,6 @@ def _as_read(check: RecordingCheck) -> str:
     facts = text_table("How the recording was taken", ("what", "how"), check.facts)
     doubts = bullets(check.doubts, "Nothing doubtful was found.")
     return section("How it was read", facts) + section("What is doubtful", doubts)
-
-
-def _text(words: str) -> str:
-    return escape(printable(words))
 
 
 def _names(checks: Sequence[RecordingCheck]) -> list[str]:

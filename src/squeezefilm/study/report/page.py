@@ -22,6 +22,7 @@ from squeezefilm.core.kit.page_style import (
     page,
     picture_files,
     picture_sections,
+    rows_section,
     section,
     stamped,
     text_table,
@@ -144,8 +145,6 @@ def study_page(
 ) -> str:
     """The page as text; `figures` lie beside it, by the names of their files."""
     title = escape(printable(analysis.name))
-    head = ("Quantity", "Value", "Remark")
-    numbers = text_table(whose(analysis.origin), head, key_rows(analysis))
     details = "".join(
         section(f"{part.heading} in numbers", text_table(part.caption, part.head, part.rows))
         for part in answer_parts(analysis)
@@ -154,7 +153,7 @@ def study_page(
         details += section("What the simulated answers assume", bullets(analysis.assumed))
     sections = (
         section("Read first", bullets(read_first(analysis)))
-        + section("Numbers", numbers)
+        + rows_section("Numbers", whose(analysis.origin), key_rows(analysis))
         + picture_sections(figures)
         + details
         + _screening(analysis)

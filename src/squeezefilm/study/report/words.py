@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from squeezefilm.core.kit.numbers import decimals
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.design.tasks.task import JUDGED
 from squeezefilm.study.identification.sensitivity import METHOD
@@ -140,7 +141,7 @@ def screening_rows(screening: Screening, named: bool = False) -> TextTable:
     return ("Participant", "z", "Judged"), [
         (
             person.person,
-            "–" if math.isnan(person.follows) else f"{person.follows:.1f}",
+            decimals(person.follows, 1),
             "; ".join(person.reasons) or "; ".join(("does the task", *person.doubts)),
         )
         for person in (screening.named if named else screening.people)

@@ -14,7 +14,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import checkout, json_text, markdown_table, write_folder
-from squeezefilm.core.kit.numbers import printable, shown
+from squeezefilm.core.kit.numbers import decimals, printable, shown
 from squeezefilm.core.kit.page_style import (
     bullets,
     page,
@@ -34,7 +34,6 @@ from squeezefilm.measure.report.page import (
     inside_words,
     model_rows,
     model_words,
-    number_words,
 )
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL
 from squeezefilm.physics.perception.observer import TUNED_AT, load_observer
@@ -86,8 +85,8 @@ def total_rows(compared: FolderComparison) -> list[tuple[str, ...]]:
     return [
         (
             model_words(total.model),
-            number_words(total.difference, 3),
-            number_words(total.log_score, 2)
+            decimals(total.difference, 3),
+            decimals(total.log_score, 2)
             + ("" if total.log_score_error is None else f" ± {total.log_score_error:.2f}"),
             str(total.fitted),
         )

@@ -27,7 +27,6 @@ from squeezefilm.measure.report.page import (
     show_check,
     show_fit,
     show_folder,
-    valued,
     write_checks,
     write_fit,
 )
@@ -151,7 +150,6 @@ def test_a_fit_shows_two_digits_of_its_error_and_its_interval(tmp_path: Path) ->
         ("branches 1", "0.5", "0.46 to 0.54", "0.02"),
         ("branches 2", "2 kg", "2 kg to 2 kg", "0 kg"),
     ]
-    assert valued(12.3456, "N*m") == "12.35 N*m"
     path = write_fit(checked("frequency response", "a doubt"), FIT, tmp_path)
     text = path.read_text(encoding="utf-8")
     assert "The fit is adequate" in text

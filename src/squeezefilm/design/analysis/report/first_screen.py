@@ -129,12 +129,9 @@ def _doubts(analysis: Analysis) -> list[tuple[str, str]]:
         or (finding.kind == "limit" and finding.about not in ("friction", "gratings"))
     ]
     # What reaches an ear comes last in the verdict, and is more than a remark on sources.
-    findings.sort(key=lambda pair: pair[1] in _of_sources(analysis))
+    of_sources = {finding.text for finding in analysis.findings if finding.about == "sources"}
+    findings.sort(key=lambda pair: pair[1] in of_sources)
     return [*far, *findings][:MOST_DOUBTS]
-
-
-def _of_sources(analysis: Analysis) -> set[str]:
-    return {finding.text for finding in analysis.findings if finding.about == "sources"}
 
 
 def _next_step(analysis: Analysis) -> str:

@@ -11,6 +11,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import (
     HZ,
+    NUMBERS,
     PER_VOLT,
     SPEED,
     M,
@@ -25,6 +26,7 @@ from squeezefilm.core.kit.numbers import (
 from squeezefilm.design.analysis.report.first_screen import doubted, first_screen
 from squeezefilm.design.analysis.report.rows import (
     MISSED_HEADING,
+    OUT_OF_REACH,
     display_values,
     electronics_rows,
     felt_rows,
@@ -47,7 +49,6 @@ if TYPE_CHECKING:
     from squeezefilm.design.analysis.analysis import Analysis, MeasuredBeside
     from squeezefilm.design.analysis.ears import EarExposure
     from squeezefilm.physics.chain.prediction import Prediction
-    from squeezefilm.physics.plate.working_mode import WorkingMode
 
 
 def working_point(p: Prediction) -> str:
@@ -82,8 +83,11 @@ def vibration_rows(p: Prediction) -> list[Row]:
     if place is not None and shown(p.amplitude_at_place, M, 3) != held:
         where = f"r.m.s. over its contact, at {place_words(p.place)}"
         under_finger = [("Amplitude under the finger", shown(p.amplitude_under_pad, M, 3), where)]
+    solved = mode.label
+    if mode.frequency_error is not None:
+        solved += f", solved to ± {shown(mode.frequency_error, HZ, 2)}"
     return [
-        ("Resonance frequency", shown(mode.resonance_frequency, HZ), _solved(mode)),
+        ("Resonance frequency", shown(mode.resonance_frequency, HZ), solved),
         drive,
         ("Amplitude, free", shown(free, M, 3), made),
         ("Peak amplitude, finger on", held, f"{of}; {kept}"),
@@ -110,19 +114,12 @@ def with_measured(
     ]
 
 
-def _solved(mode: WorkingMode) -> str:
-    """The mode's label, with the solver's error where one solved it."""
-    if mode.frequency_error is None:
-        return mode.label
-    return f"{mode.label}, solved to ± {shown(mode.frequency_error, HZ, 2)}"
-
-
 def surface_rows(analysis: Analysis) -> list[Row]:
     """Rows of what is touched, and of what the paper's criterion takes."""
     p = analysis.prediction
     finger = f"{shown(p.normal_force, N)} at {shown(p.speed, SPEED)}"
     name = printable(p.surface.name)
-    reached = _reached(analysis.own_curve.amplitude_for_criterion)
+    reached = shown(analysis.own_curve.amplitude_for_criterion, M, 3, OUT_OF_REACH)
     return [
         ("Surface roughness", shown(p.surface.roughness, M), f"{name}; finger {finger}"),
         ("Amplitude for µ′/µ = 0.7", reached, "under the finger"),
@@ -137,10 +134,6 @@ def rival_rows(analysis: Analysis) -> list[Row]:
     low, high = unsure.interval
     said = f"interval {high - low:.2f} wide, without them"
     return [("Rival models give µ′/µ", span(min(rivals), max(rivals)), said)]
-
-
-def _reached(amplitude: float | None) -> str:
-    return "out of reach" if amplitude is None else shown(amplitude, M, 3)
 
 
 def texture_rows(analysis: Analysis) -> list[Row]:
@@ -180,7 +173,7 @@ def sound_rows_at_ear(ears: EarExposure | None) -> list[Row]:
 def more_rows(analysis: Analysis) -> list[Row]:
     """Rows of what the key numbers are made of and what follows from them: for an appendix."""
     p = analysis.prediction
-    floats = _reached(analysis.own_curve.zero_friction_amplitude)
+    floats = shown(analysis.own_curve.zero_friction_amplitude, M, 3, OUT_OF_REACH)
     rows = [
         ("Quality factor", f"{p.mode.quality_factor:.4g}", ""),
         ("Half wavelength", shown(p.mode.half_wavelength, M), ""),
@@ -201,7 +194,6 @@ def unsaid_warnings(analysis: Analysis) -> list[str]:
     return [text for text in analysis.prediction.warnings if text not in said]
 
 
-NUMBERS = ("Quantity", "Value", "Remark")
 _INFLUENCES = ("Drawn", "From", "Share of the variance", "Whose")
 # Of what could be measured: as many rows as one decides from.
 _NEXT = 5

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.schema import leaves
-from squeezefilm.core.kit.numbers import FARAD, HENRY, HZ, A, M, Row, V, W, dotted, shown
+from squeezefilm.core.kit.numbers import FARAD, HENRY, HZ, A, M, Row, V, W, decimals, dotted, shown
 from squeezefilm.core.kit.terminal import bullets, heading
 from squeezefilm.design.analysis.published_claims import missed_by
 from squeezefilm.physics.chain.active_area import CRITERIA, percent
@@ -21,11 +21,7 @@ if TYPE_CHECKING:
     from squeezefilm.design.analysis.analysis import Analysis
     from squeezefilm.design.analysis.area_odds import JudgedArea
     from squeezefilm.design.analysis.felt import FeltAt, FeltGratings
-    from squeezefilm.design.analysis.sensitivities import (
-        DisplaySensitivities,
-        DisplaySensitivity,
-        Shift,
-    )
+    from squeezefilm.design.analysis.sensitivities import DisplaySensitivities, DisplaySensitivity
     from squeezefilm.design.analysis.wanted import Wanted
     from squeezefilm.physics.chain.prediction import Prediction
     from squeezefilm.physics.plate.electronics import ElectricalLoad
@@ -34,6 +30,7 @@ if TYPE_CHECKING:
     from squeezefilm.physics.uncertainty.uncertainty import UncertainFriction
 
 SHOWN = 12
+OUT_OF_REACH = "out of reach"
 
 
 def interval_rows(unsure: UncertainFriction | None) -> list[Row]:
@@ -41,12 +38,12 @@ def interval_rows(unsure: UncertainFriction | None) -> list[Row]:
     if unsure is None or unsure.amplitude_interval is None:
         return []
     low, high = (shown(end, M, 3) for end in unsure.amplitude_interval)
-    rows = [("", f"{low} to {high}", f"{100 * unsure.level:.0f} % interval of the amplitude")]
+    rows = [("", f"{low} to {high}", f"{si.percent(unsure.level)} interval of the amplitude")]
     if unsure.power is not None:
         rows.append(("Power taken", shown(unsure.power, W, 3), "plate and finger, cold"))
     if unsure.power_interval is not None:
         low, high = (shown(end, W, 3) for end in unsure.power_interval)
-        rows.append(("", f"{low} to {high}", f"{100 * unsure.level:.0f} % interval of the power"))
+        rows.append(("", f"{low} to {high}", f"{si.percent(unsure.level)} interval of the power"))
     return rows
 
 
@@ -64,22 +61,15 @@ def wanted_rows(wanted: Wanted | None) -> list[Row]:
     if unsure is None:
         why = wanted.why_no_interval
         return [*rows, ("", "no interval", why)] if why else rows
-    low, high = (_volts(end) for end in unsure.interval)
-    rows.append(
-        (
-            "",
-            f"{low} to {high}",
-            f"{100 * unsure.level:.0f} % interval, median {_volts(unsure.median)}",
-        )
+    low, high, median = (
+        shown(volts, V, 3, OUT_OF_REACH) for volts in (*unsure.interval, unsure.median)
     )
-    within = f"{100 * (1 - unsure.beyond):.0f} %"
-    never = f"; in {100 * unsure.never:.0f} % no voltage does" if unsure.never else ""
+    level = f"{si.percent(unsure.level)} interval, median {median}"
+    rows.append(("", f"{low} to {high}", level))
+    within = si.percent(1 - unsure.beyond)
+    never = f"; in {si.percent(unsure.never)} no voltage does" if unsure.never else ""
     remark = f"of the draws reach it at the drive's {shown(unsure.limit, V)}{never}"
     return [*rows, ("", within, remark)]
-
-
-def _volts(value: si.Volt | None) -> str:
-    return "out of reach" if value is None else shown(value, V, 3)
 
 
 def felt_rows(felt: FeltGratings | None, speed: si.MetrePerSecond | None = None) -> list[Row]:
@@ -127,7 +117,7 @@ def sensitivity_rows(sensitivities: DisplaySensitivities) -> list[list[str]]:
             " to ".join(_value(end.value, row.unit) for end in (row.low, row.high)),
             _shifts(row.low.frequency_shift, row.high.frequency_shift),
             _shifts(row.low.amplitude_shift, row.high.amplitude_shift),
-            _frictions(row.low, row.high),
+            ", ".join(decimals(end.relative_friction, 2) for end in (row.low, row.high)),
             "as described" if row.origin == "given" else "assumed",
         ]
         for row in most
@@ -153,14 +143,6 @@ def _shifts(low: float | None, high: float | None) -> str:
     if low == high == 0:
         return "–"
     return f"{100 * low:+.2g} %, {100 * high:+.2g} %".replace("-", "−")
-
-
-def _frictions(low: Shift, high: Shift) -> str:
-    each = [
-        "–" if end.relative_friction is None else f"{end.relative_friction:.2f}"
-        for end in (low, high)
-    ]
-    return ", ".join(each)
 
 
 MISSED_HEADING = "What measurements say and '{}' does not"

@@ -22,6 +22,7 @@ from squeezefilm.core.kit.page_style import (
     links,
     page,
     part,
+    rows_section,
     section,
     stamped,
     text_table,
@@ -141,7 +142,7 @@ def _page(made: Fabrication, drawing: Drawing, views: str, names: list[str]) -> 
         section("Drawing", _drawing(drawing, views), "figure"),
         section("Ceramics, electrodes and poling", _layout(made)),
         section("Bill of materials", text_table(_BILL_SAID, BILL, bill_rows(made.bill))),
-        section("Drive electronics", _electronics(made)),
+        rows_section("Drive electronics", "Without a finger", electronics_rows(made.load)),
         part("bench", "Test plan for the vibrometer", _PLAN_SAID),
         *(
             section(f"{n}. {escape(step.name)}", _step(step))
@@ -204,11 +205,6 @@ def _layout(made: Fabrication) -> str:
     text = text_table("Lengths in millimetres, from the corner at x = y = 0", head, rows)
     joined = text_table("Leads", ("Lead", "Electrodes", "To"), lead_rows(made))
     return f"{text}\n<br>\n{joined}\n{bullets(wiring_said(made.electrodes))}"
-
-
-def _electronics(made: Fabrication) -> str:
-    head = ("Quantity", "Value", "Remark")
-    return text_table("Without a finger", head, electronics_rows(made.load))
 
 
 def _step(step: TestStep) -> str:

@@ -47,11 +47,9 @@ _KEY = ("resonance_frequency", "amplitude_per_volt", "quality_factor", "mass", F
 
 def said(value: float | None, unit: str, digits: int = 4) -> str:
     """A value as people read it; a dash where it is not known."""
-    if value is None:
-        return "–"
-    if unit == "kg":
+    if value is not None and unit == "kg":
         return f"{1e3 * value:.{digits}g} g"
-    return f"{value:.{digits}g}" if unit == "1" else shown(value, si.Unit(unit), digits)
+    return shown(value, si.Unit(unit), digits)
 
 
 def expected_said(check: Check) -> str:

@@ -12,7 +12,7 @@ import numpy as np
 
 from squeezefilm.core.errors import InputError, optional
 from squeezefilm.core.kit.folder import json_text, write_folder
-from squeezefilm.core.kit.numbers import M, V, printable, shown
+from squeezefilm.core.kit.numbers import NUMBERS, M, V, printable, shown
 from squeezefilm.core.kit.page_style import (
     Pictures,
     drawn_figures,
@@ -72,7 +72,7 @@ def _numbers(result: SolvedBody) -> str:
     rows = working_rows(result)
     amplitude = shown(volts * result.amplitude_per_volt, M, 3)
     rows.append((f"Amplitude at {shown(volts, V)}", amplitude, "zero-to-peak, at the antinode"))
-    table = text_table(result.model, ("Quantity", "Value", "Remark"), rows + drive_rows(result))
+    table = text_table(result.model, NUMBERS, rows + drive_rows(result))
     fit = result.body.fit if isinstance(result, RingAnalysis) else None
     said = (*(() if fit is None else fit_sentences(fit)), *result.objections, *result.heat.doubts)
     return table + "".join(f"<p>{escape(sentence)}</p>" for sentence in said)
