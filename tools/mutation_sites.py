@@ -69,7 +69,7 @@ _TYPES = {
     "Literal",
     "NDArray",
 }
-_SPOKEN = re.compile(r"^(_?log(ger|ging)?\b|print$|warnings\.|typer\.(echo|secho)|_?console\.)")
+_SPOKEN = re.compile(r"^(_?log(ger|ging)?\b|print$|warnings\.|typer\.s?echo|(terminal\.)?say$)")
 # How a figure looks: no test should pin it.
 _LOOKS = frozenset(
     {"alpha", "color", "dpi", "figsize", "fontsize", "gridspec_kw", "height_ratios", "labelpad"}

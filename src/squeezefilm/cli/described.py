@@ -11,7 +11,7 @@ from squeezefilm.cli.app import answer, option_of, read_option, working
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit.folder import require_folder
 from squeezefilm.core.kit.numbers import dotted
-from squeezefilm.core.kit.terminal import heading, plain_console, table
+from squeezefilm.core.kit.terminal import heading, say, table
 
 _MARKS = {"assumed": "* ", "unstated": "? "}
 _STYLES = {"*": "yellow", "?": "red"}
@@ -54,7 +54,6 @@ def _preset(described: Any, kind: str, verbs: str) -> dict[str, Any]:
 
 def show_presets(listing: Sequence[dict[str, Any]]) -> None:
     """Print the list of presets."""
-    console = plain_console()
     rows = [
         (
             preset["name"],
@@ -64,8 +63,8 @@ def show_presets(listing: Sequence[dict[str, Any]]) -> None:
         )
         for preset in listing
     ]
-    table(console, ("preset", "what it is", "taken by", "assumed"), rows, fixed=(0, 3))
-    console.print("squeezefilm show NAME lists the values; squeezefilm analyze NAME works them out")
+    table(("preset", "what it is", "taken by", "assumed"), rows, fixed=(0, 3))
+    say("squeezefilm show NAME lists the values; squeezefilm analyze NAME works them out")
 
 
 def display_values(target: str) -> list[dict[str, Any]]:
@@ -100,7 +99,6 @@ def display_values(target: str) -> list[dict[str, Any]]:
 def show_values(values: Sequence[dict[str, Any]]) -> None:
     """Print the values of a display by table of its file, with their sources; a star marks what is
     assumed, a question mark what has no source."""
-    console = plain_console()
     groups: dict[str, list[tuple[str, str, str]]] = {}
     for item in values:
         group, _, key = item["path"].rpartition(".")
@@ -108,18 +106,17 @@ def show_values(values: Sequence[dict[str, Any]]) -> None:
         groups.setdefault(group, []).append((mark + key, item["text"], _origin(item)))
     for group, rows in groups.items():
         if group:
-            heading(console, group)
+            heading(group)
         table(
-            console,
             ("", "", ""),
             rows,
             fixed=(0,),
             styles=lambda row: _STYLES.get(row[0][:1], ""),
         )
     sourced = [item["evidence"] for item in values if item["evidence"] is not None]
-    console.print(f"\n* assumed: {sourced.count('assumed')} of {len(sourced)} values")
+    say(f"\n* assumed: {sourced.count('assumed')} of {len(sourced)} values")
     if bare := sourced.count("unstated"):
-        console.print(
+        say(
             f"? without a source: {bare} of {len(sourced)} values; say where each is from, like "
             'thickness = { value = "2 mm", source = "caliper", evidence = "measured" }, or once '
             'for a table: source = "drawing 17"'
@@ -165,18 +162,17 @@ def material_list(name: str | None = None) -> list[dict[str, Any]]:
 
 def show_materials(listing: Sequence[dict[str, Any]]) -> None:
     """Print the materials by kind with what matters most of them; of a single one all values."""
-    console = plain_console()
     if len(listing) == 1:
         _show_material(listing[0])
         return
     for kind, columns in _COLUMNS.items():
-        heading(console, f"{kind}: [actuator.{kind}] material = …")
+        heading(f"{kind}: [actuator.{kind}] material = …")
         rows = []
         for one in (item for item in listing if item["kind"] == kind):
             texts = {value["path"]: value for value in one["values"]}
             rows.append((one["name"], *(_shown(texts[path]) for path in columns), one["title"]))
-        table(console, ("", *columns.values(), ""), rows, fixed=(0,))
-    console.print(
+        table(("", *columns.values(), ""), rows, fixed=(0,))
+    say(
         "\n* assumed. squeezefilm materials NAME lists all values with their sources. A file may "
         "state single values beside the name, in place of the library's."
     )
@@ -200,17 +196,15 @@ def _shown(value: dict[str, Any]) -> str:
 
 
 def _show_material(material: dict[str, Any]) -> None:
-    console = plain_console()
-    console.print(f"{material['name']}: {material['title']} (a {material['kind']})")
-    console.print(f"also: {', '.join(material['also'])}")
-    console.print(f"spread: {material['spread']}")
+    say(f"{material['name']}: {material['title']} (a {material['kind']})")
+    say(f"also: {', '.join(material['also'])}")
+    say(f"spread: {material['spread']}")
     rows = []
     for value in material["values"]:
         mark = _MARKS.get(value["evidence"], "  ")
         between = "" if value["range"] is None else " to ".join(value["range"])
         rows.append((mark + value["path"], value["text"], between, _origin(value)))
     table(
-        console,
         ("", "", "range", "source"),
         rows,
         fixed=(0,),

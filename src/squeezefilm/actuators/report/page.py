@@ -62,9 +62,9 @@ class AnalyzedActuator(NamedTuple):
         """Print key numbers, warnings, and what is assumed."""
         analysis, described = self.analysis, self.analysis.described
         title = f"{described.title} [{described.name}]"
-        console = show_rows(title, self.rows(analysis), analysis.warnings, fixed=(0, 1))
-        terminal_bullets(console, [("interval", drawn_words(analysis.drawn), "")])
-        terminal_bullets(console, [("assumed", assumed_words(described.provenance), "yellow")])
+        show_rows(title, self.rows(analysis), analysis.warnings, fixed=(0, 1))
+        terminal_bullets([("interval", drawn_words(analysis.drawn), "")])
+        terminal_bullets([("assumed", assumed_words(described.provenance), "yellow")])
 
     def write(self, folder: Path) -> Path:
         """Write result.json, a PNG of each figure, and report.html into `folder`; the path of the

@@ -36,7 +36,7 @@ def progress(enabled: bool) -> Iterator[Callable[[str], None]]:
         yield lambda text: status.update(Text(f"{printable(text)} …"))
 
 
-def plain_console() -> Console:
+def _console() -> Console:
     """A console on standard output, without colour where that is no terminal."""
     from rich.console import Console
 
@@ -47,8 +47,12 @@ def plain_console() -> Console:
     return Console(highlight=False, markup=False, emoji=False)
 
 
+def say(text: str, style: str = "") -> None:
+    """Print a text, wrapped to the width of the terminal."""
+    _console().print(text, style=style)
+
+
 def table(
-    console: Console,
     head: Sequence[str],
     rows: Iterable[Sequence[str]],
     *,
@@ -67,7 +71,7 @@ def table(
     for row in rows:
         cells = ["\n".join(_kept(line) for line in cell.split("\n")) for cell in row]
         table.add_row(*(Text(cell) for cell in cells), style=styles(row) if styles else None)
-    console.print(table)
+    _console().print(table)
 
 
 def _kept(line: str) -> str:
@@ -75,12 +79,9 @@ def _kept(line: str) -> str:
     return " " * (len(line) - len(line.lstrip(" "))) + printable(line)
 
 
-def heading(console: Console, text: str) -> None:
-    """Print a heading."""
-    from rich.text import Text
-
-    console.print()
-    console.print(Text(printable(text), style="bold"))
+def heading(text: str) -> None:
+    """Print a heading, with an empty line above."""
+    say(f"\n{printable(text)}", "bold")
 
 
 def show_rows(
@@ -89,17 +90,15 @@ def show_rows(
     warnings: Iterable[str] = (),
     *,
     fixed: Iterable[int] = (0,),
-) -> Console:
-    """Print a heading, rows of quantity, value and remark, and warnings; the console to go on."""
-    console = plain_console()
-    heading(console, title)
-    table(console, ("", "", ""), rows, fixed=fixed)
+) -> None:
+    """Print a heading, rows of quantity, value and remark, and warnings."""
+    heading(title)
+    table(("", "", ""), rows, fixed=fixed)
     for text in warnings:
-        console.print(f"! {printable(text)}")
-    return console
+        say(f"! {printable(text)}")
 
 
-def bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
+def bullets(items: Iterable[tuple[str, str, str]]) -> None:
     """Wrapped sentences, each behind a word that says what kind it is."""
     from rich.table import Table
     from rich.text import Text
@@ -109,4 +108,4 @@ def bullets(console: Console, items: Iterable[tuple[str, str, str]]) -> None:
     grid.add_column(overflow="fold")
     for word, text, style in items:
         grid.add_row(Text(printable(word), style=style), Text(printable(text)))
-    console.print(grid)
+    _console().print(grid)

@@ -9,7 +9,7 @@ import numpy as np
 
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, write_folder
-from squeezefilm.core.kit.terminal import show_rows
+from squeezefilm.core.kit.terminal import say, show_rows
 from squeezefilm.physics.film.planar.film import FilmPlanar
 
 if TYPE_CHECKING:
@@ -97,4 +97,5 @@ def show_film(answer: FilmAnswer) -> None:
         ("Damping", f"{answer.damping_relative:.6g}", harmonic),
     ]
     numbers = f"σ = {answer.squeeze_number:.4g}, ε = {answer.excursion_ratio:.4g}"
-    show_rows(f"{answer.request.shape}, {numbers}", rows).print(answer.status)
+    show_rows(f"{answer.request.shape}, {numbers}", rows)
+    say(answer.status)

@@ -13,7 +13,7 @@ from squeezefilm.core.kit.folder import json_text, write_folder
 from squeezefilm.core.kit.model_looks import look_of
 from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, V, decimals, printable, shown
 from squeezefilm.core.kit.page_style import FigureOf, drawn_figures, picture_files
-from squeezefilm.core.kit.terminal import heading, plain_console, table
+from squeezefilm.core.kit.terminal import heading, say, table
 from squeezefilm.design.analysis.report.rows import (
     group_words,
     influence_rows,
@@ -228,26 +228,26 @@ def write_friction(result: FrictionAnalysis, folder: Path) -> Path:
 
 def show_friction(result: FrictionAnalysis) -> None:
     """Print a friction analysis."""
-    console, p = plain_console(), result.prediction
-    heading(console, f"{result.display.title} [{result.display.name}]")
+    p = result.prediction
+    heading(f"{result.display.title} [{result.display.name}]")
     unsure = result.uncertainty
     if unsure is None:
-        console.print(f"µ′/µ = {p.relative_friction:.2f} as described")
+        say(f"µ′/µ = {p.relative_friction:.2f} as described")
     else:
-        console.print(f"{unsure.sentence}: {si.percent(unsure.level)} interval. {unsure.standing}.")
+        say(f"{unsure.sentence}: {si.percent(unsure.level)} interval. {unsure.standing}.")
     for finding in result.verdict:
-        console.print(f"{finding.kind}: {finding.text}")
-    table(console, ("", "", ""), _rows(result), fixed=(0,))
-    heading(console, "The same finger by other models")
+        say(f"{finding.kind}: {finding.text}")
+    table(("", "", ""), _rows(result), fixed=(0,))
+    heading("The same finger by other models")
     others: list[tuple[str, str]] = [
         (curve.model, decimals(curve.at(p.vibration_amplitude), 3)) for curve in result.curves
     ]
-    table(console, ("model", "µ′/µ"), others)
-    show_missed(console, p.model)
+    table(("model", "µ′/µ"), others)
+    show_missed(p.model)
     if unsure is not None:
         _ranking(unsure)
     for text in p.warnings:
-        console.print(f"! {printable(text)}")
+        say(f"! {printable(text)}")
 
 
 def _rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
@@ -321,15 +321,14 @@ def _friction_rows(result: FrictionAnalysis) -> list[tuple[str, str, str]]:
 
 def _ranking(unsure: UncertainFriction) -> None:
     """Print what makes the friction uncertain, in two groups, and the weights of the laws."""
-    console = plain_console()
     for group in unsure.groups:
-        heading(console, group_words(group))
+        heading(group_words(group))
         rows = influence_rows(unsure, group.knowledge, _RANKED)
-        table(console, ("drawn", "from", "share", ""), rows, fixed=(0,))
-    heading(console, "Laws and states that are drawn, by weights that are assumed")
-    table(console, ("", "", "weight", "why"), weight_rows(unsure), fixed=(0, 1))
+        table(("drawn", "from", "share", ""), rows, fixed=(0,))
+    heading("Laws and states that are drawn, by weights that are assumed")
+    table(("", "", "weight", "why"), weight_rows(unsure), fixed=(0, 1))
     refused = unsure.refused
-    console.print(
+    say(
         f"{refused.evaluations} draws; seed {unsure.seed}; "
         + (refused.sentence if refused.count else "none was refused")
     )

@@ -28,7 +28,7 @@ from squeezefilm.core.kit.page_style import (
     section,
     stamped,
 )
-from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, table
+from squeezefilm.core.kit.terminal import heading, say, show_rows, table
 from squeezefilm.design.report import texture_figures as draw
 from squeezefilm.physics.render.fidelity.report import contrast_rows, lag_rows
 from squeezefilm.physics.render.program.renderer import MadeForSpeed
@@ -100,19 +100,16 @@ def show_render(result: RenderAnalysis) -> None:
 
 def show_lost(export: HjifExport) -> None:
     """Print what an export to MPEG haptics lost."""
-    console = plain_console()
-    heading(console, "texture.hjif holds one line of the texture; lost:")
+    heading("texture.hjif holds one line of the texture; lost:")
     for text in export.lost:
-        console.print(f"- {text}")
-    console.print(
-        f"- friction differs by {export.rms_error:.2g} RMS, {export.largest_error:.2g} at most"
-    )
+        say(f"- {text}")
+    say(f"- friction differs by {export.rms_error:.2g} RMS, {export.largest_error:.2g} at most")
 
 
 def show_textures(listing: list[dict[str, str]]) -> None:
     """Print the textures that come with the package."""
     rows = [(texture["name"], texture["title"], texture["quantity"]) for texture in listing]
-    table(plain_console(), ("texture", "title", "quantity"), rows, fixed=(0,))
+    table(("texture", "title", "quantity"), rows, fixed=(0,))
 
 
 _DAC_RATE = 192_000

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit.numbers import HZ, M, S, V, decimals, printable, shown
-from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, table
+from squeezefilm.core.kit.terminal import heading, say, show_rows, table
 from squeezefilm.physics.render.fidelity.report import contrast_rows, lag_rows
 
 if TYPE_CHECKING:
@@ -25,23 +25,18 @@ _SPEED = si.Unit("m/s")
 
 def show_export(done: TraceExport) -> None:
     """Print what was exported, and what the trace had lost."""
-    console = plain_console()
-    console.print(
-        f"{done.to}: {done.rows} rows of {len(done.columns)} columns, {done.events} events"
-    )
+    say(f"{done.to}: {done.rows} rows of {len(done.columns)} columns, {done.events} events")
     for sentence in done.damage:
-        console.print(f"! {sentence}")
+        say(f"! {sentence}")
 
 
 def show_check(check: DeviceCheck) -> None:
     """Print a device's checks as a table, and what to do about those that did not pass."""
-    console = plain_console()
-    heading(console, f"Device on {check.drive}")
+    heading(f"Device on {check.drive}")
     rows = [
         (result.verdict, result.name, result.measured, result.allowed) for result in check.results
     ]
     table(
-        console,
         ("", "check", "measured", "allowed"),
         rows,
         fixed=(0,),
@@ -49,11 +44,11 @@ def show_check(check: DeviceCheck) -> None:
     )
     for result in check.results:
         if not result.passed:
-            console.print(f"! {result.name}: {result.doubt or result.advice}")
+            say(f"! {result.name}: {result.doubt or result.advice}")
     count, verdicts = len(check.results), [result.verdict for result in check.results]
     doubts = verdicts.count("doubt")
     told = f", {doubts} in doubt" if doubts else ""
-    console.print(f"{verdicts.count('pass')} of {count} checks passed{told}")
+    say(f"{verdicts.count('pass')} of {count} checks passed{told}")
 
 
 def line_a_second() -> Callable[[PlayView], None]:

@@ -29,7 +29,7 @@ from squeezefilm.core.kit.page_style import (
     text_table,
 )
 from squeezefilm.core.kit.terminal import bullets as printed_bullets
-from squeezefilm.core.kit.terminal import heading, plain_console, table
+from squeezefilm.core.kit.terminal import heading, table
 from squeezefilm.core.results import stamp
 from squeezefilm.measure.calibration.blind import BlindPrediction
 from squeezefilm.measure.calibration.calibration import Calibration
@@ -236,13 +236,13 @@ def _recordings(calibrated: FolderCalibration) -> str:
 def show_calibration(calibrated: FolderCalibration) -> None:
     """Print what a calibration found: its sentences, each value before and after, what is left
     out."""
-    console, calibration = plain_console(), calibrated.calibration
-    heading(console, f"{calibration.display.name}, calibrated")
-    table(console, VALUES_HEAD, value_rows(calibrated), fixed=(0,))
+    calibration = calibrated.calibration
+    heading(f"{calibration.display.name}, calibrated")
+    table(VALUES_HEAD, value_rows(calibrated), fixed=(0,))
     look = "green" if calibration.fits else "bold red"
-    printed_bullets(console, [("", text, look) for text in calibration.sentences[:1]])
-    printed_bullets(console, [("", text, "") for text in calibration.sentences[1:]])
-    printed_bullets(console, [("left out", text, "yellow") for text in calibrated.left_out])
+    printed_bullets([("", text, look) for text in calibration.sentences[:1]])
+    printed_bullets([("", text, "") for text in calibration.sentences[1:]])
+    printed_bullets([("left out", text, "yellow") for text in calibrated.left_out])
 
 
 def prediction_lines(prediction: BlindPrediction) -> Iterator[str]:

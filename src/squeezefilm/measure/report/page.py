@@ -25,7 +25,7 @@ from squeezefilm.core.kit.page_style import (
     text_table,
 )
 from squeezefilm.core.kit.terminal import bullets as printed_bullets
-from squeezefilm.core.kit.terminal import heading, plain_console, table
+from squeezefilm.core.kit.terminal import heading, table
 from squeezefilm.core.results import stamp, to_json
 from squeezefilm.measure.fits.estimate import LEVEL, Adequacy, Estimate, FitResult
 from squeezefilm.measure.fits.friction.friction_curve import CurveComparison
@@ -40,23 +40,19 @@ _READ = "SHA-256 of what was read"
 
 def show_check(check: RecordingCheck) -> None:
     """Print how a recording was read, and what is doubtful of it."""
-    console = plain_console()
-    heading(console, f"{check.recording.told.name} ({check.file.name})")
-    table(console, ("", ""), check.facts, fixed=(0,))
+    heading(f"{check.recording.told.name} ({check.file.name})")
+    table(("", ""), check.facts, fixed=(0,))
     doubts = [("doubtful", text, "yellow") for text in check.doubts]
-    printed_bullets(console, doubts or [("", "Nothing doubtful was found.", "")])
+    printed_bullets(doubts or [("", "Nothing doubtful was found.", "")])
 
 
 def show_folder(checked: FolderCheck) -> None:
     """Print the recordings of a folder, and what could not be read."""
     for check in checked.checks:
         show_check(check)
-    console = plain_console()
     if checked.refused:
-        heading(console, f"{len(checked.refused)} could not be read")
-        printed_bullets(
-            console, [("refused", refusal.why, "bold red") for refusal in checked.refused]
-        )
+        heading(f"{len(checked.refused)} could not be read")
+        printed_bullets([("refused", refusal.why, "bold red") for refusal in checked.refused])
 
 
 def show_fit(check: RecordingCheck, fit: FitResult, response: FitResult | None = None) -> None:
@@ -66,19 +62,18 @@ def show_fit(check: RecordingCheck, fit: FitResult, response: FitResult | None =
     _show_one(title, fit)
     if response is not None:
         _show_one("The frequency response that these signals give", response)
-    printed_bullets(plain_console(), [("doubtful", text, "yellow") for text in check.doubts])
+    printed_bullets([("doubtful", text, "yellow") for text in check.doubts])
 
 
 def _show_one(title: str, fit: FitResult) -> None:
-    console = plain_console()
-    heading(console, title)
+    heading(title)
     if isinstance(fit, CurveComparison):
-        table(console, MODELS_HEAD, model_rows(fit), fixed=(0,))
-        printed_bullets(console, [("", inside_words(fit), "")])
+        table(MODELS_HEAD, model_rows(fit), fixed=(0,))
+        printed_bullets([("", inside_words(fit), "")])
     elif rows := estimate_rows(fit):
-        table(console, HEAD, rows, fixed=(0, 1))
+        table(HEAD, rows, fixed=(0, 1))
     word, look = ("adequate", "green") if fit.adequacy.adequate else ("INADEQUATE", "bold red")
-    printed_bullets(console, [(word, fit.adequacy.sentence, look)])
+    printed_bullets([(word, fit.adequacy.sentence, look)])
 
 
 MODELS_HEAD = ("model", "off by", "in spreads", "answered", "fitted")

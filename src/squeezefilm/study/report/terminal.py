@@ -15,7 +15,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.kit.numbers import M, shown
-from squeezefilm.core.kit.terminal import heading, plain_console, show_rows, table
+from squeezefilm.core.kit.terminal import heading, say, show_rows, table
 from squeezefilm.instruments.bench.markers import markers_if
 from squeezefilm.study.conduct.terminal_run import Desk, Examiner, open_study, run_session
 from squeezefilm.study.record.store import utc_now
@@ -52,10 +52,9 @@ def show_plan(plan: StudyPlan) -> None:
         ("Order", design.order, _balanced(plan.balanced_participants)),
         ("Seed", str(plan.seed), f"design {design.sha256[:12]}"),
     ]
-    console = show_rows(f"{design.name}: {design.title}", rows)
-    heading(console, "Presented")
+    show_rows(f"{design.name}: {design.title}", rows)
+    heading("Presented")
     table(
-        console,
         (*_GRATING, "Surface", "Friction", "Right answer"),
         [
             (
@@ -68,9 +67,8 @@ def show_plan(plan: StudyPlan) -> None:
         ],
     )
     if design.alternatives:
-        heading(console, "Compared with")
+        heading("Compared with")
         table(
-            console,
             (*_GRATING, "Ridge", "Material"),
             [
                 (
@@ -81,19 +79,19 @@ def show_plan(plan: StudyPlan) -> None:
                 for alternative in design.alternatives
             ],
         )
-    heading(console, "First trials of the first participants")
+    heading("First trials of the first participants")
     for number, schedule in enumerate(plan.schedules[:4]):
         names = [" / ".join(t.stimuli) or t.adaptive for t in schedule if t.phase == "main"][:8]
-        console.print(f"{number:3d}  {schedule[0].display}: {', '.join(names)}, …")
+        say(f"{number:3d}  {schedule[0].display}: {', '.join(names)}, …")
     if plan.doubts:
-        heading(console, "To be looked at before anybody is asked")
+        heading("To be looked at before anybody is asked")
         for said in plan.doubts:
-            console.print(said)
+            say(said)
     if plan.assumed:
-        heading(console, "Assumed")
-        console.print(", ".join(plan.assumed))
+        heading("Assumed")
+        say(", ".join(plan.assumed))
     if design.note:
-        console.print(f"\n{design.note}")
+        say(f"\n{design.note}")
 
 
 _EXPLORING = {"strokes": "to and fro along x", "free": "over the whole face, in two dimensions"}
@@ -112,19 +110,17 @@ def _grating(surface: Stimulus | Grating) -> tuple[str, str, str, str]:
 
 def show_boards(head: tuple[str, ...], rows: list[tuple[str, ...]], says: Iterable[str]) -> None:
     """Print a study's boards, and what it calls their lengths."""
-    console = plain_console()
-    heading(console, "Boards to be made")
-    table(console, head, rows)
-    for say in says:
-        console.print(say)
+    heading("Boards to be made")
+    table(head, rows)
+    for sentence in says:
+        say(sentence)
 
 
 def show_status(store: StudyStore) -> None:
     """Print who is enrolled and how far they are."""
-    console, study = plain_console(), store.study
-    heading(console, f"{study['name']}: {store.path}")
+    study = store.study
+    heading(f"{study['name']}: {store.path}")
     table(
-        console,
         ("Participant", "Number", "Answered", "Planned", "Set aside"),
         [
             (

@@ -7,13 +7,12 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import checkout, json_text, markdown_table, write_folder
 from squeezefilm.core.kit.page_style import as_html, html_table, page, section, stamped
-from squeezefilm.core.kit.terminal import bullets, heading, plain_console, table
+from squeezefilm.core.kit.terminal import bullets, heading, table
 from squeezefilm.core.results import write_whole
 from squeezefilm.design.analysis.paper_procedure import PaperDesign
 from squeezefilm.design.analysis.published_claims import MEANINGS, missed_by
@@ -21,9 +20,6 @@ from squeezefilm.design.analysis.report.rows import cited, missed_directions
 from squeezefilm.validation.command import ClaimResult, Reproduction
 from squeezefilm.validation.frozen import MODELS
 from squeezefilm.validation.report.prototype import Block, Item, Part, Table, prototype_parts
-
-if TYPE_CHECKING:
-    from rich.console import Console
 
 _HEADER = """# Validation
 
@@ -229,36 +225,35 @@ _VERDICT_STYLES = {
 def show_claims(result: Reproduction) -> None:
     """Print every published claim: printed, recomputed, verdict; the directions of friction in
     every model; then where and why; the errata; what the verdicts mean."""
-    console = plain_console()
     plain, asked = plain_claims(result.results), directions(result.results)
     columns = ("claim", "printed", "as printed", "recomputed", "verdict")
-    table(console, columns, [_claim_row(item) for item in plain], fixed=(0,), styles=_style)
+    table(columns, [_claim_row(item) for item in plain], fixed=(0,), styles=_style)
     if asked:
-        heading(console, "Directions of friction that others observed, at one frozen set of values")
-        _say(console, model_sentences())
+        heading("Directions of friction that others observed, at one frozen set of values")
+        _say(model_sentences())
         head, rows = direction_table(result.results)
         names = [item.claim.id if item is items[0] else "" for items in asked for item in items]
         named = [(name, *row[2:]) for name, row in zip(names, rows, strict=True)]
-        table(console, head[1:], named, fixed=(0, 1), styles=_style)
-    heading(console, "Where and why")
+        table(head[1:], named, fixed=(0, 1), styles=_style)
+    heading("Where and why")
     for item in plain:
-        heading(console, f"{item.claim.id}: {item.verdict}")
-        _say(console, [f"{item.claim.where}: {item.claim.statement}", *_reasons(item)])
+        heading(f"{item.claim.id}: {item.verdict}")
+        _say([f"{item.claim.where}: {item.claim.statement}", *_reasons(item)])
     for items in asked:
         claim = items[0].claim
-        heading(console, claim.id)
-        _say(console, [f"{claim.where}: {claim.statement}"])
+        heading(claim.id)
+        _say([f"{claim.where}: {claim.statement}"])
         for item in items:
-            _say(console, [f"{item.claim.model}: {item.verdict}", *_reasons(item)])
+            _say([f"{item.claim.model}: {item.verdict}", *_reasons(item)])
     if result.errata:
-        heading(console, "Errata of the paper")
+        heading("Errata of the paper")
         errata = [
             (e.equation, f"{e.printed}  must be  {e.corrected}: {e.why}", "") for e in result.errata
         ]
-        bullets(console, errata)
+        bullets(errata)
     head, counted = verdict_table(result.results)
-    heading(console, f"{len(result.results)} claims, and what their verdicts say")
-    table(console, head, counted, fixed=(1,), styles=lambda row: _VERDICT_STYLES.get(row[0], ""))
+    heading(f"{len(result.results)} claims, and what their verdicts say")
+    table(head, counted, fixed=(1,), styles=lambda row: _VERDICT_STYLES.get(row[0], ""))
 
 
 def _style(row: Sequence[str]) -> str:
@@ -275,8 +270,8 @@ def _reasons(item: ClaimResult) -> list[str]:
     return [f"why: {item.claim.why}", *([item.found.note] if item.found.note else [])]
 
 
-def _say(console: Console, texts: Iterable[str]) -> None:
-    bullets(console, [("", text, "") for text in texts])
+def _say(texts: Iterable[str]) -> None:
+    bullets([("", text, "") for text in texts])
 
 
 def plain_claims(results: Iterable[ClaimResult]) -> tuple[ClaimResult, ...]:

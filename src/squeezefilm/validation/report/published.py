@@ -24,7 +24,7 @@ from squeezefilm.core.kit.page_style import (
     text_table,
 )
 from squeezefilm.core.kit.terminal import bullets as printed_bullets
-from squeezefilm.core.kit.terminal import heading, plain_console, table
+from squeezefilm.core.kit.terminal import heading, say, table
 from squeezefilm.core.results import stamp, write_whole
 from squeezefilm.measure.fits.friction.friction_curve import LEVELS
 from squeezefilm.measure.recordings.kinds import Told
@@ -290,17 +290,16 @@ def _totals(compared: FolderComparison) -> tuple[_Table, _Table]:
 
 def show_comparisons(compared: FolderComparison) -> None:
     """Print each curve, the numbers of many people and the totals beside the models."""
-    console = plain_console()
     for recording in _recordings(compared):
-        heading(console, recording.name)
-        table(console, recording.head, recording.rows, fixed=(0,))
-        printed_bullets(console, [("", words, "") for words in recording.words])
+        heading(recording.name)
+        table(recording.head, recording.rows, fixed=(0,))
+        printed_bullets([("", words, "") for words in recording.words])
     if len(compared.curves) > 1:
-        heading(console, "All curves")
+        heading("All curves")
         for _, head, rows in _totals(compared):
-            table(console, head, rows, fixed=(0,))
-        printed_bullets(console, [("", covered_words(compared), ""), ("", SCORES, "")])
-    console.print(f"\n{FITTED}")
+            table(head, rows, fixed=(0,))
+        printed_bullets([("", covered_words(compared), ""), ("", SCORES, "")])
+    say(f"\n{FITTED}")
 
 
 def write_comparisons(compared: FolderComparison, folder: Path) -> Path:

@@ -28,8 +28,6 @@ from squeezefilm.design.analysis.report.folds import Fold, folds
 from squeezefilm.design.analysis.report.rows import sensitivity_rows, wanted_rows
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from squeezefilm.design.analysis.analysis import Analysis
 
 # What stands beside an analysis for comparison, each computed by itself.
@@ -134,46 +132,46 @@ def _fold(fold: Fold, drawn: Mapping[str, str]) -> str:
 def show_analysis(analysis: Analysis, *, whole: bool = False, sensitivities: bool = False) -> None:
     """Print an analysis: its first screen; with `sensitivities` what each value does; `whole`: all
     of it, by question."""
-    display, console, screen = analysis.display, terminal.plain_console(), first_screen(analysis)
-    terminal.heading(console, f"{display.title} [{display.name}]")
-    console.print(printable(screen.sentence))
-    terminal.table(console, HEAD, screen.numbers, fixed=(0, 1))
-    terminal.heading(console, "What could make it wrong")
-    terminal.bullets(console, [("!", text, "yellow") for text in screen.doubts])
-    terminal.heading(console, f"Next: {screen.next_step}")
+    display, screen = analysis.display, first_screen(analysis)
+    terminal.heading(f"{display.title} [{display.name}]")
+    terminal.say(printable(screen.sentence))
+    terminal.table(HEAD, screen.numbers, fixed=(0, 1))
+    terminal.heading("What could make it wrong")
+    terminal.bullets([("!", text, "yellow") for text in screen.doubts])
+    terminal.heading(f"Next: {screen.next_step}")
     if analysis.wanted is not None:
-        terminal.heading(console, "The friction that was asked for")
-        terminal.table(console, ("", "", ""), wanted_rows(analysis.wanted), fixed=(0,))
+        terminal.heading("The friction that was asked for")
+        terminal.table(("", "", ""), wanted_rows(analysis.wanted), fixed=(0,))
     if whole:
-        _show_folds(console, analysis)
+        _show_folds(analysis)
         return
     if sensitivities:
-        _show_sensitivities(console, analysis)
-    console.print("\n--all prints everything else, by question")
+        _show_sensitivities(analysis)
+    terminal.say("\n--all prints everything else, by question")
 
 
-def _show_folds(console: Console, analysis: Analysis) -> None:
+def _show_folds(analysis: Analysis) -> None:
     """Print every question with its tables and sentences."""
     for fold in folds(analysis):
-        terminal.heading(console, fold.question)
+        terminal.heading(fold.question)
         for each in fold.tables:
             if each.rows:
-                console.print(printable(each.caption))
+                terminal.say(printable(each.caption))
                 head = ("", "", "") if each.head[0] == "Quantity" else each.head
-                terminal.table(console, head, each.rows, fixed=(0,))
-        terminal.bullets(console, [("–", text, "") for text in fold.said])
+                terminal.table(head, each.rows, fixed=(0,))
+        terminal.bullets([("–", text, "") for text in fold.said])
 
 
-def _show_sensitivities(console: Console, analysis: Analysis) -> None:
+def _show_sensitivities(analysis: Analysis) -> None:
     """Print what each value does to frequency, amplitude and friction."""
     shifts = analysis.sensitivities
-    terminal.heading(console, "What each value does, from the 5 % to the 95 % end of its range")
+    terminal.heading("What each value does, from the 5 % to the 95 % end of its range")
     if shifts is None:
-        console.print("Nothing vibrates here, so that no value changes anything.")
+        terminal.say("Nothing vibrates here, so that no value changes anything.")
         return
     head = ("value", "from, to", "frequency", "amplitude", "µ′/µ", "range")
-    terminal.table(console, head, sensitivity_rows(shifts), fixed=(0,))
-    console.print(
+    terminal.table(head, sensitivity_rows(shifts), fixed=(0,))
+    terminal.say(
         f"A plate with one value changed is computed by {shifts.plate_model}; the drive follows "
         f"the resonance. --json has all {len(shifts.rows)} values."
     )

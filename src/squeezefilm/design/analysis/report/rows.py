@@ -16,8 +16,6 @@ from squeezefilm.physics.display import Display
 from squeezefilm.physics.perception.senses import FINEST_TRIED
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from squeezefilm.design.analysis.analysis import Analysis
     from squeezefilm.design.analysis.area_odds import JudgedArea
     from squeezefilm.design.analysis.felt import FeltAt, FeltGratings
@@ -251,10 +249,10 @@ def weight_rows(unsure: UncertainFriction) -> list[list[str]]:
     ]
 
 
-def show_missed(console: Console, model: str) -> None:
+def show_missed(model: str) -> None:
     """Print what measurements say and a friction model does not."""
-    heading(console, MISSED_HEADING.format(model))
-    bullets(console, [("–", text, "yellow") for text in missed_directions(model)])
+    heading(MISSED_HEADING.format(model))
+    bullets([("–", text, "yellow") for text in missed_directions(model)])
 
 
 def place_rows(p: Prediction, judged: JudgedArea | None) -> list[Row]:

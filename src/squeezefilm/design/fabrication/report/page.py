@@ -28,6 +28,7 @@ from squeezefilm.core.kit.page_style import (
     text_table,
 )
 from squeezefilm.core.kit.sheet import pdf, sheet_figure, views_figure
+from squeezefilm.core.kit.terminal import heading, say, table
 from squeezefilm.core.results import stamp
 from squeezefilm.design.analysis.report.rows import display_values, electronics_rows
 from squeezefilm.design.fabrication.report.plans import rectangular_sheet, round_sheet
@@ -256,21 +257,18 @@ def _files_said(made: Fabrication) -> str:
 
 def show_fabrication(made: Fabrication) -> None:
     """Print what to expect, the bill and the steps."""
-    from squeezefilm.core.kit.terminal import heading, plain_console, table
-
-    console = plain_console()
-    heading(console, printable(made.display.title))
-    table(console, EXPECTED[:3], [row[:3] for row in expected_rows(made)], fixed=(0,))
+    heading(printable(made.display.title))
+    table(EXPECTED[:3], [row[:3] for row in expected_rows(made)], fixed=(0,))
     if made.no_intervals:
-        console.print(f"without intervals of the plate: {printable(made.no_intervals)}")
-    heading(console, "Bill of materials")
+        say(f"without intervals of the plate: {printable(made.no_intervals)}")
+    heading("Bill of materials")
     rows = [(row[2], row[1], row[3], row[4], row[6]) for row in bill_rows(made.bill)]
-    table(console, ("", "", "", "", ""), rows)
-    heading(console, "Test plan")
+    table(("", "", "", "", ""), rows)
+    heading("Test plan")
     steps = [(f"{n}", step.name, step.file) for n, step in enumerate(made.steps, 1)]
-    table(console, ("", "", ""), steps)
+    table(("", "", ""), steps)
     for text in made.prediction.warnings:
-        console.print(f"! {printable(text)}")
+        say(f"! {printable(text)}")
 
 
 def drawing_sheet(made: Fabrication) -> Drawing:

@@ -11,14 +11,13 @@ from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import json_text, write_folder
 from squeezefilm.core.kit.numbers import HZ, PER_VOLT, SPEED, shown
 from squeezefilm.core.kit.page_style import FigureOf, drawn_figures, picture_files
-from squeezefilm.core.kit.terminal import bullets, heading, plain_console, table
+from squeezefilm.core.kit.terminal import bullets, heading, say, table
 from squeezefilm.physics.chain.pad_place import place_words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from matplotlib.figure import Figure
-    from rich.console import Console
 
     from squeezefilm.design.plate.listed_modes import ListedMode
     from squeezefilm.design.plate.modes import ModeList
@@ -94,30 +93,29 @@ def mode_list_sentences(result: ModeList) -> list[tuple[str, str, str]]:
 
 def show_mode_list(result: ModeList) -> None:
     """Print the driven modes of a display, and what follows for the choice of one."""
-    console = plain_console()
     display, (low, high) = result.display, result.band
-    heading(console, f"{display.title} [{display.name}]")
-    console.print(
+    heading(f"{display.title} [{display.name}]")
+    say(
         f"Driven modes: {len(result.modes)}, from {shown(low, HZ)} to {shown(high, HZ)}; amplitude "
         "of each alone, zero to peak, at its antinode, at resonance, without a finger"
     )
     rows = mode_list_rows(result)
-    table(console, _HEAD, rows, fixed=range(len(_HEAD) - 1))
-    console.print(
+    table(_HEAD, rows, fixed=range(len(_HEAD) - 1))
+    say(
         "→ is the display's mode. The neighbour is the mode that counts most at this one's "
         "resonance: how many half-bandwidths (its f/2Q) it is away, and how much it adds to the "
         "amplitude there. From 20 % on a mode is crowded, from 100 % on hidden."
     )
     if (solved := result.solved) is not None:
-        console.print(
+        say(
             f"{solved.label} with the contribution of all other modes: "
             f"{shown(solved.amplitude_per_volt, PER_VOLT)} at its antinode "
             f"({place_words(solved.lobe)}); squeezefilm plate and analyze give the same."
         )
-    bullets(console, mode_list_sentences(result))
+    bullets(mode_list_sentences(result))
     if result.pair is not None:
-        show_pair(console, result.pair)
-    console.print(
+        show_pair(result.pair)
+    say(
         f"{result.model}; frequencies "
         + (
             f"up to {100 * result.frequency_error:.2g} % high, so that the list reaches as far "
@@ -141,12 +139,11 @@ def pair_rows(pair: RingPair) -> list[tuple[str, str, str, str]]:
     ]
 
 
-def show_pair(console: Console, pair: RingPair) -> None:
+def show_pair(pair: RingPair) -> None:
     """Print what one channel makes of a ring's pair of modes."""
-    heading(console, f"One channel on the pair {pair.label}")
-    bullets(console, [("–", sentence, "cyan") for sentence in pair.sentences])
+    heading(f"One channel on the pair {pair.label}")
+    bullets([("–", sentence, "cyan") for sentence in pair.sentences])
     table(
-        console,
         ("pair apart by", "standing-wave ratio", "travels", "along the ring at crests"),
         pair_rows(pair),
     )

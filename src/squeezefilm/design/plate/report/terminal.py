@@ -23,14 +23,12 @@ from squeezefilm.core.kit.numbers import (
     shown,
     signed,
 )
-from squeezefilm.core.kit.terminal import heading, show_rows, table
+from squeezefilm.core.kit.terminal import heading, say, show_rows, table
 from squeezefilm.design.plate.ring import RingAnalysis
 from squeezefilm.physics.chain.pad_place import place_words
 from squeezefilm.physics.plate.heat_states import COEFFICIENT_SHARES, EMISSIVITIES
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from squeezefilm.design.plate.solved import ModeRow, SolvedBody
     from squeezefilm.physics.plate.ring.body import StatorFit
     from squeezefilm.physics.plate.sound import SoundField
@@ -210,10 +208,10 @@ def fit_sentences(fit: StatorFit) -> tuple[str, ...]:
     return tuple(said)
 
 
-def show_guidance(console: Console, sound: SoundField) -> None:
+def show_guidance(sound: SoundField) -> None:
     """Print where the guidance on airborne ultrasound is from."""
     if sound.guidance is not None:
-        console.print(f"Guidance ({sound.guidance.evidence}): {sound.guidance.source}")
+        say(f"Guidance ({sound.guidance.evidence}): {sound.guidance.source}")
 
 
 def mode_rows(
@@ -239,13 +237,11 @@ def mode_rows(
     ]
 
 
-def show_modes(
-    console: Console, rows: Sequence[ModeRow], amplitude_per_volt: si.MetrePerVolt
-) -> None:
+def show_modes(rows: Sequence[ModeRow], amplitude_per_volt: si.MetrePerVolt) -> None:
     """Print the table of modes; `amplitude_per_volt` is the working mode's (m/V)."""
-    heading(console, "Modes in the band, each alone at its antinode")
+    heading("Modes in the band, each alone at its antinode")
     head = ("mode", "frequency", "±", "Q", "per volt", "coupling")
-    table(console, head, mode_rows(rows, amplitude_per_volt))
+    table(head, mode_rows(rows, amplitude_per_volt))
 
 
 def show_plate(result: SolvedBody) -> None:
@@ -255,16 +251,14 @@ def show_plate(result: SolvedBody) -> None:
         against = changed(beam.mode.frequency / result.working.frequency - 1)
         rows.append(("As a Timoshenko beam", shown(beam.mode.frequency, HZ, 5), against))
     rows += drive_rows(result) + sound_rows(result.sound, result.remarks.loudest)
-    console = show_rows(f"{result.display.title} [{result.display.name}]", rows)
-    show_guidance(console, result.sound)
+    show_rows(f"{result.display.title} [{result.display.name}]", rows)
+    show_guidance(result.sound)
     if isinstance(result, RingAnalysis) and result.body.fit is not None:
         for sentence in fit_sentences(result.body.fit):
-            console.print(sentence)
-    show_modes(console, result.rows, result.amplitude_per_volt)
+            say(sentence)
+    show_modes(result.rows, result.amplitude_per_volt)
     if isinstance(result, RingAnalysis):
-        console.print(
-            "B(circles, diameters) bends; R and T move in the plane, radially and around."
-        )
-    console.print(f"{result.model}; {result.status}")
+        say("B(circles, diameters) bends; R and T move in the plane, radially and around.")
+    say(f"{result.model}; {result.status}")
     for doubt in (*result.objections, *result.heat.doubts):
-        console.print(f"! {printable(doubt)}")
+        say(f"! {printable(doubt)}")

@@ -7,14 +7,13 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.console import Console
 
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import printable
 from squeezefilm.core.kit.page_style import FigureOf
-from squeezefilm.core.kit.terminal import bullets, heading, plain_console, table
+from squeezefilm.core.kit.terminal import bullets, heading, say, table
 from squeezefilm.design.search.criteria import criterion_of
 from squeezefilm.design.search.found import DesignSearch
 from squeezefilm.design.search.reasons import corner_in_words
@@ -216,74 +215,72 @@ FIGURES = (
 
 def show_design(search: DesignSearch) -> None:
     """Print a search: what was asked, the front, the plate to build, and why not others."""
-    console = plain_console()
     requirements = search.requirements
-    _say(console, requirements.title, asked_sentences(requirements))
-    heading(console, "What was found")
-    console.print(counts_sentence(search))
+    _say(requirements.title, asked_sentences(requirements))
+    heading("What was found")
+    say(counts_sentence(search))
     if search.stopped:
-        console.print("! The search was stopped: these are the plates found until then.")
+        say("! The search was stopped: these are the plates found until then.")
     if search.front:
-        _show_front(console, search)
+        _show_front(search)
     else:
-        console.print(
+        say(
             "No plate meets the requirements. What each limit costs is below: ease the one that "
             "most designs break, or give the shapes more room."
         )
-        bullets(console, [("–", sentence, "") for sentence in empty_front_sentences(search)])
+        bullets([("–", sentence, "") for sentence in empty_front_sentences(search)])
         for reason, count in counted(o.reason for o in search.screened if o.reason)[:3]:
-            console.print(f"! {many(count, 'design')} cannot be built: {printable(reason)}")
+            say(f"! {many(count, 'design')} cannot be built: {printable(reason)}")
     if compared := reference_sentences(search):
-        _say(console, f"Beside {requirements.compare_with}", compared)
-    _say(console, "What each limit does", limit_sentences(search))
+        _say(f"Beside {requirements.compare_with}", compared)
+    _say("What each limit does", limit_sentences(search))
     if search.corners:
         corners = [f"{corner_in_words(corner)}." for corner in search.corners[:_CORNERS]]
-        _say(console, "Where nothing keeps the limits", corners)
+        _say("Where nothing keeps the limits", corners)
         if len(search.corners) > _CORNERS:
-            console.print(f"{len(search.corners) - _CORNERS} more stand in the files of --out")
-    _say(console, "How good the screening was", rank_sentences(search))
+            say(f"{len(search.corners) - _CORNERS} more stand in the files of --out")
+    _say("How good the screening was", rank_sentences(search))
     assumed = [f"{sentence[0].upper()}{sentence[1:]}." for sentence in requirements.assumed]
-    _say(console, "What all of this assumes", assumed)
-    console.print(f"{search.computed} answers computed, {search.kept} taken from before")
+    _say("What all of this assumes", assumed)
+    say(f"{search.computed} answers computed, {search.kept} taken from before")
 
 
-def _say(console: Console, title: str, sentences: list[str]) -> None:
-    heading(console, title)
-    bullets(console, [("–", sentence, "") for sentence in sentences])
+def _say(title: str, sentences: list[str]) -> None:
+    heading(title)
+    bullets([("–", sentence, "") for sentence in sentences])
 
 
-def _show_front(console: Console, search: DesignSearch) -> None:
+def _show_front(search: DesignSearch) -> None:
     requirements = search.requirements
     members = search.front[:_FRONT]
     if len(members) > 1:
-        heading(console, "The front: what each plate does")
+        heading("The front: what each plate does")
         head = [in_lines(name) for name in ("name", *front_head(requirements))]
         rows = [[member.name, *front_row(requirements, member)] for member in members]
         if search.reference is not None and not search.reference.reason:
             rows.append(["to compare", *row_of(requirements, search.reference), ""])
         looks = {search.chosen_name: "bold"}
-        table(console, head, rows, fixed=(0,), styles=lambda row: looks.get(row[0], ""))
-        heading(console, "The front: what was chosen")
+        table(head, rows, fixed=(0,), styles=lambda row: looks.get(row[0], ""))
+        heading("The front: what was chosen")
         made_of = [
             [member.name, chosen_words(requirements, member.evaluated.design)] for member in members
         ]
-        table(console, ("", ""), made_of, fixed=(0,))
+        table(("", ""), made_of, fixed=(0,))
         if len(search.front) > len(members):
-            console.print(f"{len(search.front) - len(members)} more rows stand in front.csv")
-    _say(console, "The plate to build", chosen_sentences(search))
+            say(f"{len(search.front) - len(members)} more rows stand in front.csv")
+    _say("The plate to build", chosen_sentences(search))
     assert search.chosen is not None, "there is a front"
     head, effects = effect_table(requirements, search.chosen)
     if effects:
-        heading(console, "What one standard deviation more of each tolerance does to it")
-        table(console, ["", *map(in_lines, head)], effects)
+        heading("What one standard deviation more of each tolerance does to it")
+        table(["", *map(in_lines, head)], effects)
 
 
 def show_requirements() -> None:
     """Print the requirements that come with the package, and what to do with them."""
-    console = plain_console()
     rows = [(name, load_requirements(name).title) for name in presets.names("requirements")]
-    table(console, ("requirements", "what they are"), rows, fixed=(0,))
-    console.print(
+    table(("requirements", "what they are"), rows, fixed=(0,))
+    say(
         "squeezefilm design NAME searches for plates that meet them. For your own, write a TOML "
         "file: docs/reference/requirements.md lists every key, and docs/how-to/design.md "
         "begins with one."

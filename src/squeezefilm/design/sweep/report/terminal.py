@@ -14,7 +14,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import TABLE_BYTES
 from squeezefilm.core.kit.numbers import printable, shown
-from squeezefilm.core.kit.terminal import heading, plain_console, table
+from squeezefilm.core.kit.terminal import heading, say, table
 from squeezefilm.core.regular_file import read_regular_text
 from squeezefilm.design.sweep.answers import FOLLOWED, catalogue, unit_in, without_units
 from squeezefilm.design.sweep.axes import Axis
@@ -113,16 +113,14 @@ def in_lines(name: str) -> str:
 
 def show_sweep(sweep: Sweep) -> None:
     """Print a sweep."""
-    console = plain_console()
     points = len(sweep.reasons)
-    heading(console, f"{sweep.title}: {points} points")
+    heading(f"{sweep.title}: {points} points")
     columns = sweep_columns(sweep)
     head = [name for name, _ in columns]
     rows = list(zip(*(words for _, words in columns), strict=True))
     if len(head) > MOST_COLUMNS and len(rows) <= MOST_COLUMNS:
         # Few points and many numbers: a row for each number.
         table(
-            console,
             ("", *(("",) * len(rows))),
             zip(head, *rows, strict=True),
             fixed=range(1, len(rows) + 1),
@@ -133,19 +131,19 @@ def show_sweep(sweep: Sweep) -> None:
             rows = [*rows[: MOST_ROWS // 2], cut, *rows[-MOST_ROWS // 2 :]]
         shown = [row[:MOST_COLUMNS] for row in rows]
         several = [in_lines(name) for name in head[:MOST_COLUMNS]]
-        table(console, several, shown, fixed=range(len(sweep.axes)))
+        table(several, shown, fixed=range(len(sweep.axes)))
         if len(head) > MOST_COLUMNS:
-            console.print(f"{len(head) - MOST_COLUMNS} more columns stand in the files of --out")
+            say(f"{len(head) - MOST_COLUMNS} more columns stand in the files of --out")
     reasons = counted(reason for reason in sweep.reasons if reason)
     for reason, count in reasons[:_TOLD]:
         said = "were not computed yet" if reason == NOT_YET else f"have no answer: {reason}"
-        console.print(f"! {count} of {points} points {said}")
+        say(f"! {count} of {points} points {said}")
     if len(reasons) > _TOLD:
-        console.print(f"! {len(reasons) - _TOLD} more reasons stand in the table's last column")
+        say(f"! {len(reasons) - _TOLD} more reasons stand in the table's last column")
     if sweep.follows:
         lost = sum(follow.lost for follow in sweep.follows)
         least = min(follow.least_likeness for follow in sweep.follows)
-        console.print(
+        say(
             f"{len(sweep.follows)} modes followed by their shapes, {lost or 'none'} of them lost "
             f"on the way; least likeness from one point to the next {least:.2f}"
             + (
@@ -156,22 +154,19 @@ def show_sweep(sweep: Sweep) -> None:
         )
     # First what is so at some of the points only: that is what the points differ by.
     for text, count in sorted(sweep.warnings, key=lambda warning: warning[1] == points)[:_TOLD]:
-        console.print(
-            f"! {printable(text)} (at {count} of {points} points, numbers as at one of them)"
-        )
+        say(f"! {printable(text)} (at {count} of {points} points, numbers as at one of them)")
     if len(sweep.warnings) > _TOLD:
-        console.print(f"! {len(sweep.warnings) - _TOLD} more warnings stand in sweep.json")
-    console.print(f"Finger: {printable(sweep.provenance['finger'])}")
-    console.print(f"{sweep.computed} answers computed, {sweep.kept} taken from before")
+        say(f"! {len(sweep.warnings) - _TOLD} more warnings stand in sweep.json")
+    say(f"Finger: {printable(sweep.provenance['finger'])}")
+    say(f"{sweep.computed} answers computed, {sweep.kept} taken from before")
 
 
 def show_answers() -> None:
     """Print every name that a sweep can ask for, by verb."""
-    console = plain_console()
     for verb, keys in catalogue().items():
-        heading(console, f"{verb} (or {verb}.NAME where another verb has the same)")
+        heading(f"{verb} (or {verb}.NAME where another verb has the same)")
         for key in keys:
-            console.print(f"  {without_units(key).replace('*', 'N')}")
+            say(f"  {without_units(key).replace('*', 'N')}")
 
 
 Row = tuple[str, str, str, str]
@@ -218,16 +213,15 @@ def _ratio(first: str, second: str) -> str:
 
 def show_comparison(rows: Sequence[Row]) -> None:
     """Print what differs, each number with its unit."""
-    console = plain_console()
-    heading(console, "What differs")
+    heading("What differs")
     if not rows:
-        console.print("nothing: both rows say the same")
+        say("nothing: both rows say the same")
         return
     lines = [
         (without_units(name), _with_unit(first, name), _with_unit(second, name), ratio)
         for name, first, second, ratio in rows
     ]
-    table(console, ("", "first", "second", "second / first"), lines)
+    table(("", "first", "second", "second / first"), lines)
 
 
 def _with_unit(text: str, name: str) -> str:

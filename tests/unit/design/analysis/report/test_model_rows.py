@@ -6,7 +6,6 @@ from collections.abc import Callable
 from types import SimpleNamespace
 from typing import Any
 
-from squeezefilm.core.kit.terminal import plain_console
 from squeezefilm.design.analysis.report.rows import (
     cited,
     missed_directions,
@@ -45,10 +44,10 @@ def test_directions_are_said_with_their_source() -> None:
 
 
 def test_what_a_model_misses_is_said(printed: Callable[[], str]) -> None:
-    show_missed(plain_console(), "partial-levitation")
+    show_missed("partial-levitation")
     text = printed()
     assert "What measurements say and 'partial-levitation' does not" in text
     assert "the faster the finger slides" in " ".join(text.split())
     assert "In the model" not in text
-    show_missed(plain_console(), "levitation-2016")
+    show_missed("levitation-2016")
     assert "were not asked of the model 'levitation-2016'" in printed()

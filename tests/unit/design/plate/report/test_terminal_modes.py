@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from tests.unit.printed import printed
 
-from squeezefilm.core.kit.terminal import plain_console
 from squeezefilm.design.plate.report.terminal import show_guidance, show_modes, sound_rows
 from squeezefilm.design.plate.solved import ModeRow
 from squeezefilm.physics.plate.sound import GUIDANCE
@@ -42,10 +41,10 @@ def test_levels_and_distances_must_be_as_many() -> None:
 
 
 def test_the_guidance_is_told_with_where_it_is_from() -> None:
-    (line,) = printed(lambda: show_guidance(plain_console(), sound()), 400)
+    (line,) = printed(lambda: show_guidance(sound()), 400)
     assert line.startswith("Guidance (to be checked: quoted second-hand")
     assert line.endswith(GUIDANCE[1].source)
-    assert printed(lambda: show_guidance(plain_console(), sound(None))) == []
+    assert printed(lambda: show_guidance(sound(None))) == []
 
 
 def mode(label: str, alone_per_volt: float) -> ModeRow:
@@ -54,7 +53,7 @@ def mode(label: str, alone_per_volt: float) -> ModeRow:
 
 def test_a_mode_ten_thousand_times_fainter_than_the_working_one_is_not_driven() -> None:
     rows = [mode("(8,0)", 1.2345e-7), mode("(7,0)", 1e-11), mode("(9,0)", 0.99e-11)]
-    assert printed(lambda: show_modes(plain_console(), rows, 1e-7)) == [
+    assert printed(lambda: show_modes(rows, 1e-7)) == [
         "Modes in the band, each alone at its antinode",
         "mode frequency ± Q per volt coupling",
         "(8,0) 33.581 kHz 12 Hz 212 123 nm/V 0.12",
