@@ -156,11 +156,6 @@ def folded(heading: str, body: str) -> str:
 _KINDS = {"good": "✓ Good", "limit": "△ Limit", "doubt": "? Doubt"}
 
 
-def _always(_: Any) -> bool:
-    """Every result has the figure."""
-    return True
-
-
 @dataclass(frozen=True)
 class FigureOf:
     """A figure of one type of result: its key, its heading on a page, what draws it.
@@ -176,7 +171,7 @@ class FigureOf:
     draw: Callable[[Any], Figure]
     reading: str = ""
     file: str = ""
-    has: Callable[[Any], object] = _always
+    has: Callable[[Any], object] = lambda _: True
 
 
 Pictures = dict[str, tuple[str, "Figure"]]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -23,11 +23,7 @@ def progress(enabled: bool) -> Iterator[Callable[[str], None]]:
         yield lambda _: None
         return
     if not sys.stderr.isatty():
-
-        def line(text: str) -> None:
-            print(f"  {printable(text)} …", file=sys.stderr, flush=True)
-
-        yield line
+        yield lambda text: print(f"  {printable(text)} …", file=sys.stderr, flush=True)
         return
     from rich.console import Console
     from rich.text import Text
@@ -56,7 +52,7 @@ def table(
     head: Sequence[str],
     rows: Iterable[Sequence[str]],
     *,
-    fixed: Iterable[int] = (),
+    fixed: Container[int] = (),
     styles: Callable[[Sequence[str]], str] | None = None,
 ) -> None:
     """Print a table; the columns `fixed` are not wrapped. Cells are user's text: no markup."""
@@ -65,9 +61,8 @@ def table(
     from rich.text import Text
 
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, show_header=any(head))
-    whole = set(fixed)
     for number, name in enumerate(head):
-        table.add_column(name, no_wrap=number in whole, overflow="fold")
+        table.add_column(name, no_wrap=number in fixed, overflow="fold")
     for row in rows:
         cells = ["\n".join(_kept(line) for line in cell.split("\n")) for cell in row]
         table.add_row(*(Text(cell) for cell in cells), style=styles(row) if styles else None)
@@ -89,7 +84,7 @@ def show_rows(
     rows: Iterable[Sequence[str]],
     warnings: Iterable[str] = (),
     *,
-    fixed: Iterable[int] = (0,),
+    fixed: Container[int] = (0,),
 ) -> None:
     """Print a heading, rows of quantity, value and remark, and warnings."""
     heading(title)
