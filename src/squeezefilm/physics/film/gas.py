@@ -51,7 +51,7 @@ def slip_law(slip: str, knudsen_number: float) -> int:
 
 LEAST_SQUEEZE_NUMBER: si.Dimensionless = 1e-10
 """Smallest squeeze number: below, the over-pressure, which goes with σ², drowns in rounding and a
-solver would refine for ever; `film.linear` has it in closed form. (A strip at ε = 0.2 is solved at
+solver would refine for ever; `film.closed` has it in closed form. (A strip at ε = 0.2 is solved at
 1e-10, not at 1e-12.)"""
 
 MOST_SQUEEZE_NUMBER: si.Dimensionless = 1e9

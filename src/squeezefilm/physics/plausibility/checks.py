@@ -212,18 +212,16 @@ def require_plausible(
         return ()
     doubts = implausibilities(display, voltage)
     wrong = [doubt for doubt in doubts if doubt.refused]
+    lines = [locate(text, doubt.path) if text else None for doubt in wrong]
     if len(wrong) == 1:
-        line = locate(text, wrong[0].path) if text else None
-        raise ConfigError(wrong[0].text, file=file, line=line, key=wrong[0].key)
+        raise ConfigError(wrong[0].text, file=file, line=lines[0], key=wrong[0].key)
     if wrong:
-        lines = [f"  {doubt.sentence}{_line(text, doubt)}" for doubt in wrong]
-        raise ConfigError(f"{len(wrong)} values cannot be right:\n" + "\n".join(lines), file=file)
+        said = [
+            f"  {doubt.sentence}" + ("" if line is None else f" (line {line})")
+            for doubt, line in zip(wrong, lines, strict=True)
+        ]
+        raise ConfigError(f"{len(wrong)} values cannot be right:\n" + "\n".join(said), file=file)
     return tuple(doubt.sentence for doubt in doubts)
-
-
-def _line(text: str, doubt: Implausible) -> str:
-    line = locate(text, doubt.path) if text else None
-    return "" if line is None else f" (line {line})"
 
 
 def described_numbers(owner: Any, path: Path = ()) -> Iterator[tuple[str, Path, float]]:

@@ -31,14 +31,11 @@ from squeezefilm.core.config.load import load, load_text
 from squeezefilm.core.config.write import text_of
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.results import write_new
-from squeezefilm.physics.render.texture import image as pattern_image
-from squeezefilm.physics.render.texture import image as pattern_noise
-from squeezefilm.physics.render.texture import levels
-from squeezefilm.physics.render.texture import shapes as pattern_gates
+from squeezefilm.physics.render.texture import image, levels, shapes
 from squeezefilm.physics.render.texture.composition import Composable, require_texture
 from squeezefilm.physics.texture_files import image_file
 
-MODULES = (image_file, levels, pattern_gates, pattern_image, pattern_noise)
+MODULES = (image_file, levels, shapes, image)
 """The modules whose classes a file may name, beside those these import."""
 
 
