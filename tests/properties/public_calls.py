@@ -82,7 +82,6 @@ NOT_CALLED = {
     physics.plate.surface_shape.DiscSurface physics.plate.surface_shape.SolvedSurface
     physics.plate.surface_shape.SurfaceShape physics.plate.surface_shape.TrackSurface
     physics.plate.ring.body.StatorFit physics.chain.prediction.Prediction
-    physics.render.resonator.compensation.CompensatedDrive
     physics.render.fidelity.report.FidelityReport physics.render.motion.estimator.MotionCounts
     physics.render.motion.estimator.MotionEstimate
     physics.render.fidelity.rendered_stroke.LoopRun

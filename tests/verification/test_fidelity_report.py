@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from tests.verification.square_swing import square_swing_compensated
 
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
@@ -16,7 +17,6 @@ from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SENSORS, Senso
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
 from squeezefilm.physics.render.resonator.compensation import (
     DrivenEnvelope,
-    square_swing_compensated,
 )
 from squeezefilm.physics.render.resonator.envelope import sine_swing_kept
 from squeezefilm.physics.render.texture.levels import Amplitude

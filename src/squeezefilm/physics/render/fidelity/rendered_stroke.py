@@ -26,6 +26,7 @@ from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_stream
 from squeezefilm.physics.render.motion.stroke import Stroke, Trajectory
 from squeezefilm.physics.render.resonator import kernel
 from squeezefilm.physics.render.resonator.compensation import (
+    CompensatedDrive,
     Compensation,
     DrivenEnvelope,
     compensated_drive,
@@ -156,13 +157,12 @@ def rendered_stroke(
     asked = np.where(known, _asked(texture, ahead_position, ahead_speed, time + lead), 0.0)
     start = min(float(wanted[0]), envelope.amplitude_limit) if sensor is None else 0.0
     if compensation == "preview" and sensor is not None:
-        command, top, bottom = _previewed(texture, envelope, time, ahead, known, dt, start)
+        drive = _previewed(texture, envelope, time, ahead, known, dt, start)
     else:
         goal = asked if compensation == "none" else np.concatenate([[start], asked[:-1]])
         drive = compensated_drive(goal, dt, envelope, compensation, start)
-        command, top, bottom = drive.command, drive.saturated_top, drive.saturated_bottom
     # The envelope's sign is the carrier's phase; the finger meets its magnitude.
-    amplitude = np.abs(envelope.response(command, dt, start))
+    amplitude = np.abs(envelope.response(drive.command, dt, start))
     eyes = "position known" if sensor is None else f"{sensor.name} ({sensor.evidence})"
     phase = "phase inversion allowed" if envelope.braking else "no phase inversion"
     return RenderedStroke(
@@ -179,12 +179,12 @@ def rendered_stroke(
         speed=speed,
         estimate=estimate,
         wanted=wanted,
-        command=command,
+        command=drive.command,
         amplitude=amplitude,
         relative_friction_wanted=friction_of(relative_friction, wanted, speed),
         relative_friction_rendered=friction_of(relative_friction, amplitude, speed),
-        saturated_top=top,
-        saturated_bottom=bottom,
+        saturated_top=drive.saturated_top,
+        saturated_bottom=drive.saturated_bottom,
         silent=float(np.mean(~known)),
         model=f"first-order envelope at resonance, compensation: {compensation}, {phase}; {eyes}",
     )
@@ -198,7 +198,7 @@ def _previewed(
     known: np.ndarray[tuple[int], np.dtype[np.bool_]],
     dt: float,
     start: float,
-) -> tuple[si.FloatArray, float, float]:
+) -> CompensatedDrive:
     """Commands where the way ahead is only predicted: at the estimated speed from each step on."""
     count = preview_samples(envelope, dt)
     state, parameters = envelope.new_state(start), envelope.parameters(dt)
@@ -214,8 +214,7 @@ def _previewed(
         kernel.previewed_windows(
             state, parameters, np.ascontiguousarray(windows), work, command[rows], code[rows]
         )
-    top, bottom = (float(np.mean(code == end)) for end in (kernel.TOPPED, kernel.BOTTOMED))
-    return command, top, bottom
+    return CompensatedDrive.of(command, code)
 
 
 def _asked(texture: Texture, x: si.FloatArray, v: si.FloatArray, t: si.FloatArray) -> si.FloatArray:

@@ -23,19 +23,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.physics.render.resonator import kernel
 from squeezefilm.physics.render.resonator.envelope import one_row
 
 Compensation = Literal["none", "inverse", "preview"]
 COMPENSATIONS: tuple[Compensation, ...] = ("none", "inverse", "preview")
-Compensating = Literal["none", "inverse"]
 
 # Past three time constants ahead a plan's first command no longer changes by a percent.
 _PREVIEW_TIME_CONSTANTS = 3.0
@@ -112,29 +110,20 @@ class DrivenEnvelope:
         return amplitude
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class CompensatedDrive:
-    """A command made for amplitudes wanted, and what the envelope does under it; shape (n,).
+class CompensatedDrive(NamedTuple):
+    """A command made for amplitudes wanted: the amplitude from each sample to the next (m), shape
+    (n,), negative where it brakes; and the share of samples whose command met the upper and lower
+    limit (1)."""
 
-    Attributes:
-        envelope, compensation, time_step: the inputs (s).
-        wanted: amplitude wanted at each sample (m, zero-to-peak).
-        command: amplitude commanded from each sample to the next (m); negative where it brakes.
-        amplitude: the envelope's at each sample (m).
-        saturated_top, saturated_bottom: share of samples whose command met the upper and lower
-            limit (1).
-        model: the law and the envelope.
-    """
-
-    envelope: DrivenEnvelope
-    compensation: Compensation
-    time_step: si.Second
-    wanted: si.MetreArray
     command: si.MetreArray
-    amplitude: si.MetreArray
     saturated_top: si.Dimensionless
     saturated_bottom: si.Dimensionless
-    model: str
+
+    @classmethod
+    def of(cls, command: si.MetreArray, code: si.IntArray) -> CompensatedDrive:
+        """A command of steps whose codes the kernel gave."""
+        top, bottom = (float(np.mean(code == end)) for end in (kernel.TOPPED, kernel.BOTTOMED))
+        return cls(command, top, bottom)
 
 
 @si.checked_numbers
@@ -145,7 +134,7 @@ def compensated_drive(
     compensation: Compensation = "inverse",
     initial: si.Metre | None = None,
 ) -> CompensatedDrive:
-    """The command for amplitudes wanted at samples, and the amplitude that it makes.
+    """The command for amplitudes wanted at samples; `DrivenEnvelope.response` is what it makes.
 
     Args:
         wanted: amplitude wanted at each sample (m, zero-to-peak), shape (n,); at least 0.
@@ -165,7 +154,7 @@ def compensated_drive(
     command, code = np.empty_like(goal), np.zeros(goal.size, dtype=np.int64)
     if compensation == "none":
         np.minimum(goal, envelope.amplitude_limit, out=command)
-        code[goal > envelope.amplitude_limit] = kernel.TOPPED
+        code[goal > envelope.amplitude_limit * (1 + kernel.ROUNDING)] = kernel.TOPPED
     elif compensation == "inverse":
         kernel.compensated_march(state, parameters, goal, command, code)
     else:
@@ -173,19 +162,7 @@ def compensated_drive(
         # The last sample holds.
         windows = sliding_window_view(np.append(goal[1:], np.full(ahead, goal[-1])), ahead)
         kernel.previewed_windows(state, parameters, windows, preview_work(ahead), command, code)
-    names = {"none": "no compensation", "inverse": "inverse filter", "preview": "preview"}
-    return CompensatedDrive(
-        envelope=envelope,
-        compensation=compensation,
-        time_step=time_step,
-        wanted=goal,
-        command=command,
-        amplitude=envelope.response(command, time_step, first),
-        saturated_top=float(np.mean(code == kernel.TOPPED)),
-        saturated_bottom=float(np.mean(code == kernel.BOTTOMED)),
-        model=f"first-order envelope at resonance, {names[compensation]}, "
-        f"{'phase inversion allowed' if envelope.braking else 'no phase inversion'}",
-    )
+    return CompensatedDrive.of(command, code)
 
 
 @si.checked_numbers
@@ -205,80 +182,3 @@ def preview_samples(
 def preview_work(samples: Annotated[int, si.AtLeast(0)]) -> si.FloatArray:
     """Working memory of `previewed_step` for so many samples ahead, shape (5, 2·samples + 2)."""
     return np.zeros((5, 2 * samples + 2))
-
-
-@si.checked_numbers
-def square_swing_compensated(
-    spatial_period: Annotated[si.MetreLike, si.Above(0.0)],
-    speed: Annotated[si.MetrePerSecondLike, si.Above(0.0)],
-    envelope: DrivenEnvelope,
-    low: Annotated[si.Metre, si.AtLeast(0.0), si.Below("high")],
-    high: Annotated[si.Metre, si.AtMost("envelope.amplitude_limit")],
-    compensation: Compensating = "inverse",
-) -> si.DimensionlessLike:
-    """Swing of amplitude left of a square grating of duty ½ in the steady state (1).
-
-    For half a period h = spatial_period/(2 speed) the amplitude closes in on the limit above (with
-    "none": on `high`) and stops at `high`; for the other half on the limit below (`low`) and stops
-    at `low`:
-
-        a_high = min(high, top − (top − a_low) exp(−h/τ_rise))
-        a_low = max(low, bottom + (a_high − bottom) exp(−h/τ_fall)),
-
-    solved for the cycle that repeats. Without compensation and with one time constant this is
-    tanh(h/2τ). `spatial_period` (m) and `speed` (m/s) broadcast.
-
-    Raises:
-        InputError: a period or speed not above 0, or not 0 ≤ low < high ≤ limit.
-    """
-    half = np.asarray(spatial_period, dtype=float) / (2 * np.asarray(speed, dtype=float))
-    rise = np.exp(-half / envelope.rise_time_constant)
-    fall = np.exp(-half / envelope.fall_time_constant)
-    bare = compensation == "none"
-    top = high if bare else envelope.amplitude_limit
-    bottom = low if bare else envelope.lowest_command
-    # The cycle that meets neither stop; then those that meet one, which are then the cycle.
-    free_high = (top * (1 - rise) + rise * bottom * (1 - fall)) / (1 - rise * fall)
-    a_high = np.minimum(free_high, high)
-    a_low = np.maximum(low, bottom + (a_high - bottom) * fall)
-    a_high = np.minimum(high, top - (top - a_low) * rise)
-    a_low = np.maximum(low, bottom + (a_high - bottom) * fall)
-    kept = np.asarray((a_high - a_low) / (high - low))
-    return float(kept) if kept.ndim == 0 else kept
-
-
-@si.checked_numbers
-def fastest_compensated_speed(
-    spatial_period: si.Metre,
-    envelope: DrivenEnvelope,
-    low: Annotated[si.Metre, si.AtLeast(0.0), si.Below("high")],
-    high: Annotated[si.Metre, si.AtMost("envelope.amplitude_limit")],
-    compensation: Compensating = "inverse",
-    kept: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.9,
-) -> si.MetrePerSecond:
-    """Fastest finger (m/s) under which a square grating keeps a share `kept` of its swing.
-
-    The inverse of `square_swing_compensated` in speed, found to 1e-12; proportional to the period.
-
-    Raises:
-        InputError: see `square_swing_compensated`, or a share not between 0 and 1.
-    """
-    from scipy.optimize import brentq
-
-    unit = spatial_period / max(envelope.rise_time_constant, envelope.fall_time_constant)
-
-    def lacking(log_speed: float) -> float:
-        speed = unit * math.exp(log_speed)
-        return (
-            float(
-                square_swing_compensated(spatial_period, speed, envelope, low, high, compensation)
-            )
-            - kept
-        )
-
-    if lacking(30.0) > 0.0:
-        raise OutOfRangeError(
-            f"kept = {kept:.4g} of the swing is left at any speed; ask for a larger share",
-            quantity="kept",
-        )
-    return float(unit * math.exp(brentq(lacking, -30.0, 30.0, xtol=1e-13, rtol=1e-13)))

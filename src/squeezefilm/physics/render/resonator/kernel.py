@@ -21,6 +21,9 @@ PARAMETERS_SIZE = 4
 # What a step's command is: what was asked for, or as near as the limits let it come.
 FOLLOWS, TOPPED, BOTTOMED, SILENT = range(4)
 
+ROUNDING = 1e-9
+"""Share of the upper limit within which a command or an amplitude is at a limit."""
+
 
 @compiled(inline="always")
 def envelope_step(amplitude: float, command: float, keep_rise: float, keep_fall: float) -> float:
@@ -58,13 +61,15 @@ def compensated_step(state: si.Array, parameters: si.Array, wanted: float) -> tu
     goal = max(wanted, 0.0)
     keep = rise if goal > a else fall
     command = (goal - a * keep) / (1.0 - keep)
-    code = FOLLOWS
-    if command > top:
-        command, code = top, TOPPED
+    code, slack = FOLLOWS, ROUNDING * top
+    # A plan within the limits meets them to rounding; an amplitude that is held at one is wanted.
+    if command > top + slack or (command > top - slack and a < top - slack):
+        code = TOPPED
         state[AT_TOP] += 1.0
-    elif command < bottom:
-        command, code = bottom, BOTTOMED
+    elif command < bottom - slack or (command < bottom + slack and a > bottom + slack):
+        code = BOTTOMED
         state[AT_BOTTOM] += 1.0
+    command = min(max(command, bottom), top)
     state[AMPLITUDE] = envelope_step(a, command, rise, fall)
     return command, code
 
