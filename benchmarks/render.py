@@ -23,7 +23,7 @@ import numpy as np
 
 from squeezefilm.physics.render import interpret, opcodes
 from squeezefilm.physics.render.program import interpreter
-from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.inverse import FrictionInverse, FrictionTable
 from squeezefilm.physics.render.program.lowering import Program, _instructions, lower
 from squeezefilm.physics.render.program.renderer import Renderer, evaluate, new_state
 from squeezefilm.physics.render.texture.composition import Composable
@@ -43,11 +43,15 @@ sys.path.insert(0, str(Path(__file__).parents[1]))
 from tests.numpy_textures import numpy_values
 
 INVERSE = FrictionInverse.from_function(lambda a: 0.3 + 0.7 * np.exp(-((a / 2e-6) ** 2)), 4e-6)
-# As many knots and speeds as a display's friction has.
-SPEEDY = FrictionInverse.over_speeds(
-    lambda a, v: 0.3 + 0.7 * np.exp(-((a / 2e-6) ** 2) / (0.5 + 5.0 * v[:, None])),
-    4e-6 * np.linspace(0.0, 1.0, 65) ** 2, np.geomspace(1e-3, 2.0, 47), 0.08,
-)  # fmt: skip
+
+
+def law(amplitude: np.ndarray, speed: np.ndarray) -> np.ndarray:
+    return 0.3 + 0.7 * np.exp(-((amplitude / 2e-6) ** 2) / (0.5 + 5.0 * speed[:, None]))
+
+
+# As many as a display's friction has.
+KNOTS, SPEEDS = 4e-6 * np.linspace(0.0, 1.0, 65) ** 2, np.geomspace(1e-3, 2.0, 47)
+SPEEDY = FrictionTable(KNOTS, SPEEDS, law(KNOTS, SPEEDS), 0.08).inverse(law, 4e-6)
 
 
 def textures() -> dict[str, Composable]:

@@ -364,13 +364,6 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
         "law": falling_over_speeds,
         "largest_amplitude": 2e-6,
     },
-    "physics.render.program.inverse.FrictionInverse.over_speeds": {
-        "law": falling_over_speeds,
-        "amplitude": 1e-6 * np.arange(4),
-        "speed": np.array([0.01, 0.1, 1.0]),
-        "nominal_speed": 0.1,
-        "known": falling_over_speeds(1e-6 * np.arange(4), np.array([0.01, 0.1, 1.0])),
-    },
     "physics.render.program.renderer.MadeForSpeed.of": {"law": falling_friction},
     "physics.render.texture.levels.Amplitude.constant": {"value": 1e-6},
     "physics.render.texture.levels.RelativeFriction": {"low": 0.4, "high": 0.8},

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, Phase, example, given, settings
 from hypothesis import strategies as st
+from tests.friction_tables import inverse_over_speeds
 from tests.numpy_textures import numpy_values
 
 from squeezefilm.core.errors import InputError
@@ -41,7 +42,7 @@ def quickening(amplitude: np.ndarray, speed: np.ndarray) -> np.ndarray:
     return 0.3 + 0.7 * np.exp(-(reached**2) / (0.2 + speed[:, None]))
 
 
-SPEEDY = FrictionInverse.over_speeds(
+SPEEDY = inverse_over_speeds(
     quickening, 4e-6 * np.linspace(0, 1, 33) ** 2, np.geomspace(1e-3, 2.0, 12), 0.08
 )
 INVERSES = (INVERSE, SPEEDY)

@@ -18,6 +18,8 @@ _MOST_KNOTS = 65_536
 _AT_REST = 1e-4
 # Two knots closer than this in friction cannot be told apart by the inverse.
 _FLAT = 1e-12
+# By how much a row of a table may rise from a knot to the next and be taken for rounding.
+_RISE_OVER_SPEEDS = 1e-6
 # By how much what a solver leaves may pass 0 and 1.
 _ROUNDING = 1e-6
 
@@ -68,17 +70,31 @@ class FrictionTable:
 
         `law` is what was tabulated, by which the inverse's error is measured between the knots;
         `largest_amplitude` (m) is the largest that may be asked for, and `share` (1) what it is of
-        the amplitude that the table knows. Raises `InputError` where friction does not fall.
+        the amplitude that the table knows. What lies below `LOWEST_SPEED` gives way to a row at it.
+        Raises `InputError` where friction does not fall, is not 1 at rest or rises, and for speeds
+        that all are below `LOWEST_SPEED`.
         """
-        if self.speed.size == 1:
+        v, rows = self.speed, self.relative_friction
+        if v.size == 1:
             return FrictionInverse.from_function(lambda a: self(a / share), largest_amplitude)
-        return FrictionInverse.over_speeds(
-            lambda a, v: law(a / share, v),
-            self.amplitude * share,
-            self.speed,
-            self.nominal_speed,
-            known=self.relative_friction,
-        )
+        if v[-1] <= LOWEST_SPEED:
+            raise InputError(
+                "the last speed of an inverse must be above "
+                f"{si.format_quantity(LOWEST_SPEED, _SPEED)}; tabulate the law for faster fingers"
+            )
+        if v[0] < LOWEST_SPEED:
+            held = np.array([np.interp(LOWEST_SPEED, v, column) for column in rows.T])
+            above = v > LOWEST_SPEED
+            rows, v = np.vstack([held, rows[above]]), np.append(LOWEST_SPEED, v[above])
+        a = self.amplitude * share
+        falling = np.array([_falling(a, row, _RISE_OVER_SPEEDS) for row in rows])
+        if np.all(falling[:, -1] >= 1.0 - _FLAT):
+            raise _changes_nothing()
+        middle = 0.25 * (falling[1:, 1:] + falling[1:, :-1] + falling[:-1, 1:] + falling[:-1, :-1])
+        between = law(0.5 * (self.amplitude[1:] + self.amplitude[:-1]), 0.5 * (v[1:] + v[:-1]))
+        found = si.returned("law", between, middle, "a row of amplitudes for each speed")
+        error = float(np.max(np.abs(middle - found)))
+        return FrictionInverse(a, v, falling, self.nominal_speed, error)
 
     @si.checked_numbers
     def __call__(
@@ -123,7 +139,8 @@ class FrictionInverse(FrictionTable):
     """A table of friction that rises nowhere with the amplitude, read backwards.
 
     It is the inverse of the table and not of another. The lowest and the highest speed hold beyond.
-    Build it with `from_function` or, where friction depends on the finger's speed, `over_speeds`.
+    Build it with `from_function` or, where friction depends on the finger's speed, by
+    `FrictionTable.inverse`.
 
     Attributes beside those of `FrictionTable`, whose friction begins at 1 and strictly falls over
     the amplitude in a single row (a finger so fast that small amplitudes change nothing meets 1 at
@@ -169,60 +186,6 @@ class FrictionInverse(FrictionTable):
         amplitude, friction = fine[::4][keep], falling[keep]
         error = float(np.max(np.abs(np.interp(fine, amplitude, friction) - found)))
         return cls(amplitude, np.zeros(1), friction[None, :], 0.0, error)
-
-    @classmethod
-    @si.checked_numbers
-    def over_speeds(
-        cls,
-        law: LawOverSpeeds,
-        amplitude: Annotated[si.MetreArray, si.AtLeast(0.0), si.AtMost(1e-3)],
-        speed: Annotated[si.MetrePerSecondArray, si.AtLeast(0.0)],
-        nominal_speed: Annotated[si.MetrePerSecond, si.AtLeast(0.0)],
-        *,
-        known: si.DimensionlessArray | None = None,
-        rise_allowed: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(0.1)] = 1e-6,
-    ) -> FrictionInverse:
-        """The inverse of a friction law that depends on the finger's speed.
-
-        Args:
-            law: amplitudes and speeds → µ′/µ. Asked at the middles of all cells, for `max_error`,
-                and before at the knots unless they are `known`.
-            amplitude: of the knots, rising from 0 (m, zero-to-peak), shape (n,), n ≥ 3.
-            speed: of the rows, rising (m/s), shape (k,), k ≥ 2; the last above `LOWEST_SPEED`.
-                What lies below that gives way to a row at it.
-            nominal_speed: where none is said (m/s).
-            known: what the law says at the knots (1), shape (k, n), if it was asked already.
-            rise_allowed: as in `from_function`, in each row.
-
-        Raises:
-            InputError: a value outside its range, knots or speeds that do not rise, or a friction
-                that is not finite, is not 1 at rest, or rises with amplitude.
-        """
-        a, v = np.asarray(amplitude, dtype=float), np.asarray(speed, dtype=float)
-        if a.ndim != 1 or a.size < 3 or a[0] != 0.0 or np.any(np.diff(a) <= 0.0):
-            raise InputError("amplitudes of an inverse must rise from 0; give at least 3")
-        if v.ndim != 1 or v.size < 2 or np.any(np.diff(v) <= 0.0) or v[-1] <= LOWEST_SPEED:
-            raise InputError(
-                "speeds of an inverse must rise, and the last must be above "
-                f"{si.format_quantity(LOWEST_SPEED, _SPEED)}; give at least 2"
-            )
-        rows = _rows_of(law, a, v) if known is None else np.asarray(known, dtype=float)
-        if rows.shape != (v.size, a.size):
-            raise InputError(
-                f"known friction of shape {rows.shape} belongs to no {v.size} speeds and "
-                f"{a.size} amplitudes; give one row for each speed"
-            )
-        if v[0] < LOWEST_SPEED:
-            held = np.array([np.interp(LOWEST_SPEED, v, column) for column in rows.T])
-            above = v > LOWEST_SPEED
-            rows, v = np.vstack([held, rows[above]]), np.append(LOWEST_SPEED, v[above])
-        falling = np.array([_falling(a, row, rise_allowed) for row in rows])
-        if np.all(falling[:, -1] >= 1.0 - _FLAT):
-            raise _changes_nothing()
-        middle = 0.25 * (falling[1:, 1:] + falling[1:, :-1] + falling[:-1, 1:] + falling[:-1, :-1])
-        found = _rows_of(law, 0.5 * (a[1:] + a[:-1]), 0.5 * (v[1:] + v[:-1]))
-        error = float(np.max(np.abs(middle - found)))
-        return cls(a, v, falling, nominal_speed, error)
 
     @property
     def largest_amplitude(self) -> si.Metre:
@@ -293,14 +256,6 @@ def _place(knots: si.FloatArray, values: si.FloatArray) -> tuple[si.IntArray, si
     at = np.clip(np.searchsorted(knots, values, side="right") - 1, 0, knots.size - 2)
     part = (values - knots[at]) / (knots[at + 1] - knots[at])
     return at, np.clip(part, 0.0, 1.0)
-
-
-def _rows_of(
-    law: LawOverSpeeds, amplitude: si.MetreArray, speed: si.MetrePerSecondArray
-) -> si.DimensionlessArray:
-    """Rows of a law at amplitudes and speeds, if it is one finite value for each."""
-    grid = np.broadcast_to(amplitude, (speed.size, amplitude.size))
-    return si.returned("law", law(amplitude, speed), grid, "a row of amplitudes for each speed")
 
 
 def _falling(

@@ -8,6 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from numba.core.runtime import _nrt_python, rtsys
+from tests.friction_tables import inverse_over_speeds
 from tests.loop_runs import run_ticks
 from tests.simulated_loop import SimulatedLoop
 
@@ -18,7 +19,7 @@ from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.shared import COMMANDS, ROWS
 from squeezefilm.instruments.session.loop.tick import interpolated
 from squeezefilm.physics.render.program import layout
-from squeezefilm.physics.render.program.inverse import FrictionInverse, FrictionTable
+from squeezefilm.physics.render.program.inverse import FrictionTable
 from squeezefilm.physics.render.program.lowering import lower
 from squeezefilm.physics.render.resonator import kernel as compensation_kernel
 from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
@@ -99,7 +100,7 @@ def test_a_wanted_friction_is_played_with_the_amplitude_for_the_estimated_speed(
     def law(amplitude: FloatArray, speed: FloatArray) -> FloatArray:
         return np.asarray(known(amplitude[None, :], speed[:, None]))
 
-    inverse = FrictionInverse.over_speeds(law, np.linspace(0, 2e-6, 5), known.speed, 0.1)
+    inverse = inverse_over_speeds(law, np.linspace(0, 2e-6, 5), known.speed, 0.1)
     plan = plan_of(
         program=lower(RelativeFriction.constant(0.8), inverse=inverse), relative_friction=known
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.friction_tables import inverse_over_speeds
 
 from squeezefilm.core.errors import InputError, UnreachableError
 from squeezefilm.core.quantities import FloatArray
@@ -101,7 +102,7 @@ def test_a_way_to_nowhere_has_no_tile(way: tuple[float, float]) -> None:
 
 
 def _inverse() -> FrictionInverse:
-    return FrictionInverse.over_speeds(
+    return inverse_over_speeds(
         lambda a, v: _law(a, v[:, None]), 4e-6 * np.linspace(0, 1, 257), np.geomspace(1e-3, 2, 200),
         0.08,
     )  # fmt: skip

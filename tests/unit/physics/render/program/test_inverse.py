@@ -4,9 +4,14 @@ import math
 
 import numpy as np
 import pytest
+from tests.friction_tables import inverse_over_speeds
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.render.program.inverse import LOWEST_SPEED, FrictionInverse
+from squeezefilm.physics.render.program.inverse import (
+    LOWEST_SPEED,
+    FrictionInverse,
+    FrictionTable,
+)
 
 
 def law(amplitude: np.ndarray) -> np.ndarray:
@@ -66,10 +71,11 @@ def law_at(amplitude: np.ndarray, speed: np.ndarray) -> np.ndarray:
 
 
 GRID = 4e-6 * np.linspace(0.0, 1.0, 65) ** 2
+TWO_SPEEDS = np.array([0.1, 1.0])
 
 
-def rows(count: int = 24, **others: object) -> FrictionInverse:
-    return FrictionInverse.over_speeds(law_at, GRID, np.geomspace(1e-3, 2.0, count), 0.08, **others)
+def rows(count: int = 24) -> FrictionInverse:
+    return inverse_over_speeds(law_at, GRID, np.geomspace(1e-3, 2.0, count), 0.08)
 
 
 def test_a_friction_wanted_at_a_speed_is_what_the_law_makes_at_that_speed() -> None:
@@ -116,7 +122,7 @@ def test_where_friction_is_flat_the_least_amplitude_that_makes_it_is_taken() -> 
         return np.clip(1.0 - (amplitude - start) / 2e-6, 0.25, 1.0)
 
     knots = 0.25e-6 * np.arange(17)
-    inverse = FrictionInverse.over_speeds(
+    inverse = inverse_over_speeds(
         flat_at_rest_and_at_its_end, knots, np.array([0.01, 0.1, 1.0, 2.0]), 0.1
     )
     for speed in (0.05, 0.4, 1.0, 1.7):
@@ -135,7 +141,7 @@ def test_what_is_known_at_the_knots_is_not_asked_again() -> None:
         return law_at(amplitude, speed)
 
     speed = np.geomspace(1e-3, 2.0, 24)
-    inverse = FrictionInverse.over_speeds(counted, GRID, speed, 0.08, known=law_at(GRID, speed))
+    inverse = FrictionTable(GRID, speed, law_at(GRID, speed), 0.08).inverse(counted, GRID[-1])
     assert asked == [(inverse.speed.size - 1, GRID.size - 1)]
     assert np.array_equal(inverse.relative_friction, rows().relative_friction)
 
@@ -144,29 +150,27 @@ def test_what_is_known_at_the_knots_is_not_asked_again() -> None:
     ("make", "said"),
     [
         (
-            lambda: FrictionInverse.over_speeds(law_at, GRID[::-1], [0.1, 1.0], 0.1),
-            "must rise from 0",
+            lambda: inverse_over_speeds(law_at, GRID[::-1], TWO_SPEEDS, 0.1),
+            "amplitudes that rise from 0",
         ),
+        (lambda: inverse_over_speeds(law_at, GRID, TWO_SPEEDS[::-1], 0.1), "give speeds that rise"),
+        (lambda: inverse_over_speeds(law_at, GRID, 4e-3 * TWO_SPEEDS, 0.1), "above 5 mm/s"),
         (
-            lambda: FrictionInverse.over_speeds(law_at, GRID, [1.0, 0.1], 0.1),
-            "speeds of an inverse",
-        ),
-        (lambda: FrictionInverse.over_speeds(law_at, GRID, [1e-3, 2e-3], 0.1), "above 5 mm/s"),
-        (lambda: rows(known=np.ones((2, 2))), "known friction of shape"),
-        (
-            lambda: FrictionInverse.over_speeds(
-                lambda a, v: np.ones((v.size, a.size)), GRID, [0.1, 1.0], 0.1
+            lambda: inverse_over_speeds(
+                lambda a, v: np.ones((v.size, a.size)), GRID, TWO_SPEEDS, 0.1
             ),
-            "does not fall",
+            "not fall",
         ),
         (
-            lambda: FrictionInverse.over_speeds(
-                lambda a, v: 1.0 + 1e4 * a + 0 * v[:, None], GRID, [0.1, 1.0], 0.1
+            lambda: inverse_over_speeds(
+                lambda a, v: 1 - 1e5 * (a - a**2 / 5e-6) + 0 * v[:, None], GRID, TWO_SPEEDS, 0.1
             ),
             "friction rises by",
         ),
         (
-            lambda: FrictionInverse.over_speeds(lambda a, v: law_at(a, v)[0], GRID, [0.1, 1], 0.1),
+            lambda: FrictionTable(GRID, TWO_SPEEDS, law_at(GRID, TWO_SPEEDS), 0.1).inverse(
+                lambda a, v: law_at(a, v)[0], GRID[-1]
+            ),
             "a row of amplitudes for each speed",
         ),
         (lambda: rows().amplitude_for(0.21, np.array([0.01, 2.0])), "relative_friction = 0.21"),

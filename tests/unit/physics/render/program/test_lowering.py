@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from tests.friction_tables import inverse_over_speeds
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.quantities import FloatArray
@@ -113,7 +114,7 @@ def test_one_spoilt_number_is_refused(spoil: Spoil, says: str) -> None:
 
 def with_speeds() -> FloatArray:
     """One with a row of friction for each of three speeds."""
-    curve = FrictionInverse.over_speeds(
+    curve = inverse_over_speeds(
         lambda a, v: 1.0 - a / (4e-6 + 1e-6 * v[:, None]),
         0.5e-6 * np.arange(5),
         np.array([0.01, 0.1, 1]),
