@@ -107,9 +107,7 @@ from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import MadeForSpeed, Renderer
 from squeezefilm.physics.render.program.wave import WaveCompensation
 from squeezefilm.physics.render.resonator.compensation import (
-    CompensatedDrive,
     DrivenEnvelope,
-    compensated_drive,
 )
 from squeezefilm.physics.render.texture.composition import Composable, Texture
 from squeezefilm.physics.render.texture.coordinate import AlongX, AlongY, Coordinate
@@ -252,7 +250,6 @@ MADE: dict[Any, Callable[[], Any]] = {
     DiscSurface: lambda: surface_shape(TPAD, working_mode(TPAD)),
     TrackSurface: lambda: surface_shape(STATOR, working_mode(STATOR)),
     Unit: lambda: Unit("m"),
-    CompensatedDrive: lambda: compensated_drive(np.full(50, 1e-6), 1e-4, ENVELOPE),
     DrivenEnvelope: lambda: ENVELOPE,
     Composable: lambda: RelativeFriction(SINE, 0.5, 0.9),
     RelativeFriction: lambda: RelativeFriction(SINE, 0.5, 0.9),

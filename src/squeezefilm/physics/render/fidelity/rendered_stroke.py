@@ -214,7 +214,7 @@ def _previewed(
         kernel.previewed_windows(
             state, parameters, np.ascontiguousarray(windows), work, command[rows], code[rows]
         )
-    return CompensatedDrive.of(command, code)
+    return CompensatedDrive(command, code)
 
 
 def _asked(texture: Texture, x: si.FloatArray, v: si.FloatArray, t: si.FloatArray) -> si.FloatArray:

@@ -111,19 +111,21 @@ class DrivenEnvelope:
 
 
 class CompensatedDrive(NamedTuple):
-    """A command made for amplitudes wanted: the amplitude from each sample to the next (m), shape
-    (n,), negative where it brakes; and the share of samples whose command met the upper and lower
-    limit (1)."""
+    """A command made for amplitudes wanted: the amplitude from each sample to the next (m, negative
+    where it brakes), and the kernel's code of what became of it; shape (n,)."""
 
     command: si.MetreArray
-    saturated_top: si.Dimensionless
-    saturated_bottom: si.Dimensionless
+    code: si.IntArray
 
-    @classmethod
-    def of(cls, command: si.MetreArray, code: si.IntArray) -> CompensatedDrive:
-        """A command of steps whose codes the kernel gave."""
-        top, bottom = (float(np.mean(code == end)) for end in (kernel.TOPPED, kernel.BOTTOMED))
-        return cls(command, top, bottom)
+    @property
+    def saturated_top(self) -> si.Dimensionless:
+        """The share of samples whose command met the upper limit (1)."""
+        return float(np.mean(self.code == kernel.TOPPED))
+
+    @property
+    def saturated_bottom(self) -> si.Dimensionless:
+        """The share of samples whose command met the lower limit (1)."""
+        return float(np.mean(self.code == kernel.BOTTOMED))
 
 
 @si.checked_numbers
@@ -162,7 +164,7 @@ def compensated_drive(
         # The last sample holds.
         windows = sliding_window_view(np.append(goal[1:], np.full(ahead, goal[-1])), ahead)
         kernel.previewed_windows(state, parameters, windows, preview_work(ahead), command, code)
-    return CompensatedDrive.of(command, code)
+    return CompensatedDrive(command, code)
 
 
 @si.checked_numbers
