@@ -98,7 +98,7 @@ NOT_CALLED = {
     actuators.motor.in_time.resting
     physics.plate.elements.slabs.require_countable
     physics.plate.heat_states.WarmCase.states physics.plate.heat_states.WarmCase.time_to_fall
-    physics.film.periodic.batch.check_film physics.film.periodic.batch.solve_all
+    physics.film.periodic.batch.solve_all
     physics.film.planar.grid.edge_graded physics.film.planar.grid.edge_layer
     physics.film.planar.grid.refined_line
     physics.film.periodic.nested.load_times physics.film.periodic.nested.force_harmonics

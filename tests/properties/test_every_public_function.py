@@ -100,7 +100,6 @@ CHECK_THEMSELVES = (
     "physics.chain.pad_place.",
     "physics.chain.prediction.predict",
     "physics.contact.finger.fingertip.FingerpadDynamics.pressed",
-    "physics.film.gas.require_film",
     "physics.plate.beam_pieces.BeamPiece",
     "physics.plate.solid.resonances.Neighbour",
     "physics.render.motion.stroke.Stroke",

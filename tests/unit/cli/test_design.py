@@ -84,7 +84,7 @@ def test_what_is_no_finger_is_told() -> None:
         ('type = "strips"', 'type = "stripes"', r"line \d+.*type"),
         ('compare_with = "biet2008-plate"', 'compare_with = "biet2008-plat"', r"biet2008-plat'"),
         ('start_from = "biet2008-plate"', 'start_from = "biet2008-stator"', "a measured ring"),
-        ('least_voltage = "5 V"', 'least_voltage = "20 V"', "more than the highest"),
+        ('least_voltage = "5 V"', 'least_voltage = "20 V"', "which is voltage"),
     ],
 )
 def test_a_mistake_in_the_file_is_told_with_its_line(

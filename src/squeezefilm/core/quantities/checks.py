@@ -27,9 +27,9 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.core.quantities.require import bounds_of, named_bounds_of, require
+from squeezefilm.core.quantities.require import bounds_of, require
 from squeezefilm.core.quantities.rules import Rule, rule_of
-from squeezefilm.core.quantities.units import Unit, hints_of, unit_of
+from squeezefilm.core.quantities.units import hints_of
 
 __all__ = ["CLOSED_FORMS", "checked_numbers", "closed_form", "outermost_checked"]
 
@@ -83,30 +83,17 @@ class _Arguments:
             raise TypeError(f"{function.__qualname__} has no argument {sorted(unknown)}")
 
     @functools.cached_property
-    def _hints(self) -> dict[str, Any]:
-        if self._made is not None:
-            return hints_of(self._made)
-        # The result's annotation may be imported for type checking only.
-        annotations = dict(inspect.get_annotations(self._function))
-        annotations.pop("return", None)
-        taken = types.SimpleNamespace(__annotations__=annotations)
-        names_there = getattr(inspect.unwrap(self._function), "__globals__", {})
-        return typing.get_type_hints(taken, names_there, include_extras=True)
-
-    @functools.cached_property
-    def named_bounds(self) -> tuple[tuple[str, Unit, str, str], ...]:
-        """Name and unit of each argument that another one bounds, how, and the other's name."""
-        return tuple(
-            (name, unit_of(self._hints[name]) or Unit("1"), word, other)
-            for name in self.names
-            if name in self._hints
-            for word, other in named_bounds_of(self._hints[name])
-        )
-
-    @functools.cached_property
     def rules(self) -> tuple[tuple[int, str, Rule, bool], ...]:
         """Place, name and rule of each argument that is checked; True for those that broadcast."""
-        function, hints, rules = self._function, self._hints, []
+        function, rules = self._function, []
+        if self._made is not None:
+            hints = hints_of(self._made)
+        else:
+            # The result's annotation may be imported for type checking only.
+            taken = types.SimpleNamespace(__annotations__=dict(inspect.get_annotations(function)))
+            taken.__annotations__.pop("return", None)
+            names_there = getattr(inspect.unwrap(function), "__globals__", {})
+            hints = typing.get_type_hints(taken, names_there, include_extras=True)
         for place, name in enumerate(self.names):
             if name not in hints:
                 continue
@@ -116,6 +103,11 @@ class _Arguments:
             elif any(bounds_of(hints[name])):
                 raise TypeError(f"{function.__qualname__}: {name} is bounded and is no number")
         return tuple(rules)
+
+    @functools.cached_property
+    def between(self) -> tuple[tuple[str, Rule], ...]:
+        """Name and rule of each argument that another one bounds."""
+        return tuple((name, rule) for _, name, rule, _ in self.rules if rule.named_bounds)
 
     def checked(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Sequence[Any]:
         """The arguments by place as the call takes them; those by name are put into `kwargs`.
@@ -140,24 +132,10 @@ class _Arguments:
                 shapes.append((name, value.shape))
         if len(shapes) > 1:
             _require_broadcast(shapes)
-        if self.named_bounds:
-            self._require_order(
-                self._defaults | dict(zip(self.names, given, strict=False)) | kwargs
-            )
+        for name, rule in self.between:
+            asked = self._defaults | dict(zip(self.names, given, strict=False)) | kwargs
+            _require_between(name, asked.get(name), rule, asked)
         return given
-
-    def _require_order(self, asked: Mapping[str, Any]) -> None:
-        for name, unit, word, other in self.named_bounds:
-            first, *rest = other.split(".")
-            value, bound = asked.get(name), asked.get(first)
-            for part in rest:
-                bound = getattr(bound, part, None)
-            if value is None or bound is None:
-                continue
-            try:
-                require(name, value, unit, **{word: bound})
-            except InputError as error:
-                raise InputError(f"{error}, which is {other}", quantity=name) from None
 
     def beyond(self, args: Sequence[Any], kwargs: Mapping[str, Any], why: str) -> OutOfRangeError:
         """The error of a call whose arguments leave the range of a float."""
@@ -253,6 +231,20 @@ def _finite(result: Any) -> bool:
         array = np.asarray(getattr(result, "magnitude", result))
         return array.dtype.kind not in "fc" or bool(np.isfinite(array).all())
     return True
+
+
+def _require_between(name: str, value: Any, rule: Rule, asked: Mapping[str, Any]) -> None:
+    for word, other in rule.named_bounds:
+        first, *rest = other.split(".")
+        bound = asked.get(first)
+        for part in rest:
+            bound = getattr(bound, part, None)
+        if value is None or bound is None:
+            continue
+        try:
+            require(name, value, rule.unit, **{word: bound})
+        except InputError as error:
+            raise InputError(f"{error}, which is {other}", quantity=name) from None
 
 
 def _require_broadcast(shapes: list[tuple[str, tuple[int, ...]]]) -> None:

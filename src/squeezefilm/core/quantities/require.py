@@ -77,18 +77,16 @@ class Limit(Protocol):
         """Raise `InputError` that names the quantity."""
 
 
-def bounds_of(hint: Any) -> tuple[dict[str, Any], tuple[Limit, ...]]:
-    """The bounds of an annotation that are numbers, as `require` takes them; its other limits."""
+def bounds_of(
+    hint: Any,
+) -> tuple[dict[str, Any], tuple[tuple[str, str], ...], tuple[Limit, ...]]:
+    """The bounds of an annotation as `require` takes them: numbers, and names of others whose
+    values they are; and its other limits."""
     parts = list(_beside(hint))
-    given = [part for part in parts if isinstance(part, _Bound)]
-    bounds = {_WORDS[type(b)]: float(b.value) for b in given if not isinstance(b.value, str)}
-    return bounds, tuple(bound for bound in parts if hasattr(bound, "refuse_outside"))
-
-
-def named_bounds_of(hint: Any) -> list[tuple[str, str]]:
-    """The bounds in an annotation that are others' values: word of `require`, name of the other."""
-    bounds = (part for part in _beside(hint) if isinstance(part, _Bound))
-    return [(_WORDS[type(b)], b.value) for b in bounds if isinstance(b.value, str)]
+    given = [(_WORDS[type(part)], part.value) for part in parts if isinstance(part, _Bound)]
+    numbers = {word: float(bound) for word, bound in given if not isinstance(bound, str)}
+    named = tuple((word, bound) for word, bound in given if isinstance(bound, str))
+    return numbers, named, tuple(bound for bound in parts if hasattr(bound, "refuse_outside"))
 
 
 def _beside(hint: Any) -> Iterator[Any]:
@@ -237,7 +235,7 @@ def require_typed(name: str, text: str, hint: Any) -> None:
     which `require` says as well. Raises `InputError` that names the quantity, what was typed and
     the bounds, and `QuantityError` for a text that is no such quantity.
     """
-    unit, (bounds, _) = unit_of(hint), bounds_of(hint)
+    unit, (bounds, *_) = unit_of(hint), bounds_of(hint)
     match = _TYPED.fullmatch(text)
     if unit is None or match is None or match["unit"].endswith(unit.symbol):
         return

@@ -46,7 +46,8 @@ class Rule:
     """The demand of an annotation on an argument: one number, an array, either, a count, a row (a
     tuple or list of numbers), a table (a tuple of rows), or numbers in another container, which is
     left as it is; or a word, one of `words`. `length` is of a row, `bounds` as `require` takes
-    them. One of `records`, which checked its own numbers, may stand in a number's place."""
+    them. One of `records`, which checked its own numbers, may stand in a number's place.
+    `named_bounds` are others' values: word of `require`, name of the other."""
 
     kind: Kind
     unit: Unit = _PURE
@@ -56,6 +57,7 @@ class Rule:
     length: int | None = None
     words: tuple[Any, ...] = ()
     records: tuple[type, ...] = ()
+    named_bounds: tuple[tuple[str, str], ...] = ()
     _plain_types: tuple[type, ...] = field(init=False, compare=False)
     _least: float = field(init=False, compare=False)
     _most: float = field(init=False, compare=False)
@@ -180,7 +182,7 @@ def rule_of(hint: Any, more: dict[str, Any]) -> Rule | None:
     row = typing.get_args(numbers[0])[0] if kind == "table" else numbers[0]
     parts = typing.get_args(row) if typing.get_origin(row) is tuple else (Ellipsis,)
     has_length = kind in ("row", "table") and Ellipsis not in parts
-    bounds, limits = bounds_of(hint)
+    bounds, named_bounds, limits = bounds_of(hint)
     return Rule(
         kind,
         unit or _PURE,
@@ -189,6 +191,7 @@ def rule_of(hint: Any, more: dict[str, Any]) -> Rule | None:
         limits,
         len(parts) if has_length else None,
         records=records,
+        named_bounds=named_bounds,
     )
 
 

@@ -90,7 +90,7 @@ class Source:
     (None: always the highest)."""
 
     voltage: Annotated[si.Volt, si.Above(0), si.AtMost(HIGHEST_VOLTAGE)]
-    least_voltage: Annotated[si.Volt, si.Above(0), si.AtMost(HIGHEST_VOLTAGE)] | None = None
+    least_voltage: Annotated[si.Volt, si.Above(0), si.AtMost("voltage")] | None = None
 
 
 @si.checked_numbers
@@ -218,12 +218,6 @@ class Requirements:
             self._require_plate("compare_with")
         base = self.base
         base.surface(self.touch.surface)
-        volts = self.drive.least_voltage
-        if volts is not None and volts > self.drive.voltage:
-            raise InputError(
-                f"least_voltage is {volts:g} V, more than the highest of {self.drive.voltage:g} V",
-                quantity="least_voltage",
-            )
         # So that what cannot be chosen is refused here, before anything is computed.
         _ = self.spaces
 

@@ -6,7 +6,7 @@ The laws of slip are known by name, and to compiled code (`mobility`) by numbers
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
@@ -61,21 +61,12 @@ takes minutes, or for ever; the load there is that of an infinite squeeze number
 MOST_KNUDSEN: si.Dimensionless = 1e6
 """Largest Knudsen number, of a gap narrower than surfaces are flat: molecules fly from about 10."""
 
-
-def require_film(
-    squeeze_number: si.DimensionlessLike,
-    polytropic_exponent: si.DimensionlessLike,
-    knudsen_number: si.DimensionlessLike,
-) -> None:
-    """Refuse a gas film that no solver here has: raises `InputError` with the offending value."""
-    si.require(
-        "squeeze_number",
-        squeeze_number,
-        at_least=LEAST_SQUEEZE_NUMBER,
-        at_most=MOST_SQUEEZE_NUMBER,
-    )
-    si.require("polytropic_exponent", polytropic_exponent, at_least=1.0, at_most=5.0 / 3.0)
-    si.require("knudsen_number", knudsen_number, at_least=0.0, at_most=MOST_KNUDSEN)
+SQUEEZE_NUMBER = (si.AtLeast(LEAST_SQUEEZE_NUMBER), si.AtMost(MOST_SQUEEZE_NUMBER))
+POLYTROPIC_EXPONENT = (si.AtLeast(1.0), si.AtMost(5.0 / 3.0))
+KNUDSEN_NUMBER = (si.AtLeast(0.0), si.AtMost(MOST_KNUDSEN))
+EXCURSION_RATIO = (si.Above(-1.0), si.Below(1.0))
+TOLERANCE = (si.AtLeast(1e-9), si.AtMost(0.05))
+"""Bounds of the films that solvers here have."""
 
 
 class CompiledGas(NamedTuple):
@@ -93,8 +84,8 @@ class FilmGas:
     path at ambient pressure over H0, used locally as Kn/(P H) in the law `slip` (see
     `SLIP_LAWS`)."""
 
-    polytropic_exponent: si.Dimensionless = 1.0
-    knudsen_number: si.Dimensionless = 0.0
+    polytropic_exponent: Annotated[si.Dimensionless, *POLYTROPIC_EXPONENT] = 1.0
+    knudsen_number: Annotated[si.Dimensionless, *KNUDSEN_NUMBER] = 0.0
     slip: str = "first"
 
     def compiled(self) -> CompiledGas:

@@ -38,7 +38,7 @@ class AnnularStator:
     """
 
     mean_diameter: Annotated[si.Metre, hard.SIDE]
-    radial_width: Annotated[si.Metre, hard.SIDE]
+    radial_width: Annotated[si.Metre, hard.SIDE, si.Below("mean_diameter")]
     wavelength: Annotated[si.Metre, hard.SIDE]
     resonance_frequency: Annotated[si.Hertz, hard.FREQUENCY]
     quality_factor: Annotated[si.Dimensionless, hard.QUALITY]
@@ -50,11 +50,6 @@ class AnnularStator:
     lines_across: ClassVar[Literal["length", "width"]] = "length"
 
     def __post_init__(self) -> None:
-        if self.radial_width >= self.mean_diameter:
-            raise GeometryError(
-                f"radial_width = {si.format_quantity(self.radial_width, _M)} is not smaller than "
-                f"mean_diameter = {si.format_quantity(self.mean_diameter, _M)}; a ring needs a hole"
-            )
         if (self.tooth_pitch is None) != (self.slot_width is None):
             raise GeometryError(
                 "tooth_pitch and slot_width belong together; give both, or neither for a plain ring"

@@ -11,7 +11,7 @@ from __future__ import annotations
 import functools
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -32,6 +32,7 @@ Interest = Literal["threshold and width", "all"]
 
 
 @reads_text
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class AdaptiveDesign:
     """Start of a Bayesian choice of stimuli.
@@ -54,20 +55,16 @@ class AdaptiveDesign:
     prior: PsychometricPrior
     shape: Shape = "logistic"
     axis: Axis = "linear"
-    guess_rate: si.Dimensionless = 0.5
-    cells: tuple[int, int, int] = (40, 20, 5)
+    guess_rate: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(0.5)] = 0.5
+    cells: Annotated[tuple[int, int, int], si.AtLeast(1)] = (40, 20, 5)
     interest: Interest = "threshold and width"
-    most_trials: int = 120
+    most_trials: Annotated[int, si.AtLeast(1)] = 120
 
     def __post_init__(self) -> None:
         shape_code(self.shape, self.axis)
-        si.require("guess_rate", self.guess_rate, at_least=0.0, at_most=0.5)
-        si.require("cells", self.cells, at_least=1)
-        si.require("most_trials", self.most_trials, at_least=1)
         if len(self.stimuli) < 2:
             raise InputError(f"stimuli = {self.stimuli} leaves nothing to choose; give two or more")
         self._require_room()
-        si.require_one_of("interest", self.interest, ("threshold and width", "all"))
 
     def _require_room(self) -> None:
         """Refuse a domain in which no answer changes what is presented. Raises `InputError`."""

@@ -9,7 +9,7 @@ bootstrap; Davison & Hinkley 1997, 10.1017/CBO9780511802843, section 3.8).
 from __future__ import annotations
 
 import math
-from typing import Literal, get_args
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -87,11 +87,14 @@ def recentred_interval(
 
 
 Method = Literal["Wilson", "Jeffreys", "Clopper–Pearson"]
-METHODS: tuple[Method, ...] = get_args(Method)
 
 
+@si.checked_numbers
 def proportion_interval(
-    successes: int, trials: int, level: si.Dimensionless = 0.95, method: Method = "Wilson"
+    successes: Annotated[int, si.AtLeast(0), si.AtMost("trials")],
+    trials: Annotated[int, si.AtLeast(1)],
+    level: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.95,
+    method: Method = "Wilson",
 ) -> Estimate:
     """A proportion with an interval; trials are taken as independent.
 
@@ -103,13 +106,6 @@ def proportion_interval(
     Raises:
         InputError: another method, counts that do not fit, or a level not between 0 and 1.
     """
-    si.require_one_of("method", method, METHODS)
-    si.require("level", level, above=0.0, below=1.0)
-    if not 0 <= successes <= trials or trials < 1:
-        raise InputError(
-            f"{successes} successes of {trials} trials cannot be; successes must lie between 0 and "
-            "the trials, of which at least 1 is wanted"
-        )
     share = successes / trials
     if method != "Jeffreys":
         exact = method == "Clopper–Pearson"

@@ -188,7 +188,7 @@ def good_values(hint: Any) -> Iterator[Any]:
 
 def numbers_within(hint: Any) -> Iterator[Any]:
     """Numbers within the bounds of an annotation, whole ones where it wants them."""
-    bounds, limits = bounds_of(hint)
+    bounds, _, limits = bounds_of(hint)
     ends = [(getattr(limit, "least"), getattr(limit, "most")) for limit in limits]  # noqa: B009
     low = max(bounds.get("above", -1e3), bounds.get("at_least", -1e3), *(low for low, _ in ends))
     high = min(bounds.get("below", 1e3), bounds.get("at_most", 1e3), *(high for _, high in ends))

@@ -415,11 +415,30 @@ def test_what_is_on_its_side_of_the_bounds_is_taken() -> None:
     assert Bounded(levels=None).levels is None
 
 
+@checked_numbers
+def _within(
+    inner: Annotated[Metre, Below("outer"), AtMost("limits.real")],
+    outer: Metre | None = 2.0,
+    limits: complex = 1.5 + 0j,
+) -> None: ...
+
+
+def test_another_argument_may_be_the_bound() -> None:
+    _within(1.5)
+    _within(outer=None, inner=1.0)
+    with pytest.raises(InputError, match=r"^inner = 2 m .* below 2 m, which is outer$") as caught:
+        _within(2.0)
+    assert caught.value.quantity == "inner"
+    with pytest.raises(InputError, match=r"at most 1\.5 m, which is limits\.real$"):
+        _within(1.6, None)
+
+
 def test_the_bounds_of_a_type_can_be_read() -> None:
-    assert bounds_of(Annotated[Metre, AtLeast(1), Below(2)]) == ({"at_least": 1, "below": 2}, ())
-    assert bounds_of(Annotated[Metre, SIDE] | None) == ({}, (SIDE,))
-    assert bounds_of(Metre) == ({}, ())
-    assert bounds_of(str) == ({}, ())
+    own = {"at_least": 1, "below": 2}
+    assert bounds_of(Annotated[Metre, AtLeast(1), Below(2)]) == (own, (), ())
+    assert bounds_of(Annotated[Metre, SIDE] | None) == ({}, (), (SIDE,))
+    assert bounds_of(Annotated[Metre, AtLeast(1), Below("x")])[1] == (("below", "x"),)
+    assert bounds_of(Metre) == bounds_of(str) == ({}, (), ())
 
 
 def test_bounds_beside_what_is_no_number_are_a_slip_of_the_writer() -> None:
@@ -461,7 +480,7 @@ def test_what_is_taken_at_a_glance_is_what_the_full_look_takes(end: Any, value: 
         return checked_numbers(taken)
 
     alone, many = bounded(Metre), bounded(MetreArray)
-    words, _ = bounds_of(Annotated[Metre, end])
+    words = bounds_of(Annotated[Metre, end])[0]
     value, good = float(value), 2.0 if isinstance(end, Above | AtLeast) else 0.0
     try:
         require("value", value, M, **words)

@@ -31,7 +31,7 @@ def test_the_presets_can_be_read(name: str) -> None:
         ('length = "50 mm"', 'length = "85 mm"', "needs 95 mm, 5 mm more at either end"),
         ('material = "aluminium 6061"', 'material = "aluminum 6060"', "no material"),
         ("most_lines = 9", "most_lines = 4", "which is least_lines"),
-        ('least_voltage = "5 V"', 'least_voltage = "50 V"', "more than the highest"),
+        ('least_voltage = "5 V"', 'least_voltage = "50 V"', "which is voltage"),
         ("[limits]", '[limits]\nmost_frequency = "19 kHz"', "which is most_frequency"),
         ('start_from = "biet2008-plate"', 'start_from = "biet2008-stator"', "measured ring"),
         ('compare_with = ""', 'compare_with = "biet2008-stator"', "compare_with.*measured ring"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import itertools
 import math
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from squeezefilm.study.identification.confusion import (
     participant_counts,
 )
 from squeezefilm.study.identification.proportions import (
-    METHODS,
+    Method,
     expansion,
     participant_interval,
     permutation_test,
@@ -28,7 +29,7 @@ from squeezefilm.study.identification.proportions import (
 
 NAMES = ("a", "b", "c")
 WILSON, JEFFREYS, CLOPPER_PEARSON = INTERVALS = [
-    functools.partial(proportion_interval, method=method) for method in METHODS
+    functools.partial(proportion_interval, method=method) for method in get_args(Method)
 ]
 
 
@@ -231,7 +232,7 @@ def test_one_trial_has_an_interval_and_none_has_not(interval) -> None:  # type: 
     assert interval(1, 1).high == 1.0
     assert 0 < interval(0, 1).high < 1
     for successes, trials in ((0, 0), (-1, 3), (4, 3)):
-        with pytest.raises(InputError, match=f"{successes} successes of {trials} trials cannot be"):
+        with pytest.raises(InputError, match=r"(successes|trials) = .* cannot be used"):
             interval(successes, trials)
     for level in (0.0, 1.0):
         with pytest.raises(InputError, match="level"):

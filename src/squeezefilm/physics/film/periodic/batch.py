@@ -21,7 +21,14 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.core.progress import CountProgress
-from squeezefilm.physics.film.gas import require_film, slip_law
+from squeezefilm.physics.film.gas import (
+    EXCURSION_RATIO,
+    KNUDSEN_NUMBER,
+    POLYTROPIC_EXPONENT,
+    SQUEEZE_NUMBER,
+    TOLERANCE,
+    slip_law,
+)
 from squeezefilm.physics.film.periodic.resolution import (
     CELLS,
     DISC,
@@ -75,29 +82,16 @@ def compiled() -> Any:
     return uniform
 
 
-def check_film(
-    squeeze_number: si.DimensionlessLike,
-    excursion_ratio: si.DimensionlessLike,
-    polytropic_exponent: si.DimensionlessLike,
-    knudsen_number: si.DimensionlessLike,
-    tolerance: float,
-) -> None:
-    """Refuse inputs that no film has; raises `InputError` with the offending value."""
-    require_film(squeeze_number, polytropic_exponent, knudsen_number)
-    si.require("excursion_ratio", excursion_ratio, above=-1.0, below=1.0)
-    si.require("tolerance", tolerance, at_least=1e-9, at_most=0.05)
-
-
 @si.checked_numbers
 def solve_films(
-    squeeze_number: si.DimensionlessLike,
-    excursion_ratio: si.DimensionlessLike,
+    squeeze_number: Annotated[si.DimensionlessLike, *SQUEEZE_NUMBER],
+    excursion_ratio: Annotated[si.DimensionlessLike, *EXCURSION_RATIO],
     *,
     shape: str = "strip",
-    polytropic_exponent: si.DimensionlessLike = 1.0,
-    knudsen_number: si.DimensionlessLike = 0.0,
+    polytropic_exponent: Annotated[si.DimensionlessLike, *POLYTROPIC_EXPONENT] = 1.0,
+    knudsen_number: Annotated[si.DimensionlessLike, *KNUDSEN_NUMBER] = 0.0,
     slip: str = "first",
-    tolerance: float = 5e-3,
+    tolerance: Annotated[float, *TOLERANCE] = 5e-3,
     workers: Annotated[int, si.AtLeast(1)] | None = None,
     progress: CountProgress | None = None,
     force: bool = False,
@@ -112,7 +106,6 @@ def solve_films(
     as `partial`, where its error estimate shows it (NaN where nothing converged).
     """
     si.require_one_of("shape", shape, ("strip", "disc"))
-    check_film(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number, tolerance)
     law = slip_law(slip, float(np.max(knudsen_number)))
     inputs = _broadcast(squeeze_number, excursion_ratio, polytropic_exponent, knudsen_number)
     sigma, signed, n, kn = (np.ascontiguousarray(a.ravel()) for a in inputs)

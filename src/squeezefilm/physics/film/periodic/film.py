@@ -10,6 +10,7 @@ by Fourier collocation in time and finite volumes in space; see `kernel` for the
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,8 +18,17 @@ from numpy.typing import ArrayLike
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.film.gas import CompiledGas, FilmGas, slip_law
-from squeezefilm.physics.film.periodic.batch import check_film, compiled
+from squeezefilm.physics.film.gas import (
+    EXCURSION_RATIO,
+    KNUDSEN_NUMBER,
+    POLYTROPIC_EXPONENT,
+    SQUEEZE_NUMBER,
+    TOLERANCE,
+    CompiledGas,
+    FilmGas,
+    slip_law,
+)
+from squeezefilm.physics.film.periodic.batch import compiled
 from squeezefilm.physics.film.periodic.nested import (
     NEWTON_SHARE,
     PROFILE_MARGINS,
@@ -55,14 +65,14 @@ from squeezefilm.physics.film.periodic.solution import (
 
 @si.checked_numbers
 def solve_uniform(
-    squeeze_number: si.Dimensionless,
-    excursion_ratio: si.Dimensionless,
+    squeeze_number: Annotated[si.Dimensionless, *SQUEEZE_NUMBER],
+    excursion_ratio: Annotated[si.Dimensionless, *EXCURSION_RATIO],
     *,
     shape: str = "strip",
-    polytropic_exponent: si.Dimensionless = 1.0,
-    knudsen_number: si.Dimensionless = 0.0,
+    polytropic_exponent: Annotated[si.Dimensionless, *POLYTROPIC_EXPONENT] = 1.0,
+    knudsen_number: Annotated[si.Dimensionless, *KNUDSEN_NUMBER] = 0.0,
     slip: str = "first",
-    tolerance: float = 5e-3,
+    tolerance: Annotated[float, *TOLERANCE] = 5e-3,
 ) -> FilmSolution:
     """The film under H = 1 + ε cos T of an infinitely long strip, open at both edges, or of a disc.
 
@@ -79,7 +89,6 @@ def solve_uniform(
     si.require_one_of("shape", shape, ("strip", "disc"))
     sigma, n, kn = squeeze_number, polytropic_exponent, knudsen_number
     asked = FilmQuestion(shape, sigma, excursion_ratio, n, kn, slip, tolerance, None)
-    check_film(sigma, excursion_ratio, n, kn, tolerance)
     one = np.array([sigma]), np.array([excursion_ratio]), np.array([n]), np.array([kn])
     film = Films(*one, slip_law(slip, kn), STRIP if shape == "strip" else DISC)
     small = small_film(film, tolerance) if abs(excursion_ratio) < LARGEST else None
@@ -122,13 +131,13 @@ def _refined_uniform(film: Films, tolerance: float) -> tuple[Nested, Found]:
 
 @si.checked_numbers
 def solve_profile(
-    squeeze_number: si.Dimensionless,
+    squeeze_number: Annotated[si.Dimensionless, *SQUEEZE_NUMBER],
     profile: GapProfile | Callable[[si.FloatArray, si.FloatArray], ArrayLike],
     *,
-    polytropic_exponent: si.Dimensionless = 1.0,
-    knudsen_number: si.Dimensionless = 0.0,
+    polytropic_exponent: Annotated[si.Dimensionless, *POLYTROPIC_EXPONENT] = 1.0,
+    knudsen_number: Annotated[si.Dimensionless, *KNUDSEN_NUMBER] = 0.0,
     slip: str = "first",
-    tolerance: float = 5e-3,
+    tolerance: Annotated[float, *TOLERANCE] = 5e-3,
     field: bool = True,
 ) -> FilmSolution:
     """The film of a strip whose gap H(X, T) varies along it, −1/2 ≤ X ≤ 1/2, open at both edges.
@@ -148,11 +157,7 @@ def solve_profile(
                 f"function H(X, T); of arrays give an interpolator"
             )
         profile = profile_from_function(profile)
-    check_film(squeeze_number, 0.0, polytropic_exponent, knudsen_number, tolerance)
-    sigma, gas = (
-        float(squeeze_number),
-        FilmGas(polytropic_exponent, knudsen_number, slip).compiled(),
-    )
+    sigma, gas = squeeze_number, FilmGas(polytropic_exponent, knudsen_number, slip).compiled()
     n, kn, _ = gas
     asked = FilmQuestion("profile", sigma, profile.excursion, n, kn, slip, tolerance, profile)
     solvable, factor = enlarged(profile)

@@ -19,7 +19,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import announce
 from squeezefilm.core.errors import ConvergenceError, InputError
 from squeezefilm.core.hard_limits import PLANAR_MEMORY, require_within
-from squeezefilm.physics.film.gas import ISOTHERMAL, FilmGas, require_film
+from squeezefilm.physics.film.gas import ISOTHERMAL, SQUEEZE_NUMBER, FilmGas
 from squeezefilm.physics.film.periodic.nested import steadied
 from squeezefilm.physics.film.periodic.solution import SolvedFilm
 from squeezefilm.physics.film.planar.balance import Balance, Balancer, Film, resampled, row_block
@@ -312,7 +312,7 @@ class FilmPlanar(SolvedFilm):
 def solve_planar(
     shape: PlanarShape,
     gap: PlanarGap,
-    squeeze_number: si.Dimensionless,
+    squeeze_number: Annotated[si.Dimensionless, *SQUEEZE_NUMBER],
     *,
     aspect_ratio: Annotated[si.Dimensionless, si.Above(0.0)] = 1.0,
     gas: FilmGas = ISOTHERMAL,
@@ -330,7 +330,6 @@ def solve_planar(
     down to 1e-5 of it, and on every harmonic of the force, relative to the largest of them.
     Sources: Gross (1962); Blech, 10.1115/1.3254692 for the linear limit.
     """
-    require_film(squeeze_number, gas.polytropic_exponent, gas.knudsen_number)
     if shape == "disc" and aspect_ratio != 1.0:
         raise InputError(f"a disc has aspect_ratio 1, not {aspect_ratio}; ask for an ellipse")
     announce(row_block, "film solver in the plane", 3)
