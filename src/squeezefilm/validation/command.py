@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable
+import operator
 from dataclasses import dataclass
 from typing import Any
 
@@ -215,16 +215,10 @@ def _verdict(claim: Claim, found: ClaimValue) -> Verdict:
     if claim.relation == "within":
         least, most = min(claim.printed), max(claim.printed)
         holds = all(least <= value <= most for value in found.value)
-        return (passed or "holds") if holds else "does not hold"
-    compare: dict[str, Callable[[float, float], bool]] = {
-        "above": lambda value, bound: value > bound,
-        "at_least": lambda value, bound: value >= bound,
-        "at_most": lambda value, bound: value <= bound,
-    }
-    holds = all(
-        compare[claim.relation](value, bound)
-        for value, bound in zip(found.value, claim.printed, strict=True)
-    )
+    else:
+        compare = {"above": operator.gt, "at_least": operator.ge, "at_most": operator.le}
+        pairs = zip(found.value, claim.printed, strict=True)
+        holds = all(compare[claim.relation](value, bound) for value, bound in pairs)
     return (passed or "holds") if holds else "does not hold"
 
 
