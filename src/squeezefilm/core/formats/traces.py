@@ -48,11 +48,7 @@ class Table:
     def __post_init__(self) -> None:
         if not self.columns:
             raise InputError("a table needs at least one column")
-        shapes = {np.shape(column) for column in self.columns.values()}
-        if len(shapes) > 1 or len(next(iter(shapes))) != 1:
-            raise InputError(
-                f"columns of shapes {sorted(shapes)} are no table; give lists of one length"
-            )
+        si.require_alike(**self.columns)
         for name, column in self.columns.items():
             if not _NAME.fullmatch(name):
                 raise InputError(f"'{name}' is no name for a column; write it like position_m")

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Annotated
 
 import numpy as np
 from scipy.optimize import brentq
@@ -17,9 +18,8 @@ from squeezefilm.core import quantities as si
 from squeezefilm.study.design.tasks.same_different import called_different
 from squeezefilm.study.psychometric.estimate import Estimate, holding
 
-
-def _require_proportion(name: str, value: si.Dimensionless) -> None:
-    si.require(name, value, above=0.0, below=1.0)
+Rate = Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)]
+"""Share of trials that is neither none nor all of them."""
 
 
 def corrected_proportion(count: int, trials: int) -> si.Dimensionless:
@@ -33,22 +33,17 @@ def corrected_proportion(count: int, trials: int) -> si.Dimensionless:
     return (count + 0.5) / (trials + 1.0)
 
 
-def yes_no_d_prime(
-    hit_rate: si.Dimensionless, false_alarm_rate: si.Dimensionless
-) -> si.Dimensionless:
+@si.checked_numbers
+def yes_no_d_prime(hit_rate: Rate, false_alarm_rate: Rate) -> si.Dimensionless:
     """d′ = z(H) − z(F) of one stimulus a trial.
 
     Raises:
         InputError: a rate not between 0 and 1; `corrected_proportion` mends that.
     """
-    _require_proportion("hit_rate", hit_rate)
-    _require_proportion("false_alarm_rate", false_alarm_rate)
     return float(ndtri(hit_rate)) - float(ndtri(false_alarm_rate))
 
 
-def two_interval_d_prime(
-    hit_rate: si.Dimensionless, false_alarm_rate: si.Dimensionless
-) -> si.Dimensionless:
+def two_interval_d_prime(hit_rate: Rate, false_alarm_rate: Rate) -> si.Dimensionless:
     """d′ = (z(H) − z(F))/√2 of 2IFC: d′ = √2 z(p) where there is no bias.
 
     Args:
@@ -61,9 +56,8 @@ def two_interval_d_prime(
     return yes_no_d_prime(hit_rate, false_alarm_rate) / math.sqrt(2)
 
 
-def differencing_d_prime(
-    hit_rate: si.Dimensionless, false_alarm_rate: si.Dimensionless
-) -> si.Dimensionless:
+@si.checked_numbers
+def differencing_d_prime(hit_rate: Rate, false_alarm_rate: Rate) -> si.Dimensionless:
     """d′ of same/different by the differencing model, for a roving standard.
 
     F = 2 Φ(−k/√2) gives the criterion k, and d′ solves H = Φ((d′ − k)/√2) + Φ((−d′ − k)/√2). Hits
@@ -76,8 +70,6 @@ def differencing_d_prime(
     Raises:
         InputError: a rate not between 0 and 1.
     """
-    _require_proportion("hit_rate", hit_rate)
-    _require_proportion("false_alarm_rate", false_alarm_rate)
     k = -math.sqrt(2) * float(ndtri(0.5 * false_alarm_rate))
     if hit_rate <= false_alarm_rate:
         return 0.0

@@ -68,7 +68,7 @@ def test_files_that_are_none_are_refused(tmp_path: Path) -> None:
         table_from_csv(tmp_path / "t.csv")
     with pytest.raises(ConfigError, match="cannot be read"):
         table_from_csv(tmp_path / "none.csv")
-    with pytest.raises(InputError, match="one length"):
+    with pytest.raises(InputError, match="arrays of equal length"):
         Table({"a": np.zeros(2), "b": np.zeros(3)})
 
 
