@@ -171,7 +171,7 @@ class FigureOf:
     draw: Callable[[Any], Figure]
     reading: str = ""
     file: str = ""
-    has: Callable[[Any], object] = lambda _: True
+    has: Callable[[Any], object] = bool
 
 
 Pictures = dict[str, tuple[str, "Figure"]]
