@@ -49,42 +49,18 @@ class Respond(Request):
     ended_monotonic: float = Field(0.0, ge=0.0, le=1e12)
 
 
-class StudyThread:
-    """The one thread on which all studies of a lab live."""
-
-    def __init__(self, lab: Lab) -> None:
-        self._pool = ThreadPoolExecutor(1, thread_name_prefix="studies")
-        self._lab = lab
-        self._studies: Studies | None = None
-        lab.closing.append(self.close)
-
-    async def do(self, work: Callable[..., T], *arguments: Any) -> T:
-        """`work(studies, *arguments)` on the thread."""
-        return await asyncio.get_running_loop().run_in_executor(
-            self._pool, lambda: work(self._opened(), *arguments)
-        )
-
-    def _opened(self) -> Studies:
-        if self._studies is None:
-            self._studies = Studies(self._lab.folder)
-        return self._studies
-
-    def close(self) -> None:
-        """Close the files and end the thread."""
-        if self._studies is not None:
-            self._pool.submit(self._studies.close).result(timeout=10)
-            self._studies = None
-        self._pool.shutdown(wait=True)
-
-
 class StudyArea:
-    """Answers to the Study area's and the participants' messages; `thread` has the studies' files.
+    """Answers to the Study area's and the participants' messages. All studies live on one thread,
+    which has their files.
 
     `devices` present the surfaces; real sessions on real devices and twins if None.
     """
 
     def __init__(self, lab: Lab, devices: StudyDevices | None = None) -> None:
-        self._lab, self.thread = lab, StudyThread(lab)
+        self._lab = lab
+        self._studies: Studies | None = None
+        self._thread = ThreadPoolExecutor(1, thread_name_prefix="studies")
+        lab.closing.append(self._close)
         self._devices = devices or StudyDevices()
         self._devices.playing = lab.playing
         self._pages: dict[str, WebSocket] = {}
@@ -98,7 +74,7 @@ class StudyArea:
         add("study", self._passed_on(Studies.status, "study"))
         add("export study", self._passed_on(Studies.export, "exported"))
         add("merge study", self._passed_on(Studies.merge, "study"))
-        add("enrol", self._enrol)
+        add("enrol", self._passed_on(Studies.enrol, "study"))
         add("exposure", self._ultrasound)
         add("prepare sitting", self._prepare, PrepareSitting)
         add("station link", self._station)
@@ -110,14 +86,30 @@ class StudyArea:
         add("analyze study", self._analyze)
         add("report study", self._report)
         add = lab.participant.add
-        add("where", self._where)
+        add("where", self._passed_on(Studies.where, "where"))
         add("consent", self._consent)
-        add("next", self._present)
+        add("next", self._passed_on(Studies.present, "where"))
         add("feel", self._feel)
         add("surface in place", self._in_place)
         add("felt", self._felt)
         add("stop surface", self._stop)
         add("respond", self._respond, Respond)
+
+    async def _do(self, work: Callable[..., T], *arguments: Any) -> T:
+        """`work(studies, *arguments)` on the thread of the studies."""
+
+        def on_thread() -> T:
+            if self._studies is None:
+                self._studies = Studies(self._lab.folder)
+            return work(self._studies, *arguments)
+
+        return await asyncio.get_running_loop().run_in_executor(self._thread, on_thread)
+
+    def _close(self) -> None:
+        if self._studies is not None:
+            self._thread.submit(self._studies.close).result(timeout=10)
+            self._studies = None
+        self._thread.shutdown(wait=True)
 
     def _left(self, page: WebSocket) -> None:
         # Nobody is there to feel it, or to stop it.
@@ -126,11 +118,15 @@ class StudyArea:
             self._devices.halt(sitting)
 
     def _passed_on(self, work: Callable[..., Answer], answer: str) -> Handler:
-        """Answers by `work(studies, …)`, whose arguments are the message's fields."""
+        """Answers by `work(studies, …)`, whose arguments are the message's fields; every
+        experimenter hears of a study that it says is `changed`."""
 
         @wraps(work)
         async def passed(**asked: Any) -> Answer:
-            return {"type": answer, **await self.thread.do(partial(work, **asked))}
+            done = await self._do(partial(work, **asked))
+            if changed := done.pop("changed", ""):
+                self._changed(changed)
+            return {"type": answer, **done}
 
         return passed
 
@@ -143,26 +139,21 @@ class StudyArea:
         self._lab.tell({"type": "study changed", "study": study})
 
     async def _sitting(self, sitting: str) -> Sitting:
-        return await self.thread.do(lambda studies: studies.sittings.get(sitting))
+        return await self._do(lambda studies: studies.sittings.get(sitting))
 
     async def _listing(self) -> Answer:
-        answer = await self.thread.do(Studies.listing)
+        answer = await self._do(Studies.listing)
         return {"type": "studies", **answer, "tablets": self._lab.lan is not None}
 
-    async def _enrol(self, study: Name) -> Answer:
-        answer = await self.thread.do(Studies.enrol, study)
-        self._changed(study)
-        return {"type": "study", **answer}
-
     async def _ultrasound(self, study: Name, participant: Name) -> Answer:
-        display = await self.thread.do(Studies.display_of, study, participant)
+        display = await self._do(Studies.display_of, study, participant)
         exposure = await self._exposed(display)
         return {"type": "exposure", "display": display, "statement": exposure.statement}
 
     async def _prepare(self, asked: PrepareSitting) -> Answer:
-        display = await self.thread.do(Studies.display_of, asked.study, asked.participant)
+        display = await self._do(Studies.display_of, asked.study, asked.participant)
         require_device(asked.device, display)
-        answer = await self.thread.do(Studies.prepare, asked)
+        answer = await self._do(Studies.prepare, asked)
         await self._release_ended()
         return {"type": "study", **answer}
 
@@ -185,7 +176,7 @@ class StudyArea:
 
     async def _end(self, sitting: Name) -> Answer:
         device, lost = await self._measured_last(await self._sitting(sitting))
-        answer = await self.thread.do(Studies.end, sitting, device)
+        answer = await self._do(Studies.end, sitting, device)
         answer["problems"] += [lost] if lost else []
         await self._release_ended()
         self._lab.tell({"type": "sitting ended", "sitting": sitting}, participants=True)
@@ -194,10 +185,10 @@ class StudyArea:
     async def _delete(self, study: Name, participant: Name, confirm: Name) -> Answer:
         if confirm != participant:
             raise InputError(f"to delete {participant}, type exactly that; nothing was done")
-        for sitting in await self.thread.do(lambda studies: studies.sittings.of_study(study)):
+        for sitting in await self._do(lambda studies: studies.sittings.of_study(study)):
             if sitting.participant == participant:
                 await self._devices.release(sitting.id)
-        answer = await self.thread.do(Studies.delete, study, participant)
+        answer = await self._do(Studies.delete, study, participant)
         self._changed(study)
         return {"type": "study", **answer}
 
@@ -217,20 +208,16 @@ class StudyArea:
     async def _of_file(
         self, study: str, slot: str | None, work: Callable[..., Answer], *more: Any
     ) -> Answer:
-        path = await self.thread.do(Studies.path, study)
+        path = await self._do(Studies.path, study)
         return await self._lab.workers.slow.do(slot, work, path, *more)
-
-    async def _measured(self, sitting: Sitting) -> StudyDevice:
-        display = await self.thread.do(Studies.display_of_sitting, sitting.id)
-        traces = await self.thread.do(lambda studies: studies.store(sitting.study).traces)
-        return await self._devices.measure(sitting.id, sitting.device, display, traces)
 
     async def _measured_last(self, sitting: Sitting) -> tuple[StudyDevice, str]:
         """The device after a sitting, which ends also where its device is gone: that is said."""
         if sitting.session is None or sitting.ended:
             return NoDevice(), ""
         try:
-            return await self._measured(sitting), ""
+            orders = await self._do(Studies.orders, sitting.id)
+            return await self._devices.measure(sitting.id, orders), ""
         except (DeviceError, InputError) as error:
             lost = f"the device could not be verified: {error}"
             verification = DeviceVerification(measurable=False, remark=lost)
@@ -240,55 +227,40 @@ class StudyArea:
 
     async def _release_ended(self) -> None:
         for held in self._devices.holders():
-            is_open = await self.thread.do(lambda studies, id: studies.sittings.is_open(id), held)
+            is_open = await self._do(lambda studies, id: studies.sittings.is_open(id), held)
             if not is_open:
                 await self._devices.release(held)
-
-    async def _where(self, sitting: Name) -> Answer:
-        return {"type": "where", **await self.thread.do(Studies.where, sitting)}
 
     async def _consent(self, sitting: Name) -> Answer:
         prepared = await self._sitting(sitting)
         if prepared.session is not None or prepared.ended:
-            return await self._where(sitting)
-        device, seen = await self._measured(prepared), None
+            return {"type": "where", **await self._do(Studies.where, sitting)}
+        orders = await self._do(Studies.orders, sitting)
+        device = await self._devices.measure(sitting, orders)
         try:
-            if prepared.device != "none":
-                seen = await self._exposed(
-                    await self.thread.do(Studies.display_of_sitting, sitting)
-                )
-            answer = await self.thread.do(Studies.consent, sitting, seen, device)
+            plays = orders.drive != "none"
+            seen = await self._exposed(str(orders.target)) if plays else None
+            answer = await self._do(Studies.consent, sitting, seen, device)
         except BaseException:
             await self._devices.release(sitting)
             raise
         self._changed(prepared.study)
         return {"type": "where", **answer}
 
-    async def _present(self, sitting: Name) -> Answer:
-        answer = await self.thread.do(Studies.present, sitting)
-        study = answer.pop("study", None)
-        if study is not None:
-            # Who presents by hand is told what; the participant's page is not.
-            self._changed(study)
-        return {"type": "where", **answer}
-
     async def _feel(
         self, sitting: Name, token: Name, place: Annotated[int, Field(ge=0, le=9)]
     ) -> Answer:
-        begun = await self._sitting(sitting)
-        how = await self.thread.do(Studies.asked_to_feel, sitting, token, place)
-        if how != "on a device":
-            self._changed(begun.study)
+        how, surface = await self._do(Studies.asked_to_feel, sitting, token, place)
+        if surface is None:
+            self._changed((await self._sitting(sitting)).study)
             return {"type": "waiting" if how == "by hand" else "shown", "place": place}
-        surface = await self.thread.do(Studies.surface, sitting, token, place)
-        display = await self.thread.do(Studies.display_of_sitting, sitting)
-        traces = await self.thread.do(lambda studies: studies.store(begun.study).traces)
+        orders = await self._do(Studies.orders, sitting)
         self._pages[sitting] = PAGE.get()
-        await self._devices.present(sitting, begun.device, display, traces, surface, token, place)
+        await self._devices.present(sitting, orders, surface, token, place)
         return {"type": "playing", "place": place}
 
     async def _in_place(self, sitting: Name) -> Answer:
-        study, place = await self.thread.do(Studies.in_place, sitting)
+        study, place = await self._do(Studies.in_place, sitting)
         self._changed(study)
         # The participant's page begins its clock.
         said = {"type": "surface in place", "sitting": sitting, "place": place}
@@ -305,11 +277,11 @@ class StudyArea:
 
     async def _respond(self, asked: Respond) -> Answer:
         felt: tuple[TrialMotion, ...] = ()
-        if await self.thread.do(Studies.needs_device, asked.sitting, asked.token):
+        if await self._do(Studies.needs_device, asked.sitting, asked.token):
             felt = await self._devices.felt(asked.sitting, asked.token)
         told = asked.model_dump(exclude={"id", "type", "sitting", "token"})
         response = Response(**told, explorations=felt)
-        answer = await self.thread.do(Studies.respond, asked.sitting, asked.token, response)
+        answer = await self._do(Studies.respond, asked.sitting, asked.token, response)
         self._devices.answered(asked.sitting, asked.token)
         self._changed(answer.pop("study"))
         return {"type": "acknowledged", **answer}

@@ -12,7 +12,6 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import partial
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from squeezefilm.core.errors import DeviceError, InputError
@@ -27,12 +26,9 @@ from squeezefilm.study.conduct.study_device import (
 
 if TYPE_CHECKING:
     from squeezefilm.lab.connections import NowPlaying
+    from squeezefilm.study.conduct.playing_process import WorkerOrders
 
 T = TypeVar("T")
-
-
-Maker = Callable[[str, str, Path], StudyDevice]
-"""Function from a display, a kind ("twin", "serial:PORT") and a folder for traces to a device."""
 
 
 @dataclass(frozen=True)
@@ -75,23 +71,23 @@ class StudyDevices:
     `playing`, where there is one, is kept up to date on which of them play.
     """
 
-    def __init__(self, make: Maker | None = None) -> None:
+    def __init__(self, make: Callable[[WorkerOrders], StudyDevice] | None = None) -> None:
         self.playing: NowPlaying | None = None
         self._make = make or _session_device
         self._held: dict[str, _HeldDevice] = {}
         self._busy: dict[str, asyncio.Lock] = {}
 
-    async def measure(self, sitting: str, kind: str, display: str, traces: Path) -> StudyDevice:
+    async def measure(self, sitting: str, orders: WorkerOrders) -> StudyDevice:
         """The device of a sitting, identified and verified; takes seconds.
 
         Raises:
             InputError: a device that another sitting uses.
             DeviceError: one that is not there, refuses or faults.
         """
-        if kind == "none":
+        if orders.drive == "none":
             return NoDevice()
         async with self._turn(sitting):
-            held = await self._taken(sitting, kind, display, traces)
+            held = self._taken(sitting, orders)
             await self._silence(held)
             held.forget()
             verification = await self._on(held, held.device.verify_device)
@@ -100,9 +96,7 @@ class StudyDevices:
     async def present(
         self,
         sitting: str,
-        kind: str,
-        display: str,
-        traces: Path,
+        orders: WorkerOrders,
         surface: tuple[Stimulus, int],
         token: str,
         place: int,
@@ -116,7 +110,7 @@ class StudyDevices:
                 again with its first surface.
         """
         async with self._turn(sitting):
-            held = await self._taken(sitting, kind, display, traces)
+            held = self._taken(sitting, orders)
             if place == 0:
                 await self._silence(held)
                 held.forget()
@@ -199,14 +193,14 @@ class StudyDevices:
     def _turn(self, sitting: str) -> asyncio.Lock:
         return self._busy.setdefault(sitting, asyncio.Lock())
 
-    async def _taken(self, sitting: str, kind: str, display: str, traces: Path) -> _HeldDevice:
+    def _taken(self, sitting: str, orders: WorkerOrders) -> _HeldDevice:
         for other, held in self._held.items():
-            if other != sitting and held.kind == kind:
+            if other != sitting and held.kind == orders.drive:
                 raise InputError(
-                    f"the device '{kind}' is in use by another sitting; end that one first"
+                    f"the device '{held.kind}' is in use by another sitting; end that one first"
                 )
         if sitting not in self._held:
-            self._held[sitting] = _HeldDevice(sitting, kind, self._make(display, kind, traces))
+            self._held[sitting] = _HeldDevice(sitting, orders.drive, self._make(orders))
             self._shown(self._held[sitting], plays=False)
         return self._held[sitting]
 
@@ -262,8 +256,7 @@ def require_device(kind: str, display: str) -> None:
     load_display(display).require_insulation(twin=kind == "twin")
 
 
-def _session_device(display: str, kind: str, traces: Path) -> StudyDevice:
+def _session_device(orders: WorkerOrders) -> StudyDevice:
     from squeezefilm.study.conduct.played_device import SessionDevice
-    from squeezefilm.study.conduct.playing_process import WorkerOrders
 
-    return SessionDevice(WorkerOrders(display, kind, traces))
+    return SessionDevice(orders)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field
 
@@ -42,9 +42,14 @@ from squeezefilm.study.record.sittings import FILE, Sitting, Sittings
 from squeezefilm.study.record.store import StudyStore
 from squeezefilm.study.record.tables import origin_of
 
+if TYPE_CHECKING:
+    from squeezefilm.study.conduct.playing_process import WorkerOrders
+
 SUFFIX = ".sqlite"
 Felt = Literal["on a device", "by hand", "lies there"]
 """Way in which a surface comes under the finger."""
+Played = tuple[Stimulus, int]
+"""A surface for a device, and its trial's seed."""
 CONSENT = (
     "You will stroke surfaces with a finger and answer a question about each. It takes about "
     "{minutes} minutes, with breaks. You may stop at any time, without giving a reason, and ask "
@@ -143,10 +148,10 @@ class Studies:
             "devices": devices(),
         }
 
-    def enrol(self, name: str) -> dict[str, Any]:
+    def enrol(self, study: Name) -> dict[str, Any]:
         """Enrol one more participant."""
-        self.store(name).enrol()
-        return self.status(name)
+        self.store(study).enrol()
+        return {"changed": study, **self.status(study)}
 
     def prepare(self, asked: PrepareSitting) -> dict[str, Any]:
         """A sitting for a participant, to be consented to on the participant's page."""
@@ -170,22 +175,28 @@ class Studies:
             raise InputError(f"participant {participant} has answered every trial; enrol another")
         return display
 
-    def display_of_sitting(self, id: str) -> str:
-        """The display of a sitting: of its session, or before it of the next trial."""
-        sitting = self.sittings.get(id)
-        if sitting.session is not None:
-            return str(self.run(sitting).session["display"])
-        return self.display_of(sitting.study, sitting.participant)
+    def orders(self, id: str) -> WorkerOrders:
+        """Orders to a sitting's device: the display is its session's, or before it that of the next
+        trial."""
+        from squeezefilm.study.conduct.playing_process import WorkerOrders
 
-    def where(self, id: str) -> dict[str, Any]:
-        """Message of what the participant's page shows now; nothing in it gives an answer away."""
         sitting = self.sittings.get(id)
-        design = self.store(sitting.study).design
-        if sitting.ended:
+        display = (
+            self.display_of(sitting.study, sitting.participant)
+            if sitting.session is None
+            else str(self.run(sitting).session["display"])
+        )
+        return WorkerOrders(display, sitting.device, self.store(sitting.study).traces)
+
+    def where(self, sitting: Name) -> dict[str, Any]:
+        """Message of what the participant's page shows now; nothing in it gives an answer away."""
+        held = self.sittings.get(sitting)
+        design = self.store(held.study).design
+        if held.ended:
             return {"state": "ended"}
-        if sitting.session is None:
-            return {"state": "consent", "consent": sitting.consent_text}
-        run = self.run(sitting)
+        if held.session is None:
+            return {"state": "consent", "consent": held.consent_text}
+        run = self.run(held)
         if run.state in ("finished", "display changes"):
             return {"state": run.state}
         return {
@@ -210,32 +221,33 @@ class Studies:
             self.sittings.change(id, session=session)
         return self.where(id)
 
-    def present(self, id: str) -> dict[str, Any]:
+    def present(self, sitting: Name) -> dict[str, Any]:
         """The next trial without what would give its answer away (`plays`: on a device; `by_hand`:
-        somebody puts its surfaces there). It counts as presented once it is `shown`."""
-        sitting = self.sittings.get(id)
-        if sitting.session is None or sitting.ended:
-            return self.where(id)
-        run = self.run(sitting)
-        following = run.next_trial(shown=False)
+        somebody puts its surfaces there, and is told what, as the participant's page is not). It
+        counts as presented once it is `shown`."""
+        held = self.sittings.get(sitting)
+        if held.session is None or held.ended:
+            return self.where(sitting)
+        following = self.run(held).next_trial(shown=False)
         if following is None:
-            return self.where(id)
+            return self.where(sitting)
         trial = following.trial
         virtual = isinstance(following.surfaces[0], Stimulus)
         felt_only = trial.phase == "familiarisation"
-        if sitting.device == "none":
-            self.by_hand.comes_next(id, tuple(surface.name for surface in following.surfaces))
+        if held.device == "none":
+            names = tuple(surface.name for surface in following.surfaces)
+            self.by_hand.comes_next(sitting, names)
         return {
-            "study": sitting.study,
+            "changed": held.study,
             "state": "trial",
             "token": following.token,
             "phase": trial.phase.replace("catch", "main"),
-            "question": self.store(sitting.study).design.spoken_question,
+            "question": self.store(held.study).design.spoken_question,
             "alternatives": list(trial.alternatives),
             "numeric": trial.asks and not trial.alternatives,
             "surfaces": len(following.surfaces),
-            "plays": sitting.device != "none" and virtual,
-            "by_hand": sitting.device == "none" and virtual,
+            "plays": held.device != "none" and virtual,
+            "by_hand": held.device == "none" and virtual,
             # A real grating that lies there to be known has its name on it.
             "named": following.surfaces[0].name if felt_only else "",
             "pause_s": following.rest,
@@ -243,11 +255,12 @@ class Studies:
             "interrupted": following.times_presented > 1,
         }
 
-    def asked_to_feel(self, id: str, token: str, place: int) -> Felt:
-        """Surface number `place` (from 0) of the trial that comes next is to be felt. It counts as
-        presented from now on, unless somebody has to put it there: then that is waited for.
+    def asked_to_feel(self, id: str, token: str, place: int) -> tuple[Felt, Played | None]:
+        """Surface number `place` (from 0) of the trial that comes next is to be felt: how, and what
+        a device plays for that. It counts as presented from now on, unless somebody has to put it
+        there: then that is waited for.
 
-        Raises `InputError` for another trial.
+        Raises `InputError` for another trial, or a surface that it has not.
         """
         sitting = self.sittings.get(id)
         if sitting.ended:
@@ -255,13 +268,20 @@ class Studies:
         trial = self.run(sitting).next_trial(shown=False)
         if trial is None or trial.token != token:
             raise InputError("this trial is not the one to be presented now; go on with the next")
-        virtual = isinstance(trial.surfaces[0], Stimulus)
+        number, count = trial.trial.number, len(trial.surfaces)
+        if not 0 <= place < count:
+            raise InputError(f"trial {number} has {count} surfaces; asked: {place}")
+        surface, virtual = trial.surfaces[place], isinstance(trial.surfaces[0], Stimulus)
         if virtual and sitting.device == "none":
             self.by_hand.wait(id, token, place)
-            return "by hand"
+            return "by hand", None
         if place == 0:
             self.run(sitting).next_trial()
-        return "on a device" if virtual else "lies there"
+        if not virtual:
+            return "lies there", None
+        if not isinstance(surface, Stimulus):
+            raise InputError(f"'{surface.name}' is a real grating; no device plays it")
+        return "on a device", (surface, trial.trial.seed)
 
     def in_place(self, id: str) -> tuple[str, int]:
         """The surface that was waited for is in place: from the first one on the trial counts as
@@ -274,20 +294,6 @@ class Studies:
         if place == 0:
             self.run(sitting).next_trial()
         return sitting.study, place
-
-    def surface(self, id: str, token: str, place: int) -> tuple[Stimulus, int]:
-        """Surface number `place` (from 0) of the trial that is presented, and the trial's seed."""
-        sitting = self.sittings.get(id)
-        if sitting.ended:
-            raise InputError("this sitting has ended")
-        shown = self.run(sitting).presented(token)
-        trial, count = shown.trial, len(shown.surfaces)
-        if not 0 <= place < count:
-            raise InputError(f"trial {trial.number} has {count} surfaces; asked: {place}")
-        stimulus = shown.surfaces[place]
-        if not isinstance(stimulus, Stimulus):
-            raise InputError(f"'{stimulus.name}' is a real grating; no device plays it")
-        return stimulus, trial.seed
 
     def needs_device(self, id: str, token: str) -> bool:
         """True where an answer to this trial needs a device that played it: not one that is

@@ -23,6 +23,7 @@ from squeezefilm.lab.own_process import DeviceSession
 from squeezefilm.lab.server import PAGE, Lab
 from squeezefilm.lab.studying.devices import StudyDevices, require_device
 from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.study.conduct.playing_process import WorkerOrders
 from squeezefilm.study.conduct.sessions import Exposure
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
 from squeezefilm.study.record.store import StudyStore
@@ -74,8 +75,12 @@ def play(work: Coroutine[Any, Any, None]) -> None:
     asyncio.run(work)
 
 
+def orders(drive: str) -> WorkerOrders:
+    return WorkerOrders("plate", drive, Path())
+
+
 async def begin(devices: StudyDevices, place: int = 0, token: str = "t", who: str = "s") -> None:
-    await devices.present(who, "twin", "plate", Path(), SURFACE, token, place)
+    await devices.present(who, orders("twin"), SURFACE, token, place)
 
 
 def test_two_surfaces_one_after_the_other_are_felt_once() -> None:
@@ -144,7 +149,7 @@ def test_one_sitting_at_a_time_uses_a_device() -> None:
         await begin(devices, who="s")
         with pytest.raises(InputError, match="in use by another sitting"):
             await begin(devices, who="other")
-        await devices.present("other", "serial:X", "plate", Path(), SURFACE, "t", 0)
+        await devices.present("other", orders("serial:X"), SURFACE, "t", 0)
         await devices.release("s")
         assert made[0].asked[-2:] == ["halt", "close"]
         await begin(devices, who="third")

@@ -25,8 +25,8 @@ class Run:
     """A run whose next trial is "token" and presents these surfaces."""
 
     def __init__(self, *surfaces: Stimulus | Grating) -> None:
-        self.next: Any = SimpleNamespace(token="token", surfaces=surfaces)
-        self.trial = SimpleNamespace(number=4, seed=17)
+        trial = SimpleNamespace(number=4, seed=17)
+        self.next: Any = SimpleNamespace(token="token", surfaces=surfaces, trial=trial)
         self.shown: list[bool] = []
         self.known: set[str] = set()
 
@@ -38,7 +38,7 @@ class Run:
     def presented(self, token: str) -> Any:
         """The trial and its surfaces."""
         assert token == "token"
-        return SimpleNamespace(trial=self.trial, surfaces=self.next.surfaces)
+        return self.next
 
     def recorded(self, token: str) -> bool:
         """True where it is answered."""
@@ -64,24 +64,18 @@ def sitting_of(
 @pytest.mark.parametrize(
     ("ask", "says"),
     [
-        (lambda: sitting_of(ended=True)[0].surface("a", "token", 0), "this sitting has ended"),
         (lambda: sitting_of(ended=True)[0].asked_to_feel("a", "token", 0), "has ended"),
         (lambda: sitting_of()[0].asked_to_feel("a", "other", 0), "not the one to be presented"),
-        (lambda: sitting_of()[0].surface("a", "token", 2), "trial 4 has 2 surfaces; asked: 2"),
-        (lambda: sitting_of()[0].surface("a", "token", -1), "asked: -1"),
-        (lambda: sitting_of()[0].surface("a", "token", 1), "'board' is a real grating"),
-        (lambda: sitting_of(session=None)[0].surface("a", "token", 0), "was not consented to"),
+        (lambda: sitting_of()[0].asked_to_feel("a", "token", 2), "4 has 2 surfaces; asked: 2"),
+        (lambda: sitting_of()[0].asked_to_feel("a", "token", -1), "asked: -1"),
+        (lambda: sitting_of()[0].asked_to_feel("a", "token", 1), "'board' is a real grating"),
+        (lambda: sitting_of(session=None)[0].asked_to_feel("a", "token", 0), "not consented to"),
         (lambda: sitting_of(session=None)[0].respond("a", "token", None), "not consented to"),
     ],
 )
 def test_what_is_not_its_turn_is_refused(ask: Callable[[], object], says: str) -> None:
     with pytest.raises(InputError, match=says):
         ask()
-
-
-def test_a_surface_that_is_presented_comes_with_the_seed_of_its_trial() -> None:
-    studies, _ = sitting_of()
-    assert studies.surface("a", "token", 0) == (FINE, 17)
 
 
 @pytest.mark.parametrize(
@@ -97,8 +91,10 @@ def test_a_trial_counts_as_presented_from_its_first_surface_on(
     surface: Any, device: str, place: int, how: str, shown: list[bool]
 ) -> None:
     """One that somebody has to put there is waited for, and counts from when it is there."""
-    studies, run = sitting_of(surface, device=device)
-    assert studies.asked_to_feel("a", "token", place) == how
+    studies, run = sitting_of(surface, surface, device=device)
+    # What a device plays comes with the seed of its trial.
+    played = (surface, 17) if how == "on a device" else None
+    assert studies.asked_to_feel("a", "token", place) == (how, played)
     assert run.shown == shown
     by_hand = how == "by hand"
     assert studies.by_hand.waited == ([("a", "token", place)] if by_hand else [])
