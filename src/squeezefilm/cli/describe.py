@@ -1,7 +1,6 @@
 """Verbs about a display: what there is, what it says, and what follows from it, room by room."""
 
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -176,17 +175,13 @@ def analyze(asked: AnalyzeOptions) -> None:
 
         display = with_finger(display, asked.finger)
         options = given(asked, leave="target finger out as_json")
-        with_shifts = asked.sensitivities is not None
         result = run(display, **options, progress=step)
-        if asked.out is None and not asked.as_json:
-            shown = page.SHOWN_WITH_ALL if asked.whole else page.SHOWN
-            if with_shifts and "sensitivities" not in shown:
-                shown = (*shown, "sensitivities")
-            result.compute(shown, step)
-        out = asked.out
-        written = None if out is None else page.write_analysis(result, out, progress=step)
-    show = partial(page.show_analysis, whole=asked.whole, sensitivities=with_shifts)
-    answer(asked.as_json, result, show, report=written)
+        written = None
+        if asked.out is not None:
+            written = page.write_analysis(result, asked.out, progress=step)
+        elif not asked.as_json:
+            page.compute_shown(result, step)
+    answer(asked.as_json, result, page.show_analysis, report=written)
     if written is None and not asked.as_json:
         typer.echo("add --out DIR to write result.json and a report with figures")
 

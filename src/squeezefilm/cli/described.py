@@ -107,12 +107,7 @@ def show_values(values: Sequence[dict[str, Any]]) -> None:
     for group, rows in groups.items():
         if group:
             heading(group)
-        table(
-            ("", "", ""),
-            rows,
-            fixed=(0,),
-            styles=lambda row: _STYLES.get(row[0][:1], ""),
-        )
+        _marked_table(("", "", ""), rows)
     sourced = [item["evidence"] for item in values if item["evidence"] is not None]
     say(f"\n* assumed: {sourced.count('assumed')} of {len(sourced)} values")
     if bare := sourced.count("unstated"):
@@ -121,6 +116,11 @@ def show_values(values: Sequence[dict[str, Any]]) -> None:
             'thickness = { value = "2 mm", source = "caliper", evidence = "measured" }, or once '
             'for a table: source = "drawing 17"'
         )
+
+
+def _marked_table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Print values in the colour of the mark that each begins with."""
+    table(head, rows, fixed=(0,), styles=lambda row: _STYLES.get(row[0][:1], ""))
 
 
 def _origin(item: dict[str, Any]) -> str:
@@ -204,12 +204,7 @@ def _show_material(material: dict[str, Any]) -> None:
         mark = _MARKS.get(value["evidence"], "  ")
         between = "" if value["range"] is None else " to ".join(value["range"])
         rows.append((mark + value["path"], value["text"], between, _origin(value)))
-    table(
-        ("", "", "range", "source"),
-        rows,
-        fixed=(0,),
-        styles=lambda row: _STYLES.get(row[0][:1], ""),
-    )
+    _marked_table(("", "", "range", "source"), rows)
 
 
 _TAKEN = ("target", "voltage", "out", "as_json")

@@ -8,7 +8,6 @@ agree.
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -56,17 +55,10 @@ class TextureOnDisplay(BaseModel):
     quality: Literal["screening", "solved"] = "screening"
 
 
-@dataclass(frozen=True, eq=False)
-class _Ready:
-    """A texture made ready for a display."""
-
-    display: Display
-    texture: TextureFile
-    prediction: Prediction
-    program: Program
-
-
-def _ready(asked: TextureOnDisplay, folder: Path) -> _Ready:
+def _ready(
+    asked: TextureOnDisplay, folder: Path
+) -> tuple[Display, TextureFile, Prediction, Program]:
+    """The display, the texture, and the program that it is for the display's prediction."""
     if asked.preset is not None and asked.texture is None:
         texture = load_texture(asked.preset)
     elif asked.texture is not None and asked.preset is None:
@@ -80,7 +72,7 @@ def _ready(asked: TextureOnDisplay, folder: Path) -> _Ready:
             f"display '{display.name}' changes no friction at {p.voltage or 0.0:g} V, so it "
             "renders no texture; give it a voltage in the Design area"
         )
-    return _Ready(display, texture, p, lowered(texture, p, p.inverse))
+    return display, texture, p, lowered(texture, p, p.inverse)
 
 
 def title_of(text: str, folder: Path) -> str:
@@ -109,8 +101,7 @@ def feel(asked: TextureOnDisplay, folder: Path) -> dict[str, Any]:
     Raises:
         InputError: a display or a texture that cannot be used, or a display that does not vibrate.
     """
-    ready = _ready(asked, folder)
-    display, texture, p = ready.display, ready.texture, ready.prediction
+    display, texture, p, program = _ready(asked, folder)
     friction, largest = p.friction, p.vibration_amplitude
     amplitude = np.linspace(0.0, largest, _KNOTS)
     quality_factor, resonance = resonance_with_finger(p)
@@ -131,7 +122,7 @@ def feel(asked: TextureOnDisplay, folder: Path) -> dict[str, Any]:
     return {
         "title": texture.title or f"a texture of {texture.texture.quantity}",
         "quantity": texture.texture.quantity,
-        "program": ready.program.array.tolist(),
+        "program": program.array.tolist(),
         "amplitude_m": amplitude.tolist(),
         "finger_speed_m_per_s": friction.speed.tolist(),
         "nominal_finger_speed_m_per_s": friction.nominal_speed,
@@ -158,8 +149,8 @@ def feel(asked: TextureOnDisplay, folder: Path) -> dict[str, Any]:
 
 def parity(asked: TextureOnDisplay, folder: Path, ticks: int = 2000) -> dict[str, Any]:
     """A random walk of samples with the amplitudes (m) that the compiled interpreter gives."""
-    ready = _ready(asked, folder)
-    width, height = ready.display.actuator.extent
+    display, _, _, program = _ready(asked, folder)
+    width, height = display.actuator.extent
     rng = np.random.default_rng(20261121)
     t = np.cumsum(rng.uniform(1e-4, 4e-3, ticks))
     v = 0.3 * rng.standard_normal(ticks)
@@ -167,9 +158,9 @@ def parity(asked: TextureOnDisplay, folder: Path, ticks: int = 2000) -> dict[str
     y = height * rng.random(ticks)
     # Some samples that a sensor should never send.
     x[rng.integers(0, ticks, 5)] = np.nan
-    done = render(ready.program, x, y, v, t)
+    done = render(program, x, y, v, t)
     return {
-        "display": ready.display.name,
+        "display": display.name,
         "x_m": to_json(x),
         "y_m": y.tolist(),
         "v_m_per_s": v.tolist(),

@@ -123,15 +123,15 @@ def _doubts(analysis: Analysis) -> list[tuple[str, str]]:
         if abs(beside.difference) > _OFF
     ]
     findings = [
-        (finding.short or first_statement(finding.text), finding.text)
+        finding
         for finding in analysis.findings
         if finding.kind == "doubt"
         or (finding.kind == "limit" and finding.about not in ("friction", "gratings"))
     ]
     # What reaches an ear comes last in the verdict, and is more than a remark on sources.
-    of_sources = {finding.text for finding in analysis.findings if finding.about == "sources"}
-    findings.sort(key=lambda pair: pair[1] in of_sources)
-    return [*far, *findings][:MOST_DOUBTS]
+    findings.sort(key=lambda finding: finding.about == "sources")
+    said = [(finding.short or first_statement(finding.text), finding.text) for finding in findings]
+    return [*far, *said][:MOST_DOUBTS]
 
 
 def _next_step(analysis: Analysis) -> str:

@@ -4,8 +4,7 @@ Both begin with the first screen; the rest follows by question."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from html import escape
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,35 +27,51 @@ from squeezefilm.design.analysis.report.folds import Fold, folds
 from squeezefilm.design.analysis.report.rows import sensitivity_rows, wanted_rows
 
 if TYPE_CHECKING:
+    from squeezefilm.core.progress import SayProgress
     from squeezefilm.design.analysis.analysis import Analysis
 
 # What stands beside an analysis for comparison, each computed by itself.
 _BESIDE = ("ears", "band", "friction_curves", "response", "felt")
-SHOWN = ("ears",)
-SHOWN_WITH_ALL = ("ears", "sensitivities", "other_models", "felt")
-"""Parts of an analysis that are computed for the terminal."""
 
 
 def write_analysis(
     analysis: Analysis,
     folder: Path,
-    progress: Callable[[str], None] | None = None,
+    progress: SayProgress | None = None,
 ) -> Path:
     """Write result.json and report.html into `folder`; the path of the page.
 
     Raises `InputError` where the folder cannot be written to.
     """
     folder, tell = require_folder(folder), progress or (lambda _: None)
-    asked = ("sensitivities",) if analysis.has_sensitivities else ()
-    more = ("other_models",) if analysis.whole else ()
-    analysis.compute((*_BESIDE, *asked, *more), tell)
-    summary = analysis.summary()
+    analysis.compute((*_BESIDE, *_asked_for(analysis)), tell)
+    summary, area = analysis.summary(), analysis.active_area
+    # The summary, the curves behind the figures, the display.
+    data = {
+        **summary,
+        "curves": {
+            "response": analysis.response,
+            "friction": analysis.friction_curves,
+            "band": analysis.band,
+            "fidelity": analysis.fidelity,
+            "active_area": None if area is None else area.area,
+        },
+        "display_description": analysis.display,
+    }
     tell("figures")
     drawn = _figures(analysis)
     tell("writing the report")
-    data = json_text(result_data(analysis, summary))
-    files = {"result.json": data, "report.html": report_page(analysis, summary, drawn)}
+    files = {
+        "result.json": json_text(data),
+        "report.html": report_page(analysis, summary["provenance"], drawn),
+    }
     return write_folder(folder, files)
+
+
+def _asked_for(analysis: Analysis) -> tuple[str, ...]:
+    """Parts that page and terminal have of an analysis where they were asked for."""
+    shifts = ("sensitivities",) if analysis.has_sensitivities else ()
+    return (*shifts, "other_models") if analysis.whole else shifts
 
 
 def _figures(analysis: Analysis) -> dict[str, str]:
@@ -64,44 +79,19 @@ def _figures(analysis: Analysis) -> dict[str, str]:
     return {item.key: figure_section(item, drawing(analysis, item)) for item in FIGURES}
 
 
-def result_data(analysis: Analysis, summary: dict[str, Any]) -> dict[str, Any]:
-    """The content of result.json: the summary, the curves behind the figures, the display."""
-    return {
-        **summary,
-        "curves": {
-            "response": analysis.response,
-            "friction": analysis.friction_curves,
-            "band": analysis.band,
-            "fidelity": analysis.fidelity,
-            "active_area": None if analysis.active_area is None else analysis.active_area.area,
-        },
-        "display_description": analysis.display,
-    }
-
-
-def report_page(
-    analysis: Analysis,
-    summary: dict[str, Any] | None = None,
-    drawn: Mapping[str, str] | None = None,
-) -> str:
+def report_page(analysis: Analysis, stamp: dict[str, Any], drawn: Mapping[str, str]) -> str:
     """The report as the text of one self-contained HTML page: the first screen, then a fold for
-    each question. `drawn` are its figures by key, where they are there already."""
-    summary, ready = summary or analysis.summary(), drawn or _figures(analysis)
+    each question. `stamp` says how it came about, `drawn` are its figures by key."""
     display = analysis.display
     title, name = as_html(display.title), as_html(display.name)
-    stamp = summary["provenance"]
-    seed = "no random numbers" if stamp["seed"] is None else f"seed {escape(str(stamp['seed']))}"
-    parts = [
-        in_short(analysis, ready),
-        *(_fold(each, ready) for each in folds(analysis)),
-    ]
+    parts = [in_short(analysis, drawn), *(_fold(each, drawn) for each in folds(analysis))]
     more = "" if analysis.whole else " <code>--all</code> adds every value and other models."
     return page(
         f"{name}: squeezefilm report",
         title,
         f"<code>{name}</code>, analysed by squeezefilm",
         "".join(parts),
-        f"{stamped(stamp, 'description SHA-256')} ·\n{seed}.\n"
+        f"{stamped(stamp, 'description SHA-256')} ·\nno random numbers.\n"
         f"Numbers and curves: <code>result.json</code> beside this page.{more}",
         images="data:",
     )
@@ -129,9 +119,15 @@ def _fold(fold: Fold, drawn: Mapping[str, str]) -> str:
     return folded(fold.question, "\n".join(body))
 
 
-def show_analysis(analysis: Analysis, *, whole: bool = False, sensitivities: bool = False) -> None:
-    """Print an analysis: its first screen; with `sensitivities` what each value does; `whole`: all
-    of it, by question."""
+def compute_shown(analysis: Analysis, tell: SayProgress) -> None:
+    """Compute the parts of an analysis that `show_analysis` prints; `tell` is told each."""
+    felt = ("felt",) if analysis.whole else ()
+    analysis.compute(("ears", *_asked_for(analysis), *felt), tell)
+
+
+def show_analysis(analysis: Analysis) -> None:
+    """Print an analysis: its first screen; where it was asked for what each value does; all of a
+    whole one, by question."""
     display, screen = analysis.display, first_screen(analysis)
     terminal.heading(f"{display.title} [{display.name}]")
     terminal.say(printable(screen.sentence))
@@ -142,10 +138,10 @@ def show_analysis(analysis: Analysis, *, whole: bool = False, sensitivities: boo
     if analysis.wanted is not None:
         terminal.heading("The friction that was asked for")
         terminal.table(("", "", ""), wanted_rows(analysis.wanted), fixed=(0,))
-    if whole:
+    if analysis.whole:
         _show_folds(analysis)
         return
-    if sensitivities:
+    if analysis.has_sensitivities:
         _show_sensitivities(analysis)
     terminal.say("\n--all prints everything else, by question")
 

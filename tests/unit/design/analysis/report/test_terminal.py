@@ -67,7 +67,7 @@ def test_all_of_it_is_printed_where_it_is_asked_for(
     analysis_of: Callable[[str], Analysis], printed: Callable[[], str]
 ) -> None:
     analysis = dataclasses.replace(analysis_of("biet2008-plate"), whole=True)
-    page.show_analysis(analysis, whole=True)
+    page.show_analysis(analysis)
     words = " ".join(printed().split())
     for finding in analysis.findings:
         assert " ".join(printable(finding.text).split()) in words
@@ -79,7 +79,7 @@ def test_all_of_it_is_printed_where_it_is_asked_for(
 def test_what_each_value_does_is_printed_where_only_that_is_asked_for(
     plate_analysis: Analysis, printed: Callable[[], str]
 ) -> None:
-    page.show_analysis(plate_analysis, sensitivities=True)
+    page.show_analysis(dataclasses.replace(plate_analysis, effort="quick"))
     words = " ".join(printed().split())
     table = words[words.index("What each value does") :]
     shifts = plate_analysis.sensitivities
@@ -107,7 +107,7 @@ def test_hostile_names_are_printed_and_not_obeyed(
 
 
 def test_a_display_without_texture(analysis_of: Any, printed: Callable[[], str]) -> None:
-    page.show_analysis(analysis_of("no-voltage"), whole=True)
+    page.show_analysis(dataclasses.replace(analysis_of("no-voltage"), whole=True))
     text = printed()
     assert "Finest grating" not in text
     assert "Sound" not in text
