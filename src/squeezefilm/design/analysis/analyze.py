@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from typing import get_args
+from typing import Annotated, get_args
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
@@ -14,6 +14,7 @@ from squeezefilm.design.analysis.analysis import Analysis
 from squeezefilm.design.analysis.area_odds import judged_area
 from squeezefilm.design.analysis.curves import friction_curve
 from squeezefilm.design.analysis.felt import what_survives
+from squeezefilm.design.analysis.report.page import in_short
 from squeezefilm.design.analysis.sensitivities import Effort
 from squeezefilm.design.analysis.verdict import verdict
 from squeezefilm.design.analysis.wanted import wanted_friction
@@ -43,7 +44,7 @@ class AnalysisRequest(WorkingPoint):
     sensitivities: Effort | None = None
     whole: bool = False
     progress: SayProgress | None = None
-    budget: si.Second | None = None
+    budget: Annotated[si.Second, si.Above(0.0)] | None = None
 
 
 @reads_text
@@ -60,8 +61,6 @@ def analyze(asked: AnalysisRequest) -> Analysis:
     missing is said.
     """
     budget = asked.budget
-    if budget is not None:
-        si.require("budget", budget, si.Unit("s"), above=0)
     if asked.sensitivities is not None:
         si.require_one_of("sensitivities", asked.sensitivities, get_args(Effort))
     if asked.samples:
@@ -116,12 +115,5 @@ def _what_follows(
         verdict=tuple(verdict(display, prediction, area, own, table, unsure, why_not)),
         effort=asked.sensitivities,
         whole=asked.whole,
-        notebook=_notebook,
+        notebook=in_short,
     )
-
-
-def _notebook(analysis: Analysis) -> str:
-    """The first screen of the report, for a notebook."""
-    from squeezefilm.design.analysis.report.page import in_short
-
-    return in_short(analysis)
