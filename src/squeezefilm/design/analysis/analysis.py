@@ -146,6 +146,9 @@ BAND_POINTS, BAND_SAMPLES = 9, 64
 BAND_REACH = 1.5
 """Reach of the band in vibration amplitudes: beyond, draws are pressed through."""
 
+_OF_THE_DRIVE = ("vibration_amplitude_interval_m", "power_W", "power_interval_W")
+"""What an interval's summary says of the drive."""
+
 KEPT = ("sensitivities", "ears", "friction_curves", "other_models")
 """Properties that take tenths of a second to seconds, kept on disk (`Analysis.compute`)."""
 
@@ -307,16 +310,16 @@ class Analysis(Result):
 
     def summary(self) -> dict[str, Any]:
         """Numbers as plain JSON values, with units in the keys."""
-        p, unsure = self.prediction, self.uncertainty
+        known = {} if self.uncertainty is None else self.uncertainty.summary()
         shifts = self.sensitivities if self.has_sensitivities else None
         return {
-            **p.summary(),
+            **self.prediction.summary(),
             "active_area": None if self.active_area is None else self.active_area.summary(),
-            "relative_friction_interval": None if unsure is None else list(unsure.interval),
+            "relative_friction_interval": known.get("relative_friction_interval"),
             "relative_friction_of_rival_models": self.rivals,
             "model_form": None if self.model_form is None else as_json([self.model_form])[0],
-            "relative_friction_median": None if unsure is None else unsure.median,
-            **_intervals(unsure),
+            "relative_friction_median": known.get("relative_friction_median"),
+            **{name: known[name] for name in _OF_THE_DRIVE if name in known},
             "wanted": None if self.wanted is None else self.wanted.summary(),
             "felt": None if self.felt is None else self.felt.summary(),
             "sound_at_ear": to_json(self.ears),
@@ -346,12 +349,3 @@ class Analysis(Result):
             "verdict": as_json(self.findings),
             "provenance": stamp(self.display),
         }
-
-
-def _intervals(unsure: UncertainFriction | None) -> dict[str, Any]:
-    """Intervals of what the drive does, as plain JSON values."""
-    if unsure is None:
-        return {}
-    values = unsure.summary()
-    names = ("vibration_amplitude_interval_m", "power_W", "power_interval_W")
-    return {name: values[name] for name in names}

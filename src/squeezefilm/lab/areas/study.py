@@ -12,7 +12,7 @@ from pydantic import Field
 
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.lab.keys import CODE_LIFE
-from squeezefilm.lab.studying.devices import MeasuredDevice, StudyDevices, require_device
+from squeezefilm.lab.studying.devices import MeasuredDevice, StudyDevices
 from squeezefilm.lab.studying.jobs import analysis_of, rehearsed, report_of
 from squeezefilm.lab.studying.studies import PrepareSitting, Studies
 from squeezefilm.lab.wire import Answer, Handler, Name, Request
@@ -152,7 +152,10 @@ class StudyArea:
 
     async def _prepare(self, asked: PrepareSitting) -> Answer:
         display = await self._do(Studies.display_of, asked.study, asked.participant)
-        require_device(asked.device, display)
+        if asked.device != "none":
+            from squeezefilm.study.conduct.played_device import require_study_drive
+
+            require_study_drive(asked.device, display)
         answer = await self._do(Studies.prepare, asked)
         await self._release_ended()
         return {"type": "study", **answer}

@@ -242,20 +242,6 @@ class StudyDevices:
             raise
 
 
-def require_device(kind: str, display: str) -> None:
-    """Refuse a device that no sitting may use, or that may not play this display.
-
-    Raises `InputError` that says which may.
-    """
-    from squeezefilm.physics.display import load_display
-    from squeezefilm.study.conduct.played_device import require_study_drive
-
-    if kind == "none":
-        return
-    require_study_drive(kind)
-    load_display(display).require_insulation(twin=kind == "twin")
-
-
 def _session_device(orders: WorkerOrders) -> StudyDevice:
     from squeezefilm.study.conduct.played_device import SessionDevice
 

@@ -16,13 +16,14 @@ import threading
 import types
 from collections.abc import Iterator
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any, Self
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.core.interrupts import interrupts_held
 from squeezefilm.core.results import config_hash
-from squeezefilm.physics.display import load_display
+from squeezefilm.physics.display import Display, load_display
 from squeezefilm.study.conduct.playing_process import TWIN, Surface, WorkerOrders, serve
 from squeezefilm.study.conduct.study_device import (
     DeviceIdentity,
@@ -36,8 +37,10 @@ START_LIMIT: si.Second = 300.0
 STOP_LIMIT: si.Second = 20.0
 
 
-def require_study_drive(drive: str) -> None:
-    """Refuse what no study may be driven by. Raises `InputError` that says what may."""
+def require_study_drive(drive: str, target: str | Path) -> Display:
+    """The display of a target, where a study may drive it by a drive. Raises `InputError` for what
+    no study may be driven by, and as `Display.require_insulation`; `ConfigError` as `load_display`.
+    """
     if drive != "twin" and not (drive.startswith("serial:") and drive[7:].strip()):
         raise InputError(
             f"drive = '{drive[:80]}' is not known; it may be none, twin, or "
@@ -45,6 +48,9 @@ def require_study_drive(drive: str) -> None:
             "sound card, is not allowed in a study",
             quantity="drive",
         )
+    display = load_display(target)
+    display.require_insulation(twin=drive == "twin")
+    return display
 
 
 class SessionDevice(StudyDevice):
@@ -58,15 +64,12 @@ class SessionDevice(StudyDevice):
             before.
 
     Raises:
-        InputError: a drive that may not be used in a study, or a display that this drive may not
-            play, `Display.require_insulation`.
+        InputError, ConfigError: as `require_study_drive`.
     """
 
     def __init__(self, orders: WorkerOrders) -> None:
-        require_study_drive(orders.drive)
-        self._display = load_display(orders.target)
         # Now, and not when the first surface is to be felt.
-        self._display.require_insulation(twin=orders.drive == "twin")
+        self._display = require_study_drive(orders.drive, orders.target)
         self._orders = orders
         self._process: Any = None
         self._connection: Connection | None = None

@@ -229,12 +229,10 @@ def _device(
         return (NoDevice() if by_hand is None else ByHand(by_hand)), None
     # Plates, film and loop take a second to import, which a study by hand need not wait for.
     from squeezefilm.instruments.twin.hand import EXPLORING
-    from squeezefilm.physics.display import load_display
     from squeezefilm.study.conduct.played_device import SessionDevice, require_study_drive
     from squeezefilm.study.conduct.playing_process import WorkerOrders
 
-    require_study_drive(desk.drive)
-    loaded = load_display(display)
+    loaded = require_study_drive(desk.drive, display)
     duration = expected_duration(store.design) / len(store.design.displays)
     exposed = exposure(loaded, duration, progress=tell)
     stroke = EXPLORING

@@ -21,8 +21,9 @@ from squeezefilm.lab.guard import Places
 from squeezefilm.lab.keys import Keys
 from squeezefilm.lab.own_process import DeviceSession
 from squeezefilm.lab.server import PAGE, Lab
-from squeezefilm.lab.studying.devices import StudyDevices, require_device
+from squeezefilm.lab.studying.devices import StudyDevices
 from squeezefilm.physics.perception.stimuli import Stimulus
+from squeezefilm.study.conduct.played_device import require_study_drive
 from squeezefilm.study.conduct.playing_process import WorkerOrders
 from squeezefilm.study.conduct.sessions import Exposure
 from squeezefilm.study.conduct.study_device import DeviceIdentity, DeviceVerification, TrialMotion
@@ -356,10 +357,9 @@ def test_a_check_is_asked_of_the_drive_with_the_display_on_the_page(
 
 
 def test_the_experimenter_is_told_what_a_device_may_not_play() -> None:
-    require_device("none", "biet2008-stator")
-    require_device("twin", "biet2008-stator")
-    require_device("serial:/dev/ttyACM0", "biet2008-plate")
+    require_study_drive("twin", "biet2008-stator")
+    require_study_drive("serial:/dev/ttyACM0", "biet2008-plate")
     with pytest.raises(InputError, match="touch-side insulation"):
-        require_device("serial:/dev/ttyACM0", "biet2008-stator")
+        require_study_drive("serial:/dev/ttyACM0", "biet2008-stator")
     with pytest.raises(InputError, match="is not known"):
-        require_device("sound", "biet2008-stator")
+        require_study_drive("sound", "biet2008-stator")

@@ -82,7 +82,7 @@ def test_a_display_that_a_device_may_not_play_is_refused_before_a_session(tmp_pa
 def test_a_device_is_told_apart_by_display_and_calibration_and_not_by_its_port(
     tmp_path: Path,
 ) -> None:
-    require_study_drive("twin")
+    require_study_drive("twin", "biet2008-stator")
     made = {
         name: SessionDevice(WorkerOrders("biet2008-plate", drive, tmp_path, **how)).identity()
         for name, drive, how in (

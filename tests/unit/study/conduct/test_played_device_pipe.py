@@ -127,9 +127,9 @@ def playing(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Playing:
 
 
 def test_a_port_of_one_letter_is_a_port_and_a_long_drive_is_quoted_in_part() -> None:
-    require_study_drive("serial:a")
+    require_study_drive("serial:a", "biet2008-plate")
     with pytest.raises(InputError) as refused:
-        require_study_drive("serial" * 50)
+        require_study_drive("serial" * 50, "biet2008-plate")
     assert refused.value.quantity == "drive"
     assert f"'{('serial' * 50)[:80]}'" in str(refused.value)
 

@@ -13,7 +13,6 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.instruments.twin.hand import EXPLORING
-from squeezefilm.physics import display as display_module
 from squeezefilm.study.conduct import played_device, terminal_run
 from squeezefilm.study.conduct.playing_process import WorkerOrders
 from squeezefilm.study.conduct.terminal_run import Desk, open_study, run_session
@@ -43,6 +42,15 @@ class Port(Bench):
         self.closed += 1
 
 
+class Named(str):
+    """A display, by its name, that any drive may play."""
+
+    __slots__ = ()
+
+    def require_insulation(self, *, twin: bool) -> None:
+        """It has it."""
+
+
 class Room:
     """Where a session is held: every device and sound field made up, and what was made of them."""
 
@@ -52,7 +60,7 @@ class Room:
         self.asked: list[str] = []
         self.told: list[str] = []
         self.steps: list[str] = []
-        monkeypatch.setattr(display_module, "load_display", lambda name: f"the {name}")
+        monkeypatch.setattr(played_device, "load_display", lambda name: Named(f"the {name}"))
         monkeypatch.setattr(terminal_run, "exposure", self._exposure)
         monkeypatch.setattr(played_device, "SessionDevice", self._port)
 
