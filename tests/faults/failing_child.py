@@ -236,10 +236,11 @@ class Recording(Job):
         name = f"{len(list(self.folder.iterdir()))}.sqft"
         self.path = self.folder / name
         self.rows = 0
-        with TraceWriter(self.path, ("tick",), {}, sync_period=0.0) as writer:
+        with TraceWriter(self.path, ("tick",), {}) as writer:
             try:
                 for _ in range(5):
                     writer.append(np.full((3, 1), writer.acknowledged, dtype=float))
+                    writer.sync()
             finally:
                 self.rows = writer.acknowledged
 

@@ -22,11 +22,12 @@ COLUMNS = ("tick", "x_m", "level_V")
 WRITER = """
 import os, sys
 import numpy as np
-from squeezefilm.instruments.session.record.trace_file import TraceWriter
+from squeezefilm.instruments.session.record import trace_file
 
+trace_file.SYNC_PERIOD = 0.01
 path, seed = sys.argv[1], int(sys.argv[2])
 random = np.random.default_rng(seed)
-writer = TraceWriter(path, ("tick", "x_m", "level_V"), {"seed": seed}, sync_period=0.01)
+writer = trace_file.TraceWriter(path, ("tick", "x_m", "level_V"), {"seed": seed})
 row = 0
 while True:
     count = int(random.integers(1, 200))

@@ -12,6 +12,7 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Deframer, State
+from squeezefilm.instruments.twin import plant_kernel as k
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.plant import Plant
@@ -66,9 +67,9 @@ def session(seed: int) -> list[tuple[int, bytes]]:
         levels = tuple(dice.uniform(0, 20) for _ in range(dice.randint(1, 20)))
         messages.append(m.Envelope(dice.choice((130, 500, 2000)), levels))
     messages.append(m.Stop())
-    for k, message in enumerate(messages):
+    for number, message in enumerate(messages, start=1):
         now += dice.randrange(12_000)
-        data = message.frame(k + 1).encoded()
+        data = message.frame(number).encoded()
         if dice.random() < 0.1:
             data = dice.randbytes(9) + b"\0" + data
         script.append((now, data))
@@ -121,7 +122,7 @@ def test_amplitude_friction_and_force_stay_where_physics_lets_them(seed: int) ->
         surface.friction_coefficient, surface.roughness, 0.5
     )
     assert np.all(np.abs(truth.column("tangential_force_N")) <= most * (1 + 1e-9) + 1e-12)
-    assert device.plant.counts.failed == device.plant.counts.beyond == 0
+    assert device.plant._n[k.FAILED] == device.plant._n[k.BEYOND] == 0
 
 
 @pytest.mark.slow
@@ -170,7 +171,7 @@ def test_the_sensor_reports_as_its_model_says() -> None:
     error = seen[:, 1] - np.interp(seen[:, 0] * 1e-6, rows[:, 0], rows[:, 1])
     assert np.std(error) == pytest.approx(20e-6, rel=0.15)
     assert abs(np.mean(error)) < 5 * 20e-6 / np.sqrt(error.size)
-    assert plant.counts.lost / 700 == pytest.approx(0.1, abs=0.05)
+    assert plant._n[k.LOST_SAMPLES] / 700 == pytest.approx(0.1, abs=0.05)
 
 
 @pytest.mark.parametrize("kind", ["motional_current", "sensing_patch"])

@@ -14,6 +14,7 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import State
+from squeezefilm.instruments.twin import plant, plant_kernel
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.settings import PlateDrift, TwinSettings
@@ -28,7 +29,7 @@ LIMITS = Limits(140.0, 50_000.0, 140.0, 1e5, 30e3, 50e3, insulation="glass")
 
 def twin(tick: float) -> TwinDevice:
     settings = TwinSettings(
-        tick=tick, truth_period=tick, steps_per_tick=round(tick / 100e-6), truth_rows=4000,
+        tick=tick, truth_period=tick, steps_per_tick=round(tick / 100e-6),
         drift=STEADY,
     )  # fmt: skip
     hand = hand_from("60 mm in 0.75 s", begin=0.5, lift=59.25)
@@ -77,7 +78,10 @@ def assert_same(one: np.ndarray, other: np.ndarray) -> None:
 
 
 @pytest.mark.slow
-def test_a_session_across_the_wrap_of_the_clock_is_like_any_other() -> None:
+def test_a_session_across_the_wrap_of_the_clock_is_like_any_other(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(plant, "KEPT", 4000)
     device = twin(1e-3)
     sessions = Sessions(device)
     # The finger is back in the same phase each two minutes, and down for the clock's wrap.
@@ -91,7 +95,7 @@ def test_a_session_across_the_wrap_of_the_clock_is_like_any_other() -> None:
     assert later[:, 4].max() == 140.0
     again = sessions.play(wrap + CYCLE)
     assert_same(first, again)
-    assert device.plant.counts.failed == 0
+    assert device.plant._n[plant_kernel.FAILED] == 0
 
 
 @pytest.mark.parametrize(
@@ -101,7 +105,9 @@ def test_a_session_across_the_wrap_of_the_clock_is_like_any_other() -> None:
         pytest.param(8, marks=pytest.mark.campaign),
     ],
 )
-def test_hours_end_as_they_began(hours: int) -> None:
+def test_hours_end_as_they_began(hours: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(plant, "KEPT", 4000)
+    tracemalloc.start()
     device = twin(1e-3)
     sessions = Sessions(device)
     hour, ticks = 3600 * SECOND, 30 * CYCLE
@@ -109,7 +115,6 @@ def test_hours_end_as_they_began(hours: int) -> None:
     first = sessions.play(CYCLE)
     sessions.play(CYCLE + hour)
     gc.collect()
-    tracemalloc.start()
     before, _ = tracemalloc.get_traced_memory()
     for k in range(2, hours + 1):
         assert_same(first, sessions.play(CYCLE + k * hour))
@@ -118,7 +123,7 @@ def test_hours_end_as_they_began(hours: int) -> None:
     tracemalloc.stop()
     assert after - before < 200_000
     assert device.now > hours * hour
-    assert device.plant.counts.failed == 0
+    assert device.plant._n[plant_kernel.FAILED] == 0
     # The carrier's frequency and the plate's are what they were, to the last bit.
     fresh = twin(1e-3)
     fresh.advance(SECOND)

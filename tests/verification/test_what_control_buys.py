@@ -84,7 +84,7 @@ def played(point: WorkingPoint, controlled: bool) -> Felt:
         noise=NOISE,
         heaviest_load=25.0,
     )
-    hand = Hand(motion_from(f"120 mm in {STROKE:g} s"), begin=0.5, lift=AIR, repeats=LANDINGS)
+    hand = Hand(motion_from(f"120 mm in {STROKE:g} s"), begin=0.5, lift=AIR)
     device = TwinDevice(load_display("touchpad-glass"), settings, hand=hand, point=point)
     wide = Limits(60.0, 1e6, 60.0, 1e6, whole - 900, whole + 900, insulation="the glass")
     words: list[m.Message] = [m.Hello(1), m.limits_message(wide)]

@@ -42,22 +42,9 @@ _LONGEST_HEAD = 16_000_000
 
 
 class IsolatedReader:
-    """A child process that reads files, started when the first is read.
+    """A child process that reads files, started when the first is read."""
 
-    Args:
-        memory: what the child may use (bytes of address space).
-        processor_time: what it may use for one file.
-        patience: longest wall-clock time for one file.
-    """
-
-    def __init__(
-        self,
-        memory: float = READING_MEMORY.most,
-        processor_time: si.Second = READING_TIME.most,
-        patience: si.Second = _PATIENCE,
-    ) -> None:
-        self._memory, self._processor_time = memory, processor_time
-        self._patience = patience
+    def __init__(self) -> None:
         self._turn = threading.Lock()
         # By this process: a fork of it must not talk with the child of its parent.
         self._children: dict[int, subprocess.Popen[bytes]] = {}
@@ -74,13 +61,13 @@ class IsolatedReader:
         `file` is what messages name. Raises `ConfigError`: what the function raises of this kind,
         and where the child crashed or reached a limit.
         """
-        request = pickle.dumps((function, (data, *arguments), self._processor_time))
+        request = pickle.dumps((function, (data, *arguments), READING_TIME.most))
         with self._turn:
             child = self._started()
             assert child.stdin is not None
             assert child.stdout is not None
             overdue = threading.Event()
-            watch = threading.Timer(self._patience, _end_late, (child, overdue))
+            watch = threading.Timer(_PATIENCE, _end_late, (child, overdue))
             watch.start()
             try:
                 child.stdin.write(request)
@@ -121,7 +108,7 @@ class IsolatedReader:
         paths = os.pathsep.join(path for path in sys.path if path)
         threads = {f"{library}_NUM_THREADS": "1" for library in ("OMP", "OPENBLAS", "MKL")}
         child = subprocess.Popen(
-            [sys.executable, "-P", "-m", __name__, str(int(self._memory))],
+            [sys.executable, "-P", "-m", __name__, str(int(READING_MEMORY.most))],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -136,7 +123,7 @@ class IsolatedReader:
         """The reason why a child ended without an answer, and what to do."""
         time_ran_out = is_late or -child.returncode == getattr(signal, "SIGXCPU", None)
         if time_ran_out:
-            allowed = si.format_quantity(self._processor_time, si.Unit("s"))
+            allowed = si.format_quantity(READING_TIME.most, si.Unit("s"))
             return (
                 f"cannot be read: reading it takes more than {allowed} ({READING_TIME.name}: "
                 f"{READING_TIME.reason}); export it again with less data"

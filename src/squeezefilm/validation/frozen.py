@@ -42,25 +42,6 @@ MODELS: Mapping[str, str] = MappingProxyType(
 """The models that published directions are asked of, with words for each."""
 
 
-def _evidence() -> Mapping[str, str]:
-    return MappingProxyType(
-        {
-            "finger.ridge_period": "published: Biet, Giraud and Lemaire-Semail, Table 1",
-            "finger.plateau_width": "assumed: 150 to 350 µm are reported, illustrative",
-            "finger.skin_roughness": "assumed; the laws of contact hold for this skin on a face "
-            "of 0.6 µm, and their heights grow with both together",
-            "gas": "published: viscosity and pressure of the paper; assumed: mean free path",
-            "slip": "derived: the law that is in range from an atmosphere to a vacuum",
-            "frequency": "published: the paper's stator",
-            "amplitude": "published: the paper's stator",
-            "half_wavelength": "published: the paper's stator, half of 18.7 mm",
-            "roughness": "published: the paper's adhesive",
-            "plateau_pressure": "assumed: 0.36 N on 1 cm², carried by 5/7 of it",
-            "speed": "published: between the 77 and 86 mm/s of Smith, Gosselin and Houde 2002",
-        }
-    )
-
-
 @dataclass(frozen=True)
 class FrozenContact:
     """The parameters: a plateau at an antinode, under a skin that does not yield in a period."""
@@ -69,23 +50,29 @@ class FrozenContact:
         default_factory=lambda: Finger(
             10e-3,
             50e-6,
-            350e-6,
+            350e-6,  # published: Biet, Giraud and Lemaire-Semail, Table 1
             0.5,
-            plateau_width=250e-6,
+            plateau_width=250e-6,  # assumed: 150 to 350 µm are reported, illustrative
+            # Assumed; the laws of contact hold for this skin on a face of 0.6 µm, and their heights
+            # grow with both together.
             skin_roughness=0.6e-6,
             contact_area_exponent=0.0,
             asperities=AsperityLaw(),
         )
     )
+    # Published: viscosity and pressure of the paper; assumed: the mean free path.
     gas: Gas = field(default_factory=lambda: Gas(1.85e-5, 1e5, 1.2, 67e-9))
+    # The law that is in range from an atmosphere to a vacuum.
     slip: str = "fukui-kaneko"
+    # Published: the paper's stator, with half of 18.7 mm, and its adhesive.
     frequency: si.Hertz = 40.5e3
     amplitude: si.Metre = 2e-6
     half_wavelength: si.Metre = 9.35e-3
     roughness: si.Metre = 0.6e-6
+    # Assumed: 0.36 N on 1 cm², carried by 5/7 of it.
     plateau_pressure: si.Pascal = 5e3
+    # Published: between the 77 and 86 mm/s of Smith, Gosselin and Houde 2002.
     speed: si.MetrePerSecond = 0.08
-    evidence: Mapping[str, str] = field(default_factory=_evidence)
 
     def law(self, model: str) -> FrictionLaw:
         """The friction law of a model at these parameters, the pad over an antinode. Raises

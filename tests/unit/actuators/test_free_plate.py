@@ -47,7 +47,7 @@ def test_in_time_the_amplitude_is_that_of_a_softening_resonance() -> None:
         f = there.resonance_frequency * (1 + shift)
         working = Working(voltage=15.0, frequency=f)
         expected = abs(alone.swept(np.linspace(1.03, 1 + shift, 60) * f / (1 + shift), 15.0)[-1])
-        found = simulate(there, working, speed=0.0, periods=600, traced=0)
+        found = simulate(there, working, speed=0.0, periods=600)
         assert found.period_amplitude[-1] == pytest.approx(expected, rel=5e-3)
         assert free_amplitude(there, working) == pytest.approx(expected, rel=5e-3)
 
@@ -58,7 +58,7 @@ def test_the_mean_has_the_backbone_that_time_has(law: FreePlate) -> None:
     there = free(law)
     for f in (0.99, 0.995, 1.0):
         working = Working(voltage=15.0, frequency=f * there.resonance_frequency)
-        found = simulate(there, working, speed=0.0, periods=600, traced=0)
+        found = simulate(there, working, speed=0.0, periods=600)
         assert free_amplitude(there, working) == pytest.approx(found.period_amplitude[-1], rel=5e-3)
     assert found.energy_residual < 1e-4
 

@@ -3,6 +3,7 @@ lost, and the process that asked goes on."""
 
 from __future__ import annotations
 
+import dataclasses
 import io
 import json
 import os
@@ -157,9 +158,13 @@ def test_what_a_child_sends_must_be_an_answer(shape: list[int]) -> None:
         (3, False, r"crashed \(code 3\)"),
     ],
 )
-def test_why_a_child_ended(code: int, late: bool, reason: str) -> None:
+def test_why_a_child_ended(
+    code: int, late: bool, reason: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    allowed = dataclasses.replace(isolated_reading.READING_TIME, most=2.0)
+    monkeypatch.setattr(isolated_reading, "READING_TIME", allowed)
     child: Any = SimpleNamespace(returncode=code)
-    assert re.search(reason, IsolatedReader(processor_time=2.0)._why(child, late))
+    assert re.search(reason, IsolatedReader()._why(child, late))
 
 
 @pytest.mark.skipif(os.name == "nt", reason="limits of POSIX")
@@ -194,15 +199,20 @@ def test_a_crash_is_told_with_the_file_and_the_next_is_read() -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="limits of POSIX")
-def test_time_and_memory_end() -> None:
+def test_time_and_memory_end(monkeypatch: pytest.MonkeyPatch) -> None:
     # The time that the child takes to load this module counts.
-    reader = IsolatedReader(memory=5e8, processor_time=2.0)
+    for name, most in (("READING_MEMORY", 5e8), ("READING_TIME", 2.0)):
+        allowed = dataclasses.replace(getattr(isolated_reading, name), most=most)
+        monkeypatch.setattr(isolated_reading, name, allowed)
+    reader = IsolatedReader()
     with pytest.raises(ConfigError, match="a: cannot be read: reading it takes more than 2 s"):
         reader.read(endless, file="a")
     with pytest.raises(ConfigError, match=r"b: .* takes more than .* GB"):
         reader.read(unpacking, 10**9, file="b")
-    with pytest.raises(ConfigError, match="takes more than"):
-        IsolatedReader(patience=0.5).read(waiting, file="c")
+    with monkeypatch.context() as hurried:
+        hurried.setattr(isolated_reading, "_PATIENCE", 0.5)
+        with pytest.raises(ConfigError, match="takes more than"):
+            IsolatedReader().read(waiting, file="c")
     assert reader.read(doubled, 1.0, file="d")[0]["size"] == 0
     reader.end()
 

@@ -217,7 +217,7 @@ def analyze_motor(
     curve = speed_force_curve(motor, working)
     best = max(curve, key=lambda point: point.efficiency)
     tell("in time")
-    motion = simulate(motor, working, speed=best.speed, periods=_PERIODS, traced=0)
+    motion = simulate(motor, working, speed=best.speed, periods=_PERIODS)
     resolved = _resolved(motor, working, curve)
     tell("preload and amplitude")
     cradle, amplitude = described.motor.cradle, curve[0].amplitude
@@ -288,7 +288,7 @@ def _plane(motor: AssembledMotor, voltage: si.Volt) -> PlaneMotion | None:
     if len(motor.modes) == 1:
         return None
     working = Working(voltage=voltage, second=1.0)
-    return simulate_plane(motor, working, periods=_FREE, steps=_FREE_STEPS, traced=_FREE)
+    return simulate_plane(motor, working, periods=_FREE, steps=_FREE_STEPS)
 
 
 def _resolved(
@@ -297,7 +297,7 @@ def _resolved(
     """Speed and force left for a load, in time, at every so many points of an averaged curve."""
     points = []
     for point in curve[:: len(curve) // _RESOLVED]:
-        there = simulate(motor, working, speed=point.speed, periods=_PERIODS, traced=0)
+        there = simulate(motor, working, speed=point.speed, periods=_PERIODS)
         points.append((point.speed, there.thrust - (point.thrust - point.force)))
     return np.array(points)
 

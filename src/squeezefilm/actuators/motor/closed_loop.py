@@ -15,15 +15,15 @@ from squeezefilm.actuators.motor.in_time import STEPS, require_no_pull, resting
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError, InputError
 
+# Of a law: its interval in periods of the mode, and the time in which it takes an error away (s).
+_INTERVAL, _CORRECTION = 20, 4e-3
+
 
 @si.checked_numbers
 def inverted_law(
     motor: AssembledMotor,
     speeds: si.MetrePerSecondArray,
     amplitudes: Annotated[si.MetreArray, si.Above(0.0)],
-    *,
-    interval_periods: Annotated[int, si.AtLeast(1)] = 20,
-    correction_time: Annotated[si.Second, si.Above(0.0)] = 4e-3,
 ) -> ForceLaw:
     """The force law of a motor, from its averaged thrust over speeds (m/s) and amplitudes (m).
 
@@ -64,8 +64,8 @@ def inverted_law(
         thrust=np.ascontiguousarray(thrust[:, chosen]),
         volts_per_metre=1 / mode.amplitude_per_volt,
         time_constant=mode.quality_factor / (np.pi * mode.resonance_frequency),
-        interval=interval_periods / mode.resonance_frequency,
-        correction_time=correction_time,
+        interval=_INTERVAL / mode.resonance_frequency,
+        correction_time=_CORRECTION,
         amplitude_time=mode.quality_factor / (np.pi * mode.resonance_frequency),
         highest_voltage=min(motor.highest_voltage, motor.motor.voltage),
     )
@@ -86,14 +86,6 @@ class TrackedForce:
     voltage: si.VoltArray
     cut: int
 
-    @si.checked_numbers
-    def mean_error(self, start: si.Second, end: si.Second) -> si.Dimensionless:
-        """Mean force less the wanted one, over that, between two times (s)."""
-        there = (self.time >= start) & (self.time <= end)
-        if not there.any():
-            raise InputError("no step of the law lies between these times", quantity="start")
-        return float(np.mean(self.force[there]) / np.mean(self.wanted[there]) - 1)
-
 
 @si.checked_numbers
 def track_force(
@@ -112,7 +104,7 @@ def track_force(
     top = Working(voltage=law.highest_voltage)
     stator = motor.stator(top)
     require_no_pull(motor, stator)
-    march, slider = resting(motor, top, stator, speed, 0.0)
+    march, slider = resting(motor, top, stator, speed)
     per_volt = stator.force / law.highest_voltage
     period = 2 * np.pi / stator.omega[0]
     count = max(1, round(law.interval / period))
@@ -127,9 +119,7 @@ def track_force(
         begun = float(march.state[totals + kernel.THRUST])
         parts = (driven, motor.feet, slider, march)
         steps = count * STEPS
-        done = kernel.march_steps(
-            n * count * period, period / STEPS, steps, parts, np.empty((0, 0))
-        )
+        done = kernel.march_steps(n * count * period, period / STEPS, steps, parts)
         if done < steps:
             raise ConvergenceError("too many contacts began and ended within one step of the loop")
         force = (float(march.state[totals + kernel.THRUST]) - begun) / (count * period) - guide

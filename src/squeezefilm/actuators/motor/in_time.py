@@ -23,23 +23,16 @@ class Motion:
 
     Attributes:
         working: how it was driven.
-        period_normal: mean force across over each period (N).
-        period_height: of the slider at the end of each (m).
-        contact_share, stick_share: of the time (1).
+        contact_share: of the time (1).
         works: since the start (J), by the names in `kernel`: what drive and preload put in, what
             the load got, what modes, contacts, friction and guide lost.
         stored_energy: kinetic and elastic energy at the end less that at the start (J).
-        time: of the traced steps (s).
     """
 
     working: Working
-    period_normal: si.NewtonArray
-    period_height: si.MetreArray
     contact_share: si.Dimensionless
-    stick_share: si.Dimensionless
     works: si.FloatArray
     stored_energy: si.Joule
-    time: si.SecondArray
 
     @property
     def energy_residual(self) -> si.Dimensionless:
@@ -51,39 +44,25 @@ class Motion:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class MotorMotion(Motion):
-    """Motion along one line; shares of the time are those over the periods of the second half.
+    """Motion along one line; the share of the time is that over the periods of the second half.
 
     Attributes beside those of `Motion`:
         frequency: of the drive (Hz).
         period_thrust: mean force along over each period (N).
         period_speed: at the end of each period (m/s).
         period_amplitude: of the first mode over each period (m).
-        height, speed: of the slider at the traced steps (m, m/s).
-        deflection: of the modes (m), (steps, modes).
-        stretch: of the feet along (m), (steps, feet).
-        contact: of the feet there, 0 open, 1 sticks, 2 and 3 slip forwards and back.
     """
 
     frequency: si.Hertz
     period_thrust: si.NewtonArray
     period_speed: si.MetrePerSecondArray
     period_amplitude: si.MetreArray
-    height: si.MetreArray
-    speed: si.MetrePerSecondArray
-    deflection: si.FloatArray
-    stretch: si.FloatArray
-    contact: si.FloatArray
     model: str = "modes, unilateral contact with Coulomb friction, event-driven Runge–Kutta"
 
     @property
     def thrust(self) -> si.Newton:
         """Mean over the periods of the second half (N)."""
         return float(np.mean(self.period_thrust[self.period_thrust.size // 2 :]))
-
-    @property
-    def final_speed(self) -> si.MetrePerSecond:
-        """Mean over the last tenth of the periods (m/s)."""
-        return float(np.mean(self.period_speed[-max(1, self.period_speed.size // 10) :]))
 
 
 @si.checked_numbers
@@ -94,15 +73,12 @@ def simulate(
     speed: si.MetrePerSecond | None = None,
     periods: Annotated[int, si.AtLeast(2), si.AtMost(1_000_000)] = 400,
     steps: Annotated[int, si.AtLeast(8), si.AtMost(10_000)] = STEPS,
-    traced: Annotated[int, si.AtLeast(0), si.AtMost(1_000)] = 2,
-    start_speed: si.MetrePerSecond = 0.0,
 ) -> MotorMotion:
-    """A motor in time, from rest (or `start_speed`) on.
+    """A motor in time, from rest on.
 
     With `speed` (m/s) the slider is moved so fast along, whatever drives it: its `thrust` is then a
-    point of the speed–force curve. Without it moves by itself. The last `traced` periods are kept
-    step by step. A slider is rigid and does not tilt; feet have no mass; Coulomb's law and one χ
-    hold at every speed.
+    point of the speed–force curve. Without it moves by itself. A slider is rigid and does not tilt;
+    feet have no mass; Coulomb's law and one χ hold at every speed.
 
     Raises:
         InputError: as `AssembledMotor.stator`.
@@ -112,55 +88,38 @@ def simulate(
     """
     stator = motor.stator(working)
     require_no_pull(motor, stator)
-    march, slider = resting(motor, working, stator, speed, start_speed)
+    march, slider = resting(motor, working, stator, speed)
     period = 2 * np.pi / stator.omega[0]
     begun = _energy(motor, stator, slider, march)
-    J, n_feet = stator.mass.size, motor.feet.mu.size
-    at, totals = 2 * J, 2 * J + 4 + n_feet
-    track = np.zeros((min(traced, periods) * steps, 1 + march.state.size + n_feet))
-    rows, half = _periods((stator, motor.feet, slider, march), periods, steps, track)
+    totals = 2 * stator.mass.size + 4 + motor.feet.mu.size
+    rows, half = _periods((stator, motor.feet, slider, march), periods, steps)
     counted = (march.shares - half) / ((periods - periods // 2) * period)
     return MotorMotion(
         working=working,
         frequency=float(stator.omega[0] / 2 / np.pi),
         period_thrust=rows[0],
-        period_normal=rows[1],
-        period_speed=rows[2],
-        period_height=rows[3],
-        period_amplitude=rows[4],
-        contact_share=float(np.mean(counted[0])),
-        stick_share=float(np.mean(counted[1])),
+        period_speed=rows[1],
+        period_amplitude=rows[2],
+        contact_share=float(np.mean(counted)),
         works=march.state[totals : totals + 7].copy(),
         stored_energy=_energy(motor, stator, slider, march) - begun,
-        time=track[:, 0],
-        height=track[:, 1 + at],
-        speed=track[:, 4 + at],
-        deflection=track[:, 1 : 1 + J],
-        stretch=track[:, 5 + at : 5 + at + n_feet],
-        contact=track[:, 1 + march.state.size :],
     )
 
 
 def _periods(
-    parts: tuple[Stator, Feet, Slider, kernel.March],
-    periods: int,
-    steps: int,
-    track: si.FloatArray,
+    parts: tuple[Stator, Feet, Slider, kernel.March], periods: int, steps: int
 ) -> tuple[si.FloatArray, si.FloatArray]:
-    """March the periods, the last ones into `track`; what each came to, and the shares halfway."""
+    """March the periods; what each came to, and the times in contact halfway."""
     stator, feet, _, march = parts
     J = stator.mass.size
     at, totals = 2 * J, 2 * J + 4 + feet.mu.size
     period = 2 * np.pi / stator.omega[0]
-    rows, half = np.zeros((5, periods)), np.zeros_like(march.shares)
-    before, nothing = march.state.copy(), np.empty((0, 0))
-    untraced = periods - track.shape[0] // steps
+    rows, half = np.zeros((3, periods)), np.zeros_like(march.shares)
+    before = march.state.copy()
     for n in range(periods):
         if n == periods // 2:
             half = march.shares.copy()
-        place = (n - untraced) * steps
-        target = track[place : place + steps] if place >= 0 else nothing
-        done = kernel.march_steps(n * period, period / steps, steps, parts, target)
+        done = kernel.march_steps(n * period, period / steps, steps, parts)
         if done < steps:
             raise ConvergenceError(
                 f"more than {kernel.MOST_EVENTS} contacts began and ended within one step of "
@@ -168,13 +127,12 @@ def _periods(
                 partial=rows[:, :n],
                 iterations=n,
             )
-        gained = (march.state - before) / period
+        thrust = totals + kernel.THRUST
+        gained = (march.state[thrust] - before[thrust]) / period
         before = march.state.copy()
         rows[:, n] = (
-            gained[totals + kernel.THRUST],
-            gained[totals + kernel.NORMAL],
+            gained,
             before[at + 3],
-            before[at],
             np.hypot(before[0], before[J] / stator.omega[0]),
         )
     return rows, half
@@ -194,11 +152,7 @@ def require_no_pull(motor: AssembledMotor, stator: Stator) -> None:
 
 
 def resting(
-    motor: AssembledMotor,
-    working: Working,
-    stator: Stator,
-    speed: float | None,
-    start_speed: float,
+    motor: AssembledMotor, working: Working, stator: Stator, speed: float | None
 ) -> tuple[kernel.March, Slider]:
     """The state before the march: a slider that rests on the feet, in its place."""
     slider = motor.slider(working, imposed=speed is not None)
@@ -206,21 +160,21 @@ def resting(
     at = 2 * J
     state = np.zeros(at + 4 + n_feet + kernel.TOTALS)
     state[at] = -slider.preload / float(np.sum(motor.feet.k_nn))
-    state[at + 3] = start_speed if speed is None else speed
+    state[at + 3] = speed or 0.0
     if stator.held:
         state[:J] = stator.amplitude * np.cos(stator.phase)
         state[J:at] = -stator.amplitude * stator.omega * np.sin(stator.phase)
     # A held plate may stand so that a foot is open at first.
     depth = motor.feet.across @ state[:J] - state[at]
     contact = np.where(depth > 0, kernel.STICK, kernel.OPEN).astype(float)
-    free = speed is None and start_speed == 0.0 and slider.guide > 0
+    free = speed is None and slider.guide > 0
     guide = np.array([0.0 if free else np.copysign(1.0, state[at + 3] or 1.0)])
     scale = np.array([abs(state[at]), slider.preload] * n_feet + [slider.preload])
     march = kernel.March(
         state,
         contact,
         guide,
-        np.zeros((2, n_feet)),
+        np.zeros(n_feet),
         np.zeros((8, state.size)),
         np.ones(2 * n_feet + 1),
         1e-12 * scale,

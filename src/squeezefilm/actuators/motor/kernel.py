@@ -35,8 +35,8 @@ _LATER = 1e-3
 
 class March(NamedTuple):
     """The state (see `layout`), each foot's contact, the guide's (0 holds, ±1 slides), time (s) in
-    contact and sticking of each foot, room to work in (8, state), the events as the last rates left
-    them, and how far each must be below 0 to be more than rounding."""
+    contact of each foot, room to work in (8, state), the events as the last rates left them, and
+    how far each must be below 0 to be more than rounding."""
 
     state: si.Array
     contact: si.Array
@@ -304,14 +304,12 @@ def _change(which: int, stator: Stator, feet: Feet, slider: Slider, march: March
 
 @compiled()
 def march_steps(
-    start: float, h: float, steps: int, parts: tuple[Stator, Feet, Slider, March], track: si.Array
+    start: float, h: float, steps: int, parts: tuple[Stator, Feet, Slider, March]
 ) -> int:
-    """March `steps` steps of `h` (s) from the time `start`; the rows of `track`, where it has any,
-    get time, state and contacts after each step. Returns the steps done: fewer where one held too
-    many events."""
+    """March `steps` steps of `h` (s) from the time `start`. Returns the steps done: fewer where one
+    held too many events."""
     stator, feet, slider, march = parts
     n_feet = feet.mu.size
-    size = march.state.size
     before = np.empty_like(march.events)
     for step in range(steps):
         t = start + step * h
@@ -332,9 +330,7 @@ def march_steps(
             march.state[:] = march.room[5]
             for i in range(n_feet):
                 if march.contact[i] != OPEN:
-                    march.shares[0, i] += gone
-                    if march.contact[i] == STICK:
-                        march.shares[1, i] += gone
+                    march.shares[i] += gone
             if which < 0:
                 break
             _change(which, stator, feet, slider, march)
@@ -342,8 +338,4 @@ def march_steps(
             events += 1
             if events > MOST_EVENTS:
                 return step
-        if track.shape[0] > step:
-            track[step, 0] = end
-            track[step, 1 : 1 + size] = march.state
-            track[step, 1 + size :] = march.contact
     return steps

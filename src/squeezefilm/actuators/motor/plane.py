@@ -30,15 +30,14 @@ from squeezefilm.core.compiled import compiled
 
 HEIGHT, RISE, X, Y, V_X, V_Y = range(6)
 """The slider's height (m), its speed (m/s), its place and its velocity in the plane (m, m/s)."""
-TOTALS = 10
-"""Works (J) as `kernel` orders them, then the impulses along, sideways and across (N·s)."""
+TOTALS = 9
+"""Works (J) as `kernel` orders them, then the impulses along and sideways (N·s)."""
 
 
 class PlaneMarch(NamedTuple):
     """The modes' deflections (m) and speeds (m/s), the last step's accelerations of modes and
     height, the slider (`HEIGHT` and so on), per foot where it stood to the slider (m), its depth
-    (m), stretch (m) and force (N), the works and impulses, and the time in contact and sticking
-    (s)."""
+    (m), stretch (m) and force (N), the works and impulses, and the time in contact (s)."""
 
     q: si.Array
     dq: si.Array
@@ -58,10 +57,10 @@ def march_plane(
     h: float,
     steps: int,
     parts: tuple[Stator, Feet, si.Array, Slider, PlaneMarch],
-    track: si.Array,
+    path: si.Array,
 ) -> None:
-    """March `steps` steps of `h` (s) from the time `start`; the rows of `track`, where it has any,
-    get time, height, place, velocity, the modes and the feet's depths after each."""
+    """March `steps` steps of `h` (s) from the time `start`; the rows of `path`, shape (steps, 2),
+    get the slider's place after each."""
     stator, feet, sideways, slider, march = parts
     J, n_feet = stator.mass.size, feet.mu.size
     s, totals = march.slider, march.totals
@@ -113,8 +112,6 @@ def march_plane(
             totals[5] += 0.5 * (march.force[i, 1] + f_y) * slip_y
             march.force[i, 0], march.force[i, 1] = f_x, f_y
             march.shares[0] += h / n_feet
-            if slip_x == 0.0 and slip_y == 0.0:
-                march.shares[1] += h / n_feet
             for j in range(J):
                 onto[j] -= n * feet.across[i, j] + f_x * feet.along[i, j] + f_y * sideways[i, j]
         _modes(t, h, stator, half, speed_half, onto, march)
@@ -125,11 +122,7 @@ def march_plane(
             for j in range(J):
                 gone += feet.across[i, j] * (march.q[j] - before[j])
             totals[4] += lossy[i] * gone
-        if track.shape[0] > step:
-            track[step, 0] = start + (step + 1) * h
-            track[step, 1:7] = s
-            track[step, 7 : 7 + J] = march.q
-            track[step, 7 + J :] = march.depth
+        path[step, 0], path[step, 1] = s[X], s[Y]
 
 
 @compiled()
@@ -198,7 +191,6 @@ def _moved(h: float, forces: tuple[float, float, float], slider: Slider, march: 
     s[V_X], s[V_Y] = vx, vy
     totals[7] += Fx * h
     totals[8] += Fy * h
-    totals[9] += N * h
 
 
 STEPS: int = 256
@@ -207,18 +199,20 @@ STEPS: int = 256
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PlaneMotion(Motion):
-    """Motion in the plane; shares of the time are those over all periods.
+    """Motion in the plane; the share of the time is that over all periods.
 
     Attributes beside those of `Motion`:
         period_thrust: mean force along and sideways over each period (N), (periods, 2).
         period_velocity: along and sideways at the end of each period (m/s), (periods, 2).
         period_amplitude: of the modes there (m), (periods, modes).
-        path: the slider's place at the traced steps (m), (steps, 2).
+        time: at the end of each period (s).
+        path: the slider's place after each step (m), (periods · steps, 2).
     """
 
     period_thrust: si.NewtonArray
     period_velocity: si.MetrePerSecondArray
     period_amplitude: si.MetreArray
+    time: si.SecondArray
     path: si.MetreArray
     model: str = "modes, unilateral contact with Coulomb friction in the plane, steps of one length"
 
@@ -243,14 +237,13 @@ def simulate_plane(
     velocity: tuple[si.MetrePerSecond, si.MetrePerSecond] | None = None,
     periods: Annotated[int, si.AtLeast(2), si.AtMost(1_000_000)] = 400,
     steps: Annotated[int, si.AtLeast(16), si.AtMost(10_000)] = STEPS,
-    traced: Annotated[int, si.AtLeast(0), si.AtMost(1_000_000)] = 0,
 ) -> PlaneMotion:
     """A motor in time whose slider may move along and sideways, from rest on.
 
     With `velocity` (m/s) the slider is moved so, whatever drives it. Without it the guide's
-    friction holds it back against its motion, whatever the direction, and the load pulls along. The
-    path of the last `traced` periods is kept step by step. Valid as `simulate`, whose steps between
-    events are more exact along one line; these are of second order.
+    friction holds it back against its motion, whatever the direction, and the load pulls along.
+    Valid as `simulate`, whose steps between events are more exact along one line; these are of
+    second order.
 
     Raises what `AssembledMotor.stator` and `require_no_pull` raise.
     """
@@ -259,35 +252,27 @@ def simulate_plane(
     slider = motor.slider(working, imposed=velocity is not None)
     march = _resting(motor, stator, slider, velocity or (0.0, 0.0))
     period = 2 * np.pi / float(stator.omega[0])
-    J, n_feet = len(motor.modes), motor.feet.mu.size
     begun = _energy(motor, stator, slider, march)
-    track = np.zeros((min(traced, periods) * steps, 7 + J + n_feet))
-    untraced = periods - min(traced, periods)
-    rows = np.zeros((periods, 6 + J))
+    path = np.empty((periods, steps, 2))
+    rows = np.zeros((periods, 4 + len(motor.modes)))
     parts = (stator, motor.feet, motor.sideways, slider, march)
-    nothing, before = np.empty((0, 0)), march.totals.copy()
+    before = march.totals.copy()
     for n in range(periods):
-        place = (n - untraced) * steps
-        target = track[place : place + steps] if place >= 0 else nothing
-        march_plane(n * period, period / steps, steps, parts, target)
-        rows[n, :3] = (march.totals - before)[7:] / period
+        march_plane(n * period, period / steps, steps, parts, path[n])
+        rows[n, :2] = (march.totals - before)[7:] / period
         before = march.totals.copy()
-        rows[n, 3:6] = march.slider[4], march.slider[5], march.slider[0]
-        rows[n, 6:] = np.hypot(march.q, march.dq / stator.omega)
-    whole = periods * period
+        rows[n, 2:4] = march.slider[V_X], march.slider[V_Y]
+        rows[n, 4:] = np.hypot(march.q, march.dq / stator.omega)
     return PlaneMotion(
         working=working,
         period_thrust=rows[:, :2],
-        period_normal=rows[:, 2],
-        period_velocity=rows[:, 3:5],
-        period_height=rows[:, 5],
-        period_amplitude=rows[:, 6:],
-        contact_share=float(march.shares[0] / whole),
-        stick_share=float(march.shares[1] / whole),
+        period_velocity=rows[:, 2:4],
+        period_amplitude=rows[:, 4:],
+        contact_share=float(march.shares[0] / (periods * period)),
         works=march.totals[:7].copy(),
         stored_energy=_energy(motor, stator, slider, march) - begun,
-        time=track[:, 0],
-        path=track[:, 3:5],
+        time=np.linspace(period, periods * period, periods),
+        path=path.reshape(-1, 2),
     )
 
 
@@ -313,7 +298,7 @@ def _resting(
         np.zeros((n_feet, 2)),
         np.zeros((n_feet, 2)),
         np.zeros(TOTALS),
-        np.zeros(2),
+        np.zeros(1),
     )
 
 

@@ -202,10 +202,9 @@ def plane_figure(motion: PlaneMotion) -> Figure:
     left.plot(path[:, 0], path[:, 1], color=style.BLUE, lw=1)
     left.plot(*path[-1], "o", color=style.ORANGE)
     left.set(xlabel="along (µm)", ylabel="sideways (µm)")
-    time = 1e3 * motion.time[-1] * np.arange(1, len(motion.period_velocity) + 1)
-    time = time / len(motion.period_velocity)
     for k, (name, colour) in enumerate((("along", style.BLUE), ("sideways", style.ORANGE))):
-        right.plot(time, 1e3 * motion.period_velocity[:, k], color=colour, lw=1, label=name)
+        velocity = 1e3 * motion.period_velocity[:, k]
+        right.plot(1e3 * motion.time, velocity, color=colour, lw=1, label=name)
     right.set(xlabel="time (ms)", ylabel="velocity (mm/s)")
     style.legend_below(right, columns=2)
     return figure

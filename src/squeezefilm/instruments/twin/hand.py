@@ -22,24 +22,22 @@ from squeezefilm.physics.texture_files.trajectories import Motion, motion_from
 EXPLORING = "60 mm in 0.75 s"
 """A pass of least jerk with a mean speed of 80 mm/s: people explore at 77 to 86 mm/s with 0.5 to
 0.64 N (Smith, Gosselin and Houde 2002, s00221-002-1240-4)."""
-FOR_EVER = -1
 _MOST_SAMPLES = 2_000_000
 _LONGEST: si.Second = 86_400.0
 
 # Places in the plan's array, all µs but the last two.
-BEGIN, PASS, LIFT, REPEATS, PRESS, SAMPLE, MIRRORED = range(7)
+BEGIN, PASS, LIFT, PRESS, SAMPLE, MIRRORED = range(6)
 
 
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class Hand:
-    """A finger led along a motion.
+    """A finger led along a motion, again and again.
 
     Args:
         motion: one pass or more, see `motion_from`.
         normal_force: it presses with (N); above 0.
         begin: when it touches and sets off (s); at least 0.
-        repeats: how often it makes the motion; None for ever. Then it lifts and stays.
         lift: how long it stays in the air at the end of each repeat (s); 0 keeps it down.
         press: how long it takes to press and to let go (s); above 0.
 
@@ -50,7 +48,6 @@ class Hand:
     motion: Motion
     normal_force: Annotated[si.Newton, si.Above(0.0), si.AtMost(20.0)] = 0.5
     begin: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.1
-    repeats: Annotated[int, si.AtLeast(1)] | None = None
     lift: Annotated[si.Second, si.AtLeast(0.0), si.AtMost(_LONGEST)] = 0.0
     press: Annotated[si.Second, si.AtLeast(1e-06), si.AtMost(_LONGEST)] = 0.05
 
@@ -58,7 +55,7 @@ class Hand:
         si.require("the motion's duration", self.motion.duration, si.Unit("s"), at_most=_LONGEST)
 
     def path(self, tick: int) -> tuple[si.FloatArray, NDArray[np.int64]]:
-        """One motion as places (m), shape (2, n), and the plan, shape (7,), for `wanted`.
+        """One motion as places (m), shape (2, n), and the plan, shape (6,), for `wanted`.
 
         `tick` (µs) is the time between places, longer where they would be more than two million.
         """
@@ -74,12 +71,10 @@ class Hand:
             y = np.zeros(count)
         places = np.ascontiguousarray(np.stack([x, y]), dtype=float)
         apart = float(np.hypot(x[-1] - x[0], y[-1] - y[0]))
-        repeats = FOR_EVER if self.repeats is None else self.repeats
         plan = [
             round(self.begin * 1e6),
             length,
             round(self.lift * 1e6),
-            repeats,
             max(1, round(self.press * 1e6)),
             sample,
             int(apart > 1e-6),
@@ -106,19 +101,8 @@ def wanted(time: int, places: si.Array, plan: si.Array) -> Any:
     cycle = plan[PASS] + plan[LIFT]
     number = since // cycle
     part = min(since - number * cycle, plan[PASS])
-    over = False
-    left = np.int64(1 << 62)
-    if plan[REPEATS] != FOR_EVER:
-        whole = plan[REPEATS] * cycle - plan[LIFT]
-        left = whole - since
-        if left <= 0:
-            over = True
-            number = plan[REPEATS] - 1
-            part = plan[PASS]
-    if plan[LIFT] > 0:
-        down, left = part, plan[PASS] - part
-    else:
-        down = since
+    # Without a lift it presses once and stays down.
+    down = min(part, plan[PASS] - part) if plan[LIFT] > 0 else since
     if plan[MIRRORED] == 1 and number % 2 == 1:
         part = plan[PASS] - part
     k = min(part // plan[SAMPLE], last - 1)
@@ -126,5 +110,4 @@ def wanted(time: int, places: si.Array, plan: si.Array) -> Any:
     share = (part - k * plan[SAMPLE]) / span
     x = places[0, k] + share * (places[0, k + 1] - places[0, k])
     y = places[1, k] + share * (places[1, k + 1] - places[1, k])
-    press = 0.0 if over else max(0.0, min(1.0, min(down, left) / plan[PRESS]))
-    return x, y, press
+    return x, y, max(0.0, min(1.0, down / plan[PRESS]))

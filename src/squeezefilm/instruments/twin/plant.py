@@ -7,7 +7,7 @@ Python around `plant_kernel.advance`; everything that takes time is compiled.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections import deque
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple, TextIO
@@ -30,19 +30,8 @@ from squeezefilm.physics.plate.thermal import driven_thickness, thermal_body
 
 _PICKUP_RE, _PICKUP_IM = 11, 12  # streams of noise
 _BUFFER = 2000  # rows between two visits to Python
-
-
-@dataclass(frozen=True, slots=True)
-class PlantCounts:
-    """Numbers of steps of the plant, since it began, in which something was not as wanted.
-
-    `beyond`: the amplitude left the tables. `failed`: the skin chattered without end. `lost`:
-    sensor samples.
-    """
-
-    beyond: int
-    failed: int
-    lost: int
+KEPT = 200_000
+"""Rows of the truth that stay in memory, the newest."""
 
 
 class TruthRecord:
@@ -52,10 +41,9 @@ class TruthRecord:
     read back exactly.
     """
 
-    def __init__(self, rows: int, file: Path | None = None) -> None:
-        """Keep the newest `rows`; append all to `file`. Raises `InputError` if it can't be."""
-        self._rows = np.empty((rows, len(k.COLUMNS)))
-        self._written = 0
+    def __init__(self, file: Path | None = None) -> None:
+        """Keep the newest `KEPT` rows; append all to `file`. `InputError` if it can't be."""
+        self._rows: deque[si.FloatArray] = deque(maxlen=KEPT)
         self._file: TextIO | None = None
         if file is not None:
             try:
@@ -72,24 +60,12 @@ class TruthRecord:
             lines = (",".join(repr(float(v)) for v in row) for row in rows)
             self._file.write("".join(line + "\n" for line in lines))
             self._file.flush()
-        size = self._rows.shape[0]
-        newest = rows[-size:]
-        first = self._written + len(rows) - len(newest)
-        self._rows[(first + np.arange(len(newest))) % size] = newest
-        self._written += len(rows)
-
-    @property
-    def written(self) -> int:
-        """Number of rows up to now."""
-        return self._written
+        self._rows.extend(rows.copy())
 
     @property
     def rows(self) -> si.FloatArray:
         """The rows kept, oldest first, shape (n, columns); a copy."""
-        size = self._rows.shape[0]
-        if self._written <= size:
-            return self._rows[: self._written].copy()
-        return np.roll(self._rows, -(self._written % size), axis=0)
+        return np.array(self._rows).reshape(-1, len(k.COLUMNS))
 
     def column(self, name: str) -> si.FloatArray:
         """One column of the rows kept. Raises `InputError` for another name."""
@@ -151,7 +127,7 @@ class Plant:
     ) -> None:
         self.point, self.settings, self.hand = point, settings, hand
         self._ear = hearing(settings.pickup)
-        self.truth = TruthRecord(settings.truth_rows, truth_file)
+        self.truth = TruthRecord(truth_file)
         friction = _friction(point)
         self._c = _constants(point, settings, hand, friction)
         self._places, self._plan = _path(hand, settings.tick_us)
@@ -234,11 +210,6 @@ class Plant:
         """Force of friction between skin and surface (N), positive while the skin goes to +x."""
         return float(self._s[k.FRICTION])
 
-    @property
-    def counts(self) -> PlantCounts:
-        """Numbers of steps in which something was not as wanted."""
-        return PlantCounts(*(int(self._n[i]) for i in (k.BEYOND, k.FAILED, k.LOST_SAMPLES)))
-
     def sensed(self) -> tuple[int, int, bool]:
         """Reading of the device's position sensor now: x and y (µm), and contact."""
         x, y = self._s[k.SEEN_X], self._s[k.SEEN_Y]
@@ -270,7 +241,7 @@ def _path(hand: Hand | None, tick: int) -> tuple[si.FloatArray, NDArray[np.int64
     if hand is not None:
         return hand.path(tick)
     # A hand that never begins.
-    plan = np.array([1 << 61, 1, 0, -1, 1, 1, 0], dtype=np.int64)
+    plan = np.array([1 << 61, 1, 0, 1, 1, 0], dtype=np.int64)
     return np.zeros((2, 2)), plan
 
 

@@ -149,10 +149,9 @@ class TwinSettings:
         tick: of the device (s): whole µs, 10 µs to 1 ms.
         steps_per_tick: equal parts of a tick in which plant and hand are stepped; at least 1.
         truth_period: between rows of the truth (s): a whole number of ticks.
-        truth_rows: rows kept in memory, the newest; at least 1.
         highest_amplitude_ratio: friction and load are tabulated up to this multiple of what the
             display's own voltage gives without a finger (1); above 0. Beyond it the last values
-            hold, and are counted.
+            hold.
         drift, amplifier, arm, sensor, pickup: see there.
         dry: static friction and its dependence on speed and load.
         friction_lag: time constant with which friction follows the amplitude (s); 0 for at once.
@@ -165,7 +164,6 @@ class TwinSettings:
     tick: Annotated[si.Second, si.AtLeast(1e-05), si.AtMost(0.001)] = 100e-6
     steps_per_tick: Annotated[int, si.AtLeast(1), si.AtMost(100)] = 2
     truth_period: Annotated[si.Second, si.AtLeast("tick")] = 1e-3
-    truth_rows: Annotated[int, si.AtLeast(1)] = 200_000
     highest_amplitude_ratio: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(100.0)] = 2.0
     drift: PlateDrift = PlateDrift()
     amplifier: TwinAmplifier = TwinAmplifier()

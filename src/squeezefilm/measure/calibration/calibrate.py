@@ -51,6 +51,7 @@ from squeezefilm.measure.calibration.solved_answers import (
     FRICTION,
     MODE_FREQUENCY,
     PLATE_TAKES,
+    Asked,
     in_parts,
 )
 from squeezefilm.measure.fits.estimate import Observation
@@ -199,7 +200,7 @@ def _joint(
     felt = np.full((count, 2), np.nan)
     free = np.full(count, p.held_amplitude)
     modes: list[WorkingMode] = [p.mode] * count
-    rows, answers = np.zeros(count, dtype=int), {}
+    answers: Mapping[Asked, si.FloatArray] = {}
     if plate is not None:
         rows = random.integers(len(plate.posterior.scores), size=count)
         answers = {asked: draws[rows] for asked, draws in plate.predictive.items()}
@@ -222,8 +223,6 @@ def _joint(
         where = (Touching(float(np.nanmedian(amplitude))),)
         friction = finger.draws.with_error(friction[:, None], where, seed)[:, 0]
     return Joint(
-        () if plate is None else plate.paths,
-        np.zeros((count, 0)) if plate is None else plate.posterior.scores[rows],
         finger.mixture.paths,
         normal_scores(finger.points),
         answers,

@@ -60,13 +60,11 @@ class FrictionInterval:
 
 @dataclass(frozen=True, eq=False)
 class Joint:
-    """Draws of everything at once, in scores: `plate` (draws, parameters), `finger` (draws, inputs
-    of the mixture: `finger_paths`), with the bench's own answers (SI), and at the display's voltage
-    the free amplitude, the one with the finger on and µ′/µ, of which `law_error` is what the laws
-    themselves are taken to be off by, all (draws,)."""
+    """Draws of everything at once: in scores `finger` (draws, inputs of the mixture:
+    `finger_paths`), the bench's own answers (SI; none without a plate's fit), and at the display's
+    voltage the free amplitude, the one with the finger on and µ′/µ, of which `law_error` is what
+    the laws themselves are taken to be off by, all (draws,)."""
 
-    plate_paths: tuple[str, ...]
-    plate: si.DimensionlessArray
     finger_paths: tuple[str, ...]
     finger: si.DimensionlessArray
     answers: Mapping[Asked, si.FloatArray]

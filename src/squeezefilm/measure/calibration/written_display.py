@@ -183,7 +183,7 @@ def _joint(calibration: Calibration, display: Display) -> JointSpread | None:
     prediction = predict(display)
     columns: dict[str, si.FloatArray] = {}
     share, offset = np.ones(joint.friction.size), joint.law_error
-    if joint.plate_paths and prediction.voltage is not None:
+    if joint.answers and prediction.voltage is not None:
         share = joint.amplitude / prediction.touch.free_amplitude
         columns[AMPLITUDE_SHARE] = _of_normal(share[known], share[rows])
     if np.std(offset[known]) > 0:

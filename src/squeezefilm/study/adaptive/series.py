@@ -68,14 +68,6 @@ class ModelSeries:
         self._weights = self._model.prior
         self._asked = 0
 
-    def estimate(self) -> tuple[si.Dimensionless, si.Dimensionless]:
-        """Posterior mean and standard deviation of the threshold, in parts of the reference or as
-        an amount; for intervals use the task's own analysis."""
-        thresholds = self._model.thresholds
-        weights = self._weights.reshape(thresholds.size, -1).sum(axis=1)
-        mean = float(weights @ thresholds)
-        return mean, float(np.sqrt(weights @ (thresholds - mean) ** 2))
-
     def next_stimulus(self) -> si.Dimensionless:
         """The next difference other than 0, in parts of the reference or as an amount."""
         model = self._model

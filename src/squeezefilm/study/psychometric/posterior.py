@@ -53,17 +53,13 @@ class PsychometricPosterior:
     """Marginal posteriors of a psychometric function.
 
     Attributes:
-        axis: of the function.
         edges: for each parameter the bounds of the cells, shape (cells + 1,), in the parameter's
             own unit (threshold as an intensity, width on the axis).
         probability: of the cells, shape (thresholds, widths, lapse rates, guess rates); sums to 1.
-        log_evidence: ln of the likelihood's mean over the prior, without binomial coefficients.
     """
 
-    axis: Axis
     edges: tuple[si.FloatArray, si.FloatArray, si.FloatArray, si.FloatArray]
     probability: si.FloatArray
-    log_evidence: float
 
     def marginal(self, parameter: str) -> si.FloatArray:
         """Probability of each cell of one parameter, shape (cells,).
@@ -108,13 +104,6 @@ class PsychometricPosterior:
         tail = 0.5 * (1.0 - level)
         return self.quantile(parameter, tail), self.quantile(parameter, 1.0 - tail)
 
-    def mean(self, parameter: str) -> float:
-        """The posterior mean, in the parameter's unit."""
-        edges = self.edges[_index(parameter)]
-        cells = np.arange(edges.size - 1)
-        middles = PchipInterpolator(np.arange(edges.size), edges)(cells + 0.5)
-        return float(np.sum(self.marginal(parameter) * middles))
-
 
 def _index(parameter: str) -> int:
     si.require_one_of("parameter", parameter, PARAMETERS)
@@ -129,7 +118,7 @@ def coarse_maxima(answered: Answered) -> si.FloatArray:
     """
     low, high = _span(answered)
     cells = _one_guess(_COARSE, answered.guess_rate)
-    nodes, weights, _ = _weigh(answered, low, high, cells)
+    nodes, weights = _weigh(answered, low, high, cells)
     starts = []
     for first in range(0, cells[1], cells[1] // 6):
         band = weights[:, first : first + cells[1] // 6]
@@ -138,22 +127,19 @@ def coarse_maxima(answered: Answered) -> si.FloatArray:
     return np.array(starts)
 
 
-def grid_posterior(
-    answered: Answered, mode: si.FloatArray, *, cells: tuple[int, int, int, int] | None = None
-) -> PsychometricPosterior:
+def grid_posterior(answered: Answered, mode: si.FloatArray) -> PsychometricPosterior:
     """The posterior of threshold, width, lapse rate and, where it is not known, guess rate.
 
     Args:
         answered: the answers, and what is to explain them.
         mode: θ of the largest ln density, shape (4,); the grid never loses it.
-        cells: of the last grid along threshold, ln width, lapse rate and guess rate.
     """
     guess_rate = answered.guess_rate
     low, high = _span(answered)
     coarse = _one_guess(_COARSE, guess_rate)
     centre = [_coordinate(at, mode[at]) for at in range(4)]
     for _ in range(_MOST_PASSES):
-        _, weights, _ = _weigh(answered, low, high, coarse)
+        _, weights = _weigh(answered, low, high, coarse)
         before = high - low
         for at in range(4):
             marginal = weights.sum(axis=tuple(other for other in range(4) if other != at))
@@ -167,15 +153,14 @@ def grid_posterior(
             )
         if np.all(high - low >= _SETTLED * before):
             break
-    fine = (_FINE if guess_rate is not None else _FINE_WITH_GUESS) if cells is None else cells
-    fine = _one_guess(fine, guess_rate)
-    _, weights, log_mean = _weigh(answered, low, high, fine)
-    axis, edges = answered.axis, []
+    fine = _FINE if guess_rate is not None else _FINE_WITH_GUESS
+    _, weights = _weigh(answered, low, high, fine)
+    edges = []
     for at, size in enumerate(fine):
         theta = _theta(at, np.linspace(low[at], high[at], size + 1))
-        as_logarithm = at == kernel.LOG_WIDTH or (at == kernel.THRESHOLD and axis == "log")
+        as_logarithm = at == kernel.LOG_WIDTH or (at == kernel.THRESHOLD and answered.axis == "log")
         edges.append(np.exp(theta) if as_logarithm else theta)
-    return PsychometricPosterior(axis, (edges[0], edges[1], edges[2], edges[3]), weights, log_mean)
+    return PsychometricPosterior((edges[0], edges[1], edges[2], edges[3]), weights)
 
 
 def _one_guess(
@@ -210,8 +195,8 @@ def _span(answered: Answered) -> tuple[si.FloatArray, si.FloatArray]:
 
 def _weigh(
     answered: Answered, low: si.FloatArray, high: si.FloatArray, cells: tuple[int, int, int, int]
-) -> tuple[list[si.FloatArray], si.FloatArray, float]:
-    """Nodes (θ), probabilities of the cells, and ln of the mean likelihood over the prior."""
+) -> tuple[list[si.FloatArray], si.FloatArray]:
+    """Nodes (θ), and probabilities of the cells."""
     a, nodes, masses = answered, [], []
     for at, size in enumerate(cells):
         edges = np.linspace(low[at], high[at], size + 1)
@@ -227,10 +212,8 @@ def _weigh(
         masses.append(np.ones(1) if whole else a.prior.density(at, theta, a.axis) * cell)
     m, w, lapse, guess = nodes
     weights = kernel.grid_log_likelihood(a.code, m, w, lapse, guess, a.x, a.k, a.n)
-    largest = float(weights.max())
-    np.exp(weights - largest, out=weights)
+    np.exp(weights - weights.max(), out=weights)
     weights *= masses[0][:, None, None, None] * masses[1][:, None, None]
     weights *= masses[2][:, None] * masses[3]
-    total = float(weights.sum())
-    weights /= total
-    return nodes, weights, largest + float(np.log(total))
+    weights /= weights.sum()
+    return nodes, weights

@@ -47,7 +47,7 @@ def test_a_step_of_force_says_how_near_it_ends() -> None:
 
 
 def test_the_way_in_the_plane_is_drawn() -> None:
-    moved = simulate_plane(motor(), WORKING, periods=20, steps=32, traced=20)
+    moved = simulate_plane(motor(), WORKING, periods=20, steps=32)
     said = words(plane_figure(moved))
     assert "sideways (µm)" in said
     assert f"ends at {1e3 * moved.final_velocity[0]:.3g} mm/s along" in said

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.instruments.twin.hand import FOR_EVER, Hand, hand_from, wanted
+from squeezefilm.instruments.twin.hand import Hand, hand_from, wanted
 from squeezefilm.physics.render.motion.stroke import FingerPath, Stroke
 
 # No whole number of samples, so that the last one is shorter than the others.
@@ -26,18 +26,18 @@ def line_at(share: float) -> tuple[float, float]:
 
 
 def test_the_plan_says_what_the_hand_does_in_microseconds() -> None:
-    hand = Hand(LINE, begin=0.2, repeats=3, lift=0.004, press=0.0005)
+    hand = Hand(LINE, begin=0.2, lift=0.004, press=0.0005)
     places, plan = hand.path(100)
-    assert plan.tolist() == [200_000, LENGTH, 4_000, 3, 500, 100, 1]
+    assert plan.tolist() == [200_000, LENGTH, 4_000, 500, 100, 1]
     assert plan.dtype == np.int64
     # One place for each begun 100 us, and the first.
     assert places.shape == (2, 102)
     np.testing.assert_allclose(places[:, 0], (0.01, 0.03), atol=1e-15)
     np.testing.assert_allclose(places[:, -1], (0.05, 0.01), atol=1e-15)
     np.testing.assert_allclose(places[:, 1], line_at(100 / LENGTH), atol=1e-12)
-    assert Hand(LINE).path(100)[1].tolist() == [100_000, LENGTH, 0, FOR_EVER, 50_000, 100, 1]
+    assert Hand(LINE).path(100)[1].tolist() == [100_000, LENGTH, 0, 50_000, 100, 1]
     there_and_back = Hand(Stroke(0.1, 0.02, passes=2))
-    assert there_and_back.path(100)[1].tolist()[1:] == [400_000, 0, -1, 50_000, 100, 0]
+    assert there_and_back.path(100)[1].tolist()[1:] == [400_000, 0, 50_000, 100, 0]
     # A stroke is along x.
     assert np.all(there_and_back.path(100)[0][1] == 0.0)
 
@@ -74,22 +74,8 @@ def test_it_lifts_at_the_end_of_each_repeat_and_presses_anew() -> None:
     assert at(cycle + LENGTH + 2_500)[:2] == pytest.approx((0.01, 0.03))
 
 
-@pytest.mark.parametrize("lift", [0, 5_000])
-@pytest.mark.parametrize("repeats", [1, 2, 3])
-def test_after_its_repeats_it_lifts_and_stays(lift: int, repeats: int) -> None:
-    at = followed(Hand(LINE, begin=0.0, repeats=repeats, lift=lift * 1e-6, press=0.001))
-    end = repeats * LENGTH + (repeats - 1) * lift
-    there = (0.05, 0.01) if repeats % 2 else (0.01, 0.03)
-    assert at(end - 200)[2] == pytest.approx(0.2)
-    assert at(end - LENGTH // 2)[2] == 1.0
-    for time in (end, end + 1, end + 3 * LENGTH, 10**12):
-        x, y, press = at(time)
-        assert (x, y) == pytest.approx(there)
-        assert press == 0.0
-
-
 def test_without_a_lift_it_presses_once_only() -> None:
-    at = followed(Hand(LINE, begin=0.0, repeats=3, press=0.001))
+    at = followed(Hand(LINE, begin=0.0, press=0.001))
     assert [at(k * LENGTH + 10)[2] for k in (1, 2)] == [1.0, 1.0]
 
 
@@ -98,18 +84,15 @@ def test_a_closed_way_is_gone_round_and_an_open_one_back() -> None:
     nearly = FingerPath(time, np.array([0.0, 0.01, 2e-6]), np.zeros(3))
     closed = FingerPath(time, np.array([0.0, 0.01, 5e-7]), np.zeros(3))
     across = FingerPath(time, np.array([0.0, 0.01, 0.0]), np.array([0.0, 0.0, 0.02]))
-    assert [Hand(one).path(100)[1][6] for one in (nearly, closed, across)] == [1, 0, 1]
+    assert [Hand(one).path(100)[1][5] for one in (nearly, closed, across)] == [1, 0, 1]
     at = followed(Hand(closed, begin=0.0))
     assert at(10_000 + 2_500)[0] == pytest.approx(0.005)
 
 
 def test_a_hand_in_words_takes_the_other_arguments() -> None:
-    hand = hand_from("80 mm/s over 60 mm", normal_force=0.7, begin=0.3, repeats=2)
-    assert (hand.normal_force, hand.begin, hand.repeats) == (0.7, 0.3, 2)
+    hand = hand_from("80 mm/s over 60 mm", normal_force=0.7, begin=0.3)
+    assert (hand.normal_force, hand.begin) == (0.7, 0.3)
     assert hand.motion.duration == pytest.approx(0.75)
-    assert Hand(LINE, repeats=1).repeats == 1
-    with pytest.raises(InputError, match=r"repeats = 0 .* at least 1"):
-        Hand(LINE, repeats=0)
     day = FingerPath(np.array([0.0, 86_401.0]), np.array([0.0, 0.1]), np.zeros(2))
     with pytest.raises(InputError, match="the motion's duration"):
         Hand(day)

@@ -80,7 +80,7 @@ def bench(
     state[k.RELATIVE] = math.nan
     duration = 1_000_000
     places = np.array([[0.01, 0.01 + SPEED_X], [0.02, 0.02 + SPEED_Y]])
-    plan = np.array([0, duration, 0, -1, press, duration, 1], dtype=np.int64)
+    plan = np.array([0, duration, 0, press, duration, 1], dtype=np.int64)
     fingers = Fingers(np.array([0.1, 5.0]), np.zeros((2, 3), dtype=complex), 1e-5)
     ring, truth = np.zeros((waiting, 5)), np.empty((ROWS, len(k.COLUMNS)))
     plant = k.PlantState(state, counts, constants, k.untouched(tables))

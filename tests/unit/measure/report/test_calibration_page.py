@@ -77,8 +77,6 @@ def made(**changed: Any) -> FolderCalibration:
         joint=Joint(
             (),
             NOTHING,
-            (),
-            NOTHING,
             {},
             np.full(4, 2e-6),
             np.full(4, 2e-6),

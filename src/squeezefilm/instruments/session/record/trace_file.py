@@ -156,7 +156,8 @@ _KINDS = frozenset(int(kind) for kind in BlockKind)
 
 
 SYNC_PERIOD: si.Second = 1.0
-"""Time after which the trace is forced onto the disk unless asked otherwise."""
+"""Time after which the trace is forced onto the disk: by a thread, since a disk may take longer
+than a real-time caller can wait."""
 
 
 class TraceWriter:
@@ -171,8 +172,6 @@ class TraceWriter:
         columns: names of the columns, with their units.
         metadata: where the record is from, as `core.results.stamp` gives it; anything with a JSON
             form.
-        sync_period: how often rows are forced onto the disk (s), by a thread, since a disk may
-            take longer than a real-time caller can wait; 0: before `append` returns.
 
     Raises:
         InputError: no columns, metadata with no JSON form.
@@ -180,19 +179,12 @@ class TraceWriter:
     """
 
     def __init__(
-        self,
-        path: str | Path,
-        columns: Sequence[str],
-        metadata: Mapping[str, Any],
-        *,
-        sync_period: si.Second = SYNC_PERIOD,
+        self, path: str | Path, columns: Sequence[str], metadata: Mapping[str, Any]
     ) -> None:
-        si.require("sync_period", sync_period, si.Unit("s"), at_least=0.0)
         if not columns or len(set(columns)) < len(columns):
             raise InputError(f"columns {list(columns)} are no table; name each once, at least one")
         self.path = Path(path)
         self.columns = tuple(columns)
-        self._sync_period = sync_period
         self._blocks = self._rows = self._synced = self._size = 0
         self._last_sync = -math.inf
         self._syncing: threading.Thread | None = None
@@ -257,9 +249,7 @@ class TraceWriter:
             head = ROW_HEAD.pack(table.shape[1])
             self._block(BlockKind.ROWS, head + part.tobytes())
             self._rows += len(part)
-        if self._sync_period == 0.0:
-            self.sync()
-        elif time.monotonic() - self._last_sync >= self._sync_period:
+        if time.monotonic() - self._last_sync >= SYNC_PERIOD:
             self._begin_sync()
         return self._rows
 

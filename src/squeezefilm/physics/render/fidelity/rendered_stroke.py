@@ -15,7 +15,6 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import RENDER_STEPS, require_motion
 from squeezefilm.physics.render.motion.estimator import (
     MotionEstimate,
@@ -101,7 +100,6 @@ def rendered_stroke(
     *,
     compensation: Compensation = "none",
     sensor: SensorModel | None = None,
-    estimator: MotionEstimator | None = None,
     control_rate: Annotated[si.Hertz, si.Above(0.0)] = 20e3,
     seed: int = 0,
 ) -> RenderedStroke:
@@ -119,17 +117,14 @@ def rendered_stroke(
             signed), each of shape (n,) → relative friction (1; the same shape). Called twice.
         compensation: "none", "inverse" or "preview".
         sensor: what reports the finger's position; without one the position is known.
-        estimator: of the motion; without one, the default for the sensor.
         control_rate: of commands (Hz).
         seed: of the sensor's noise.
 
     Raises:
         InputError: a value outside its range, fewer than two or more than three million control
-            steps, an estimator without a sensor, or a texture or friction that does not return
-            one finite value at least 0 per sample.
+            steps, or a texture or friction that does not return one finite value at least 0 per
+            sample.
     """
-    if sensor is None and estimator is not None:
-        raise InputError("an estimator needs a sensor to listen to; give a sensor as well")
     rounded = trajectory.duration * control_rate * (1 + 1e-12)
     require_motion(RENDER_STEPS, rounded, trajectory.duration, control_rate)
     steps = math.floor(rounded)
@@ -142,7 +137,7 @@ def rendered_stroke(
     if isinstance(trajectory, Stroke):
         speed = trajectory.velocity(inside)
     wanted = _asked(texture, position, speed, time)
-    estimate, known = None, np.ones(time.size, dtype=bool)
+    estimator, estimate, known = None, None, np.ones(time.size, dtype=bool)
     # For whose place a command is meant: the middle of its step, or (compensated) the next step.
     lead = 0.5 * dt if compensation == "none" else dt
     later: si.FloatArray = np.minimum(time + lead, trajectory.duration)
@@ -150,7 +145,7 @@ def rendered_stroke(
         ahead_position, ahead_speed = trajectory.position(later), speed
     else:
         stream = sensor_stream(sensor, trajectory.position, trajectory.duration, seed)
-        estimator = MotionEstimator.for_sensor(sensor) if estimator is None else estimator
+        estimator = MotionEstimator.for_sensor(sensor)
         estimate = estimate_motion(estimator, stream, time)
         ahead = estimate_motion(estimator, stream, time, lead)
         ahead_position, ahead_speed, known = ahead.position, ahead.speed, ahead.fresh

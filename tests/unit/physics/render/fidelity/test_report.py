@@ -42,7 +42,9 @@ def test_the_report_becomes_strict_json_with_units_in_its_keys() -> None:
     assert data["sensor"] is data["position_error_m"] is data["samples_refused"] is None
 
 
-def test_the_drive_is_silent_until_the_finger_is_known_and_after_it_is_lost() -> None:
+def test_the_drive_is_silent_until_the_finger_is_known_and_after_it_is_lost(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     rendered = rendered_stroke(
         GRATING, STROKE, ENVELOPE, friction, sensor=TOUCH_PANEL_240_HZ, compensation="inverse"
     )
@@ -50,9 +52,8 @@ def test_the_drive_is_silent_until_the_finger_is_known_and_after_it_is_lost() ->
     assert np.any(rendered.command > 0)
     # An estimator that calls the finger lost between any two samples silences nearly everything.
     nervous = MotionEstimator(MotionModel(), 3e-5, stall=1e-3)
-    lost = rendered_stroke(
-        GRATING, STROKE, ENVELOPE, friction, sensor=TOUCH_PANEL_240_HZ, estimator=nervous
-    )
+    monkeypatch.setattr(MotionEstimator, "for_sensor", staticmethod(lambda _: nervous))
+    lost = rendered_stroke(GRATING, STROKE, ENVELOPE, friction, sensor=TOUCH_PANEL_240_HZ)
     assert lost.silent == 1.0
     assert not np.any(lost.command)
 
@@ -119,7 +120,6 @@ def rendered(**changed):  # type: ignore[no-untyped-def]
     (lambda: rendered(control_rate=1e-3), "longer or slower"),
     (lambda: rendered(control_rate=1e9), "steps of"),
     (lambda: rendered(compensation="?"), "compensation"),  # type: ignore[arg-type]
-    (lambda: rendered(estimator=MotionEstimator(MotionModel(), 1e-5)), "sensor"),
     (lambda: rendered_stroke(bad_texture, STROKE, ENVELOPE, friction), "texture"),
     (lambda: rendered_stroke(GRATING, STROKE, ENVELOPE, lambda a, v: a[:-1]), "relative_friction"),
     (lambda: fidelity_report(rendered_stroke(GRATING, Stroke(0.1, 5e-4), ENVELOPE, friction)),
