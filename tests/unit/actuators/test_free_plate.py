@@ -68,7 +68,7 @@ def test_a_plate_that_softens_is_driven_below_its_small_resonance() -> None:
     working = Working(voltage=15.0)
     assert averaged(soft, working).amplitude < averaged(motor(), working).amplitude
     assert free_amplitude(motor(), working) == pytest.approx(
-        15.0 * motor().amplitude_per_volt, rel=1e-6
+        15.0 * motor().modes[0].working.amplitude_per_volt, rel=1e-6
     )
     assert free_amplitude(motor(), Working(amplitude=1e-6)) == 1e-6
 

@@ -124,11 +124,6 @@ class AssembledMotor:
         return self.modes[0].working.resonance_frequency
 
     @property
-    def amplitude_per_volt(self) -> si.MetrePerVolt:
-        """Amplitude of the first mode at its resonance, without the slider (m/V)."""
-        return self.modes[0].working.amplitude_per_volt
-
-    @property
     def highest_voltage(self) -> si.Volt:
         """Voltage at which the field in the thinnest ceramic reaches the share of the coercive
         field that ceramics bear again and again (V)."""

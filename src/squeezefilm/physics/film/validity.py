@@ -114,22 +114,9 @@ class FilmValidity:
     checks: tuple[ValidityCheck, ...]
 
     @property
-    def holds(self) -> bool:
-        """True where every check holds."""
-        return all(check.holds for check in self.checks)
-
-    @property
     def failed(self) -> tuple[ValidityCheck, ...]:
         """The checks that do not hold."""
         return tuple(check for check in self.checks if not check.holds)
-
-    def check(self, name: str) -> ValidityCheck:
-        """The check of a name; raises `InputError` for a name that there is none of."""
-        for check in self.checks:
-            if check.name == name:
-                return check
-        allowed = ", ".join(check.name for check in self.checks)
-        raise InputError(f"there is no check '{name}'; there are {allowed}")
 
 
 @si.checked_numbers

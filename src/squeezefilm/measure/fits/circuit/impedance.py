@@ -26,7 +26,6 @@ from squeezefilm.measure.fits.estimate import (
     observed,
 )
 from squeezefilm.measure.recordings.kinds import ImpedanceSweep
-from squeezefilm.physics.plate.circuit import EquivalentCircuit
 
 _WORDS = {
     "coupling_loss": "a loss of the coupling",
@@ -87,19 +86,6 @@ class ImpedanceFit(FitResult):
     def strongest(self) -> Branch:
         """The branch with the largest motional capacitance."""
         return self.branches[self.main]
-
-    @property
-    def circuit(self) -> EquivalentCircuit:
-        """C0 without its loss, and the strongest branch."""
-        branch = self.strongest
-        return EquivalentCircuit(
-            frequency=branch.series_resonance.value,
-            quality_factor=branch.quality_factor.value,
-            static_capacitance=self.static_capacitance.value,
-            motional_resistance=branch.motional_resistance.value,
-            motional_inductance=branch.motional_inductance.value,
-            motional_capacitance=branch.motional_capacitance.value,
-        )
 
     @si.checked_numbers
     def admittance(self, frequency: Annotated[si.HertzArray, si.Above(0.0)]) -> si.ComplexArray:

@@ -95,11 +95,6 @@ class FingerpadDynamics:
         rise = normal_force**0.35
         return cls(1480.0 * rise, 1.78 * rise, 0.20e-3 * normal_force**0.26)
 
-    @property
-    def resonance_frequency(self) -> si.Hertz:
-        """Undamped resonance frequency of the sliding skin (Hz)."""
-        return math.sqrt(self.stiffness / self.mass) / (2 * math.pi)
-
 
 @si.closed_form(positive="stiffness mass", nonnegative="damping frequency")
 def skin_displacement_per_friction(
@@ -247,11 +242,6 @@ class Finger:
     def mean_pressure(self) -> si.Pascal:
         """P_f = F / l0² (paper eq 13)."""
         return self.normal_force / self.contact_length**2
-
-    @property
-    def ridge_height(self) -> si.Metre:
-        """Height from groove to crest, 2 h_e."""
-        return 2 * self.ridge_amplitude
 
     @si.checked_numbers
     def contact_area(self, normal_force: si.Newton | None = None) -> si.SquareMetre:

@@ -42,9 +42,6 @@ from squeezefilm.physics.film.periodic.resolution import (
 )
 from squeezefilm.physics.film.periodic.small import fill_small
 
-MAX_EXCURSION = 0.99
-"""Largest excursion: above, the gap all but closes, and the error is no longer measured."""
-
 ROUNDS = 12
 _CHUNK = 4096
 
