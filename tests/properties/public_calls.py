@@ -57,7 +57,7 @@ NOT_CALLED = {
     actuators.motor.averaged.AveragedMotor actuators.motor.in_time.MotorMotion
     actuators.motor.in_time.Motion actuators.motor.plane.PlaneMotion
     actuators.motor.curves.MotorMap
-    actuators.motor.closed_loop.TrackedForce actuators.motor.closed_loop.TrackedForce.mean_error
+    actuators.motor.closed_loop.TrackedForce
     actuators.motor.assembled.FaceMode
     physics.plate.electronics.AmplifierPart
     physics.plate.electronics.ElectricalLoad physics.plate.electronics.RingAdmittance

@@ -12,7 +12,6 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Deframer, State
-from squeezefilm.instruments.twin import plant_kernel as k
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.plant import Plant
@@ -122,7 +121,7 @@ def test_amplitude_friction_and_force_stay_where_physics_lets_them(seed: int) ->
         surface.friction_coefficient, surface.roughness, 0.5
     )
     assert np.all(np.abs(truth.column("tangential_force_N")) <= most * (1 + 1e-9) + 1e-12)
-    assert device.plant._n[k.FAILED] == device.plant._n[k.BEYOND] == 0
+    assert device.plant.counts.failed == device.plant.counts.beyond == 0
 
 
 @pytest.mark.slow
@@ -171,7 +170,7 @@ def test_the_sensor_reports_as_its_model_says() -> None:
     error = seen[:, 1] - np.interp(seen[:, 0] * 1e-6, rows[:, 0], rows[:, 1])
     assert np.std(error) == pytest.approx(20e-6, rel=0.15)
     assert abs(np.mean(error)) < 5 * 20e-6 / np.sqrt(error.size)
-    assert plant._n[k.LOST_SAMPLES] / 700 == pytest.approx(0.1, abs=0.05)
+    assert plant.counts.lost / 700 == pytest.approx(0.1, abs=0.05)
 
 
 @pytest.mark.parametrize("kind", ["motional_current", "sensing_patch"])

@@ -14,7 +14,7 @@ from squeezefilm.core.drive_limits import Limits
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import State
-from squeezefilm.instruments.twin import plant, plant_kernel
+from squeezefilm.instruments.twin import plant
 from squeezefilm.instruments.twin.device import TwinDevice
 from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.settings import PlateDrift, TwinSettings
@@ -95,7 +95,7 @@ def test_a_session_across_the_wrap_of_the_clock_is_like_any_other(
     assert later[:, 4].max() == 140.0
     again = sessions.play(wrap + CYCLE)
     assert_same(first, again)
-    assert device.plant._n[plant_kernel.FAILED] == 0
+    assert device.plant.counts.failed == 0
 
 
 @pytest.mark.parametrize(
@@ -123,7 +123,7 @@ def test_hours_end_as_they_began(hours: int, monkeypatch: pytest.MonkeyPatch) ->
     tracemalloc.stop()
     assert after - before < 200_000
     assert device.now > hours * hour
-    assert device.plant._n[plant_kernel.FAILED] == 0
+    assert device.plant.counts.failed == 0
     # The carrier's frequency and the plate's are what they were, to the last bit.
     fresh = twin(1e-3)
     fresh.advance(SECOND)

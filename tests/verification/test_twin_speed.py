@@ -104,7 +104,7 @@ def test_a_stroke_is_what_slide_makes_of_the_same_bone_and_amplitude() -> None:
     assert np.sqrt(np.mean(off**2)) < 2e-4
     assert off.max() < 2e-3
     assert np.ptp(pace) > 0.1
-    assert plant._n[k.FAILED] == plant._n[k.BEYOND] == 0
+    assert plant.counts.failed == plant.counts.beyond == 0
 
 
 def test_with_the_same_table_both_marches_close_in_with_the_step() -> None:
@@ -130,7 +130,7 @@ def resting(of: WorkingPoint, level: int) -> Plant:
     path = FingerPath(times, np.array([0.0, 5e-3, 5e-3]), np.zeros(3))
     plant = Plant(of, CALM, Hand(path, normal_force=FORCE, begin=0.0))
     plant.advance(500_000, level, carrier())
-    assert plant._n[k.FAILED] == 0
+    assert plant.counts.failed == 0
     return plant
 
 
@@ -142,7 +142,7 @@ def stretched(plant: Plant, by: float, level: int, steps: int) -> np.ndarray:
     for _ in range(steps):
         plant.advance(plant.now + 50, level, carrier())
         found.append(float(plant._s[k.SKIN_X]) - rest)
-    assert plant._n[k.FAILED] == 0
+    assert plant.counts.failed == 0
     return np.array(found)
 
 

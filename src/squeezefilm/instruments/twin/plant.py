@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import NamedTuple, TextIO
@@ -32,6 +33,19 @@ _PICKUP_RE, _PICKUP_IM = 11, 12  # streams of noise
 _BUFFER = 2000  # rows between two visits to Python
 KEPT = 200_000
 """Rows of the truth that stay in memory, the newest."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlantCounts:
+    """Numbers of steps of the plant, since it began, in which something was not as wanted.
+
+    `beyond`: the amplitude left the tables. `failed`: the skin chattered without end. `lost`:
+    sensor samples.
+    """
+
+    beyond: int
+    failed: int
+    lost: int
 
 
 class TruthRecord:
@@ -209,6 +223,11 @@ class Plant:
     def tangential_force(self) -> si.Newton:
         """Force of friction between skin and surface (N), positive while the skin goes to +x."""
         return float(self._s[k.FRICTION])
+
+    @property
+    def counts(self) -> PlantCounts:
+        """Numbers of steps in which something was not as wanted."""
+        return PlantCounts(*(int(self._n[i]) for i in (k.BEYOND, k.FAILED, k.LOST_SAMPLES)))
 
     def sensed(self) -> tuple[int, int, bool]:
         """Reading of the device's position sensor now: x and y (µm), and contact."""

@@ -151,7 +151,7 @@ class TwinSettings:
         truth_period: between rows of the truth (s): a whole number of ticks.
         highest_amplitude_ratio: friction and load are tabulated up to this multiple of what the
             display's own voltage gives without a finger (1); above 0. Beyond it the last values
-            hold.
+            hold, and are counted.
         drift, amplifier, arm, sensor, pickup: see there.
         dry: static friction and its dependence on speed and load.
         friction_lag: time constant with which friction follows the amplitude (s); 0 for at once.
