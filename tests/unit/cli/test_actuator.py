@@ -68,11 +68,11 @@ def test_an_actuator_is_analysed_shown_and_written_where_asked(
 @pytest.mark.parametrize(
     ("name", "kind", "report"),
     [
-        ("biet2008-motor", "motor", (motor.motor_rows, motor.motor_figures)),
+        ("biet2008-motor", "motor", (motor.motor_rows, motor.MOTOR_FIGURES)),
         (
             "biet2008-skin-stretch",
             "skin_stretch",
-            (skin_stretch.skin_stretch_rows, skin_stretch.skin_stretch_figures),
+            (skin_stretch.skin_stretch_rows, skin_stretch.SKIN_STRETCH_FIGURES),
         ),
     ],
 )

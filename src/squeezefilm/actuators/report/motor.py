@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import functools
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from squeezefilm.actuators.analysis.drawn import with_interval
 from squeezefilm.actuators.analysis.motor import MotorAnalysis
-from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, Row, V, W, shown
+from squeezefilm.core.kit.page_style import FigureOf
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from squeezefilm.actuators.motor.averaged import AveragedMotor
-    from squeezefilm.actuators.motor.closed_loop import TrackedForce
-    from squeezefilm.actuators.motor.curves import MotorMap
-    from squeezefilm.actuators.motor.plane import PlaneMotion
 
 MOTOR_ANSWERS = {"stall_force_N": "stall force", "no_load_speed_m_per_s": "speed without a load"}
 
@@ -90,39 +86,11 @@ def motor_rows(analysis: MotorAnalysis) -> list[Row]:
     ]
 
 
-def motor_figures(analysis: MotorAnalysis) -> dict[str, tuple[str, Figure]]:
-    """The figures of all that was computed, by file name: heading and figure."""
-    figures = {
-        "speed-force": (
-            "Speed against force",
-            speed_force_figure((analysis.curve, analysis.resolved)),
-        ),
-        "map": (
-            "Preload and amplitude",
-            map_figure(
-                (analysis.map, analysis.motor.motor.cradle.preload, analysis.rest.amplitude)
-            ),
-        ),
-        "frequency-and-place": (
-            "Frequency, and the place of the feet",
-            tuning_figure(analysis),
-        ),
-    }
-    if analysis.plane is not None:
-        figures["plane"] = ("Free in the plane", plane_figure(analysis.plane))
-    if analysis.tracked is not None:
-        figures["force-step"] = (
-            "A force that is commanded",
-            force_step_figure(analysis.tracked),
-        )
-    return figures
-
-
 @style.drawn
-def speed_force_figure(known: tuple[tuple[AveragedMotor, ...], si.FloatArray]) -> Figure:
+def speed_force_figure(analysis: MotorAnalysis) -> Figure:
     """Speed and efficiency over the force, from rest to no load: the averaged motor, and the speeds
     and forces of the one resolved in time."""
-    curve, resolved = known
+    curve, resolved = analysis.curve, analysis.resolved
     figure = style.new_figure(
         f"Stalls at {curve[0].force:.3g} N, runs {1e3 * curve[-1].speed:.3g} mm/s without a load",
         "line: averaged; crosses: resolved in time, the slider moved at that speed",
@@ -139,8 +107,10 @@ def speed_force_figure(known: tuple[tuple[AveragedMotor, ...], si.FloatArray]) -
 
 
 @style.drawn
-def force_step_figure(tracked: TrackedForce) -> Figure:
+def force_step_figure(analysis: MotorAnalysis) -> Figure:
     """A commanded force and what came of it, and the voltage that the law took."""
+    tracked = analysis.tracked
+    assert tracked is not None, "no force was commanded"
     error = 100 * (tracked.force[-1] / tracked.wanted[-1] - 1)
     figure = style.new_figure(
         f"The force law ends {abs(error):.2g} % from the force that is wanted",
@@ -161,10 +131,10 @@ def force_step_figure(tracked: TrackedForce) -> Figure:
 
 
 @style.drawn
-def map_figure(known: tuple[MotorMap, si.Newton, si.Metre]) -> Figure:
+def map_figure(analysis: MotorAnalysis) -> Figure:
     """Stall force, no-load speed and efficiency over preload and amplitude, white where it stalls;
-    a mark at the preload (N) and amplitude (m) that the motor has."""
-    grid, preload, amplitude = known
+    a mark at the preload and amplitude that the motor has."""
+    grid, preload = analysis.map, analysis.motor.motor.cradle.preload
     figure = style.new_figure(
         "Preload and amplitude",
         "averaged model; white: the feet never leave, the motor stalls; mark: the motor as it is",
@@ -180,16 +150,17 @@ def map_figure(known: tuple[MotorMap, si.Newton, si.Metre]) -> Figure:
         drawn = axes.pcolormesh(x, y, np.ma.masked_invalid(values), shading="nearest")
         figure.colorbar(drawn, ax=axes)
         axes.set_title(label, fontsize="medium")
-        style.mark(axes, 1e6 * amplitude, preload, 6)
+        style.mark(axes, 1e6 * analysis.rest.amplitude, preload, 6)
         axes.set(xlabel="amplitude (µm)", yscale="log")
-        style.plain_log(axes.yaxis)
     figure.axes[0].set_ylabel("preload (N)")
     return figure
 
 
 @style.drawn
-def plane_figure(motion: PlaneMotion) -> Figure:
+def plane_figure(analysis: MotorAnalysis) -> Figure:
     """The way and the velocity of a slider that is free in the plane, from rest on."""
+    motion = analysis.plane
+    assert motion is not None, "it was not asked for"
     along, sideways = motion.final_velocity.tolist()
     figure = style.new_figure(
         f"Free in the plane it ends at {1e3 * along:.3g} mm/s along and {1e3 * sideways:.3g} mm/s "
@@ -233,3 +204,18 @@ def tuning_figure(analysis: MotorAnalysis) -> Figure:
     right.set(xlabel="shift of the feet along the wave (mm)", ylabel="force at rest (N)")
     style.legend_below(right)
     return figure
+
+
+MOTOR_FIGURES = (
+    FigureOf("speed-force", "Speed against force", speed_force_figure),
+    FigureOf("map", "Preload and amplitude", map_figure),
+    FigureOf("frequency-and-place", "Frequency, and the place of the feet", tuning_figure),
+    FigureOf("plane", "Free in the plane", plane_figure, has=attrgetter("plane")),
+    FigureOf(
+        "force-step",
+        "A force that is commanded",
+        force_step_figure,
+        has=attrgetter("tracked"),
+    ),
+)
+"""The figures of all that was computed, in the order of the page."""

@@ -13,10 +13,10 @@ from squeezefilm.actuators.analysis.motor import MotorAnalysis, analyze_motor
 from squeezefilm.actuators.analysis.skin_stretch import SkinStretchAnalysis, analyze_skin_stretch
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.motor.description import MotorDescription
-from squeezefilm.actuators.report.motor import MOTOR_ANSWERS, motor_figures, motor_rows
+from squeezefilm.actuators.report.motor import MOTOR_ANSWERS, MOTOR_FIGURES, motor_rows
 from squeezefilm.actuators.report.skin_stretch import (
     SKIN_STRETCH_ANSWERS,
-    skin_stretch_figures,
+    SKIN_STRETCH_FIGURES,
     skin_stretch_rows,
 )
 from squeezefilm.core import quantities as si
@@ -24,9 +24,10 @@ from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import Row
 from squeezefilm.core.kit.page_style import (
-    Pictures,
+    FigureOf,
     as_html,
     bullets,
+    drawn_figures,
     page,
     picture_files,
     picture_sections,
@@ -50,12 +51,12 @@ def assumed_words(provenance: Mapping[str, Provenance]) -> str:
 
 
 class AnalyzedActuator(NamedTuple):
-    """An actuator's `analysis` and what is shown of it: key numbers, figures (by file name: heading
-    and figure), and in words, by name, the `answers` whose certainty the page tells."""
+    """An actuator's `analysis` and what is shown of it: key numbers, figures, and in words, by
+    name, the `answers` whose certainty the page tells."""
 
     analysis: MotorAnalysis | SkinStretchAnalysis
     rows: Callable[[Any], list[Row]]
-    figures: Callable[[Any], Pictures]
+    figures: tuple[FigureOf, ...]
     answers: Mapping[str, str]
 
     def show(self) -> None:
@@ -70,7 +71,7 @@ class AnalyzedActuator(NamedTuple):
         """Write result.json, a PNG of each figure, and report.html into `folder`; the path of the
         page. Raises `InputError` where the folder cannot be written to."""
         folder, described = require_folder(folder), self.analysis.described
-        summary, figures = self.analysis.summary(), self.figures(self.analysis)
+        summary, figures = self.analysis.summary(), drawn_figures(self.figures, self.analysis)
         stamped_with = stamp(summary)
         files = picture_files(figures)
         files["result.json"] = json_text(summary | {"stamp": stamped_with})
@@ -95,9 +96,9 @@ def analyze_actuator(
     described = load_actuator(target)
     if isinstance(described, MotorDescription):
         of_motor = analyze_motor(described, voltage=voltage, progress=progress)
-        return AnalyzedActuator(of_motor, motor_rows, motor_figures, MOTOR_ANSWERS)
+        return AnalyzedActuator(of_motor, motor_rows, MOTOR_FIGURES, MOTOR_ANSWERS)
     of_array = analyze_skin_stretch(described, voltage=voltage, progress=progress)
-    return AnalyzedActuator(of_array, skin_stretch_rows, skin_stretch_figures, SKIN_STRETCH_ANSWERS)
+    return AnalyzedActuator(of_array, skin_stretch_rows, SKIN_STRETCH_FIGURES, SKIN_STRETCH_ANSWERS)
 
 
 def _sources(provenance: Mapping[str, Provenance]) -> str:

@@ -17,6 +17,7 @@ from squeezefilm.actuators.skin_stretch.bimorph import (
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.numbers import HZ, M, N, Row, V, W, shown
+from squeezefilm.core.kit.page_style import FigureOf
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -98,15 +99,6 @@ def skin_stretch_rows(analysis: SkinStretchAnalysis) -> list[Row]:
     ]
 
 
-def skin_stretch_figures(analysis: SkinStretchAnalysis) -> dict[str, tuple[str, Figure]]:
-    """The figures, by file name: heading and figure."""
-    return {
-        "load-line": ("One actuator against the skin", load_line_figure(analysis)),
-        "strain": ("The skin under the array", strain_figure(analysis)),
-        "crosstalk": ("Crosstalk and seat", crosstalk_figure(analysis)),
-    }
-
-
 _DRAWN_TIMES = 10
 
 
@@ -134,7 +126,6 @@ def load_line_figure(analysis: SkinStretchAnalysis) -> Figure:
     right.plot(analysis.frequencies, um * np.abs(analysis.motion), color=style.BLUE)
     right.axvline(tip.bandwidth, color=style.ORANGE, lw=1, label="within 3 dB up to here")
     right.set(xlabel="frequency (Hz)", ylabel="deflection on the skin (µm)", xscale="log")
-    style.plain_log(right.xaxis)
     style.legend_below(right)
     return figure
 
@@ -227,3 +218,10 @@ def crosstalk_figure(analysis: SkinStretchAnalysis) -> Figure:
     right.set(xlabel="along the finger (mm)", ylabel="across (mm)", aspect="equal")
     right.set_title("finger's force on each contactor (mN)", fontsize="medium")
     return figure
+
+
+SKIN_STRETCH_FIGURES = (
+    FigureOf("load-line", "One actuator against the skin", load_line_figure),
+    FigureOf("strain", "The skin under the array", strain_figure),
+    FigureOf("crosstalk", "Crosstalk and seat", crosstalk_figure),
+)

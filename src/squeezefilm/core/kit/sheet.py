@@ -40,20 +40,19 @@ _ORDINATE = 6
 
 def sheet_figure(drawing: Drawing) -> Figure:
     """The drawing on its paper, to scale where it is printed at full size."""
-    return _figure((drawing, (0.0, 0.0, *drawing.paper)))
+    return _figure(drawing, (0.0, 0.0, *drawing.paper))
 
 
 def views_figure(drawing: Drawing) -> Figure:
     """Figure of a drawing's views only, for a page that has tables and notes of its own."""
-    return _figure((drawing, drawing.views))
+    return _figure(drawing, drawing.views)
 
 
 @style.drawn
-def _figure(shown: tuple[Drawing, tuple[float, float, float, float]]) -> Figure:
+def _figure(drawing: Drawing, window: tuple[float, float, float, float]) -> Figure:
     """A window (left, bottom, right, top in m of paper) of a drawing."""
     from matplotlib.figure import Figure
 
-    drawing, window = shown
     # The figure's axes are in millimetres of the thing, as the document is.
     left, bottom, right, top = (1e3 * edge for edge in window)
     figure = Figure(figsize=((right - left) / _INCH, (top - bottom) / _INCH))

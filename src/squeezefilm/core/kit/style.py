@@ -12,10 +12,10 @@ import io
 import re
 import textwrap
 import unicodedata
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from html import escape
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec
 
 import numpy as np
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from squeezefilm.core.quantities import FloatArray
 
-_A = TypeVar("_A")
+_P = ParamSpec("_P")
 
 WIDTH = 9.6
 """Width of every figure in inches; on a page 1040 px wide, 10.5 pt then show as 15 px."""
@@ -136,13 +136,17 @@ def rc() -> AbstractContextManager[None]:
     return matplotlib.rc_context(parameters)
 
 
-def drawn(draw: Callable[[_A], Figure]) -> Callable[[_A], Figure]:
+def drawn(draw: Callable[_P, Figure]) -> Callable[_P, Figure]:
     """A function that draws a figure, wrapped so that it draws in this style."""
 
     @functools.wraps(draw)
-    def styled(subject: _A) -> Figure:
+    def styled(*subject: _P.args, **how: _P.kwargs) -> Figure:
         with rc():
-            return draw(subject)
+            figure = draw(*subject, **how)
+            for axes in figure.axes:
+                _plain_log(axes.xaxis)
+                _plain_log(axes.yaxis)
+        return figure
 
     return styled
 
@@ -165,20 +169,33 @@ def new_figure(title: str, model: str, height: float) -> Figure:
     return figure
 
 
+def new_axes(title: str, model: str, height: float) -> tuple[Figure, Axes]:
+    """A `new_figure`, and its only axes."""
+    figure = new_figure(title, model, height)
+    return figure, figure.subplots()
+
+
+def panels(figure: Figure, count: int, columns: int) -> list[Axes]:
+    """So many axes, row by row; what is left of the last row stays empty."""
+    cells = figure.subplots(-(-count // columns), columns, squeeze=False).ravel()
+    for spare in cells[count:]:
+        spare.set_axis_off()
+    return list(cells[:count])
+
+
 def message_figure(title: str, message: str) -> Figure:
     """A figure that says why there is nothing to draw."""
-    figure = new_figure(title, "none", 1.9)
-    axes = figure.subplots()
+    figure, axes = new_axes(title, "none", 1.9)
     axes.set_axis_off()
     axes.text(0.0, 0.5, textwrap.fill(message, 100), va="center", transform=axes.transAxes)
     return figure
 
 
-def plain_log(*axes: Axis) -> None:
-    """Plain numbers along logarithmic axes: the style reads no mathematics in texts."""
-    from matplotlib.ticker import FuncFormatter, NullFormatter
+def _plain_log(axis: Axis) -> None:
+    """Plain numbers along a logarithmic axis: the style reads no mathematics in texts."""
+    from matplotlib.ticker import FuncFormatter, LogFormatter, NullFormatter
 
-    for axis in axes:
+    if isinstance(axis.get_major_formatter(), LogFormatter):
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
 
@@ -189,18 +206,10 @@ def friction_axes(axes: Axes, right: float | None = None, top: float = 1.04) -> 
     axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="relative friction µ′/µ")
 
 
-def bare(axes: Axes) -> None:
-    """Axes of a table of cells: no grid, no ticks, no spines."""
-    axes.grid(visible=False)
-    axes.tick_params(length=0)
-    axes.spines[:].set_visible(False)
-
-
-def estimates(axes: Axes, values: Iterable[tuple[float, float, float]]) -> None:
-    """A point with its interval at 0, 1, …: value, low, high."""
-    for x, (value, low, high) in enumerate(values):
-        axes.plot([x, x], [low, high], **INTERVAL)
-        axes.plot([x], [value], **ESTIMATE)
+def estimate(axes: Axes, x: float, value: float, low: float, high: float, **look: Any) -> None:
+    """A point with its interval; one that is not known is no line."""
+    axes.plot([x, x], [low, high], **INTERVAL)
+    axes.plot([x], [value], **ESTIMATE | look)
 
 
 def seen_from_above(
@@ -246,6 +255,7 @@ def legend_beside(axes: Axes) -> None:
 
 def legend_in(strip: Axes, drawn_in: Axes, columns: int = 3) -> None:
     """The legend of some axes in an empty strip of the figure."""
+    strip.set_axis_off()
     handles, labels = drawn_in.get_legend_handles_labels()
     strip.legend(handles, labels, loc="center", ncols=columns, frameon=False)
 
@@ -279,26 +289,6 @@ def micrometres_beside(axes: Axes, voltage: float, label: str) -> None:
         "right", functions=(lambda v: np.multiply(v, micro), lambda v: np.divide(v, micro))
     )
     right.set_ylabel(label)
-
-
-def pairs_of_axes(figure: Figure) -> tuple[Any, Axes]:
-    """Two rows of axes, a wide and a narrow one in each, and an empty strip for their legend.
-
-    The strip is an axes of its own, since the layout gives a figure's legend the same place as
-    the small print.
-    """
-    grid = figure.add_gridspec(3, 2, width_ratios=[2.2, 1], height_ratios=[1, 1, 0.09])
-    left = figure.add_subplot(grid[0, 0])
-    right = figure.add_subplot(grid[0, 1], sharey=left)
-    below = figure.add_subplot(grid[1, 0], sharex=left)
-    last = figure.add_subplot(grid[1, 1], sharex=right, sharey=below)
-    for axes in (left, right):
-        axes.tick_params(labelbottom=False)
-    for axes in (right, last):
-        axes.tick_params(labelleft=False)
-    strip = figure.add_subplot(grid[2, :])
-    strip.set_axis_off()
-    return ((left, right), (below, last)), strip
 
 
 @functools.cache

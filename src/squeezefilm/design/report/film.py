@@ -47,7 +47,6 @@ def film_map(films: FilmMap) -> Figure:
     right.set_title("dashed: 90 %")
     for axes in (left, right):
         axes.set(xscale="log", xlabel="squeeze number σ")
-        style.plain_log(axes.xaxis)
     left.set(ylabel="excursion ε = amplitude over mean gap")
     return figure
 

@@ -46,13 +46,12 @@ def models(result: FrictionAnalysis) -> Figure:
     """Every model's µ′/µ against amplitude, the working point with its interval."""
     curves, p, unsure = result.curves, result.prediction, result.uncertainty
     said = f"µ′/µ = {p.relative_friction:.2f}" if unsure is None else unsure.sentence
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         f"At {shown(p.vibration_amplitude, M, 3)} on {style.plain(p.surface.name, 20)} {said}: the "
         "model decides; two are fitted to measured curves",
         f"as in the legend; {shown(p.normal_force, N)}",
         5.4,
     )
-    axes = figure.subplots()
     for curve in curves:
         color, dashes, name = look_of(curve.model)
         name += f", at {shown(p.speed, SPEED)}" if MODEL_KINDS[curve.model].fitted else ""
@@ -77,10 +76,9 @@ def predictions(every: Sequence[Prediction]) -> Figure:
     if len(every) > 1:
         frictions = [prediction.relative_friction for prediction in every]
         said = f"{len(every)} predictions: µ′/µ from {min(frictions):.2f} to {max(frictions):.2f}"
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         said, ", ".join(dict.fromkeys(prediction.model for prediction in every)), 4.4
     )
-    axes = figure.subplots()
     reach: dict[FrictionLaw, float] = {}
     for prediction in every:
         reach[prediction.law] = max(
@@ -100,14 +98,13 @@ def predictions(every: Sequence[Prediction]) -> Figure:
 def friction_map(result: FrictionAnalysis) -> Figure:
     """µ′/µ over amplitude and force, the working point marked."""
     grid, p = result.map, result.prediction
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         f"µ′/µ is {p.relative_friction:.2f} at {shown(p.vibration_amplitude, M, 3)} and "
         f"{shown(p.normal_force, N, 3)}; over these ranges it goes from "
         f"{np.nanmin(grid.relative_friction):.2f} to {np.nanmax(grid.relative_friction):.2f}",
         grid.model,
         4.8,
     )
-    axes = figure.subplots()
     levels = np.linspace(0, 1, 11)
     surface = 1e6 * grid.amplitude, grid.normal_force, grid.relative_friction
     filled = axes.contourf(*surface, levels=levels, cmap="cividis")
@@ -118,7 +115,6 @@ def friction_map(result: FrictionAnalysis) -> Figure:
     figure.colorbar(filled, ax=axes, label="relative friction µ′/µ")
     axes.set(yscale="log", xlabel="vibration amplitude, zero-to-peak (µm)")
     axes.set(ylabel="normal force (N)")
-    style.plain_log(axes.yaxis)
     style.legend_below(axes)
     return figure
 
@@ -184,13 +180,12 @@ def ripple(result: FrictionAnalysis) -> Figure:
     half = wave.half_wavelength
     x = np.concatenate([wave.position, wave.position + half, [2 * half]])
     y = np.concatenate([wave.relative_friction] * 2 + [wave.relative_friction[:1]])
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         f"The wave itself is felt: {100 * wave.ripple:.2g} % of ripple every "
         f"{shown(half, M, 3)} under a contact of {shown(wave.contact_length, M, 3)}",
         f"{result.prediction.model}, ridge by ridge",
         4.0,
     )
-    axes = figure.subplots()
     axes.plot(1e3 * x, y, color=style.BLUE, label="relative friction of the whole pad")
     axes.axhline(wave.mean, **style.REFERENCE, label=f"mean {wave.mean:.2f}")
     for node in (0.5 * half, 1.5 * half):

@@ -112,13 +112,12 @@ def way(result: RenderAnalysis) -> Figure:
     low = (float(finger.x.min()) - margin, centre - 0.5 * across - margin)
     high = (float(finger.x.max()) + margin, centre + 0.5 * across + margin)
     speed = float(np.mean(np.abs(finger.speed)))
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         f"{shown(float(np.sum(np.abs(np.diff(finger.way)))), M, 3)} of finger motion over "
         f"{style.plain(result.played.name, 40)}, {1e3 * speed:.3g} mm/s on average",
         "the texture as asked for, at the mean speed",
         4.2,
     )
-    axes = figure.subplots()
     rows = max(2, round(_MAP_POINTS * (high[1] - low[1]) / (high[0] - low[0])))
     x, y = np.linspace(low[0], high[0], _MAP_POINTS), np.linspace(low[1], high[1], rows)
     values = result.texture.texture(x[None, :], y[:, None], speed, 0.0)

@@ -58,8 +58,7 @@ def friction(session: PlayedSession) -> Figure:
         if math.isfinite(fidelity.lag):
             word = "late" if fidelity.lag >= 0 else "early"
             title += f", {1e3 * abs(fidelity.lag):.2f} mm {word}"
-    figure = style.new_figure(title, f"{way.source}; friction by the display's law", 4.2)
-    axes = figure.subplots()
+    figure, axes = style.new_axes(title, f"{way.source}; friction by the display's law", 4.2)
     part = _middle_pass(way)
     order = part[np.argsort(way.x[part])]
     x, wanted = 1e3 * way.x[order], way.relative_friction_wanted[order]
@@ -77,24 +76,13 @@ def friction(session: PlayedSession) -> Figure:
 
 
 def _middle_pass(way: PlayedWay) -> si.FloatArray:
-    """Indices of the one-way pass in the middle of a session."""
-    turns = _turns(way)
-    middle = int(np.searchsorted(turns, way.x.size // 2))
-    first = turns[middle - 1] if 0 < middle <= turns.size else 0
-    last = turns[middle] if middle < turns.size else way.x.size - 1
-    return np.arange(first, last + 1)
+    """Indices of the one-way pass in the middle of a session, between moves of more than 1 mm."""
+    from scipy.signal import find_peaks
 
-
-def _turns(way: PlayedWay) -> si.FloatArray:
-    """Places where the finger turns: the ends of a lazy follower's moves of more than 1 mm."""
-    turns, extreme, at, rising = [], float(way.x[0]), 0, True
-    for k, x in enumerate(way.x.tolist()):
-        if (x >= extreme) if rising else (x <= extreme):
-            extreme, at = x, k
-        elif abs(x - extreme) > 1e-3:
-            turns.append(at)
-            extreme, at, rising = x, k, not rising
-    return np.array(turns, dtype=np.int64)
+    turns = [find_peaks(x, prominence=1e-3)[0] for x in (way.x, -way.x)]
+    ends = np.sort(np.concatenate([[0], *turns, [way.x.size - 1]]))
+    middle = int(np.searchsorted(ends, way.x.size // 2))
+    return np.arange(ends[middle - 1], ends[middle] + 1)
 
 
 @style.drawn
@@ -167,7 +155,6 @@ def lateness(session: PlayedSession) -> Figure:
     left.axvline(1e6 / rate, **style.REFERENCE, label="a period")
     left.set(xscale="log", yscale="log", xlabel="lateness (µs)", ylabel="ticks")
     left.set_ylim(0.7, None)
-    style.plain_log(left.xaxis, left.yaxis)
     left.legend(loc="upper left", frameon=False)
     lag = session.trace.rows[:, column.LAG]
     lag = 1e3 * lag[np.isfinite(lag)]

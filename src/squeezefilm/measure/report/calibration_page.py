@@ -60,10 +60,9 @@ def friction_figure(calibrated: FolderCalibration) -> Figure:
             f"µ′/µ is {span(*after.interval)} where it was {span(*before.interval)}: "
             f"{si.percent(after.width / before.width)} of that interval is left"
         )
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         title, f"{si.percent(LEVEL)} intervals at the display's own voltage, force and speed", 2.5
     )
-    axes = figure.subplots()
     for row, (_, interval) in enumerate(known):
         color = style.BLUE if interval is after else style.MUTED
         axes.plot(interval.interval, [row, row], color=color, lw=4.5, solid_capstyle="butt")

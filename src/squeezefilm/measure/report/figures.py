@@ -49,7 +49,6 @@ def _impedance(figure: Figure, sweep: kinds.ImpedanceSweep) -> None:
     upper, lower = _two(figure, ("|Z| (ohm)", phase, "frequency (kHz)"))
     z, f = 1 / sweep.admittance, sweep.frequency / 1e3
     upper.semilogy(f, np.abs(z), **_POINTS)
-    style.plain_log(upper.yaxis)
     lower.plot(f, np.degrees(np.unwrap(np.angle(z))), **_POINTS)
 
 
@@ -178,6 +177,8 @@ def _detection(figure: Figure, measured: kinds.DetectionThresholds) -> None:
     words = ("spatial period (mm)", "amplitude of the friction coefficient detected")
     _scatter(figure, 1e3 * measured.period, measured.amplitude, words)
     figure.axes[0].set(xscale="log", yscale="log")
+    # Zero, where the others begin, lies on no such scale.
+    figure.axes[0].autoscale()
 
 
 def _signal(axes: Axes, time: si.SecondArray, values: si.FloatArray) -> None:

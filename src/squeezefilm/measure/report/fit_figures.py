@@ -32,14 +32,6 @@ class Modelled(NamedTuple):
     relative: bool = False
 
 
-class _Subject(NamedTuple):
-    """Subject of a picture."""
-
-    check: RecordingCheck
-    fit: Any
-    title: str
-
-
 # By the name of a fit's abscissa: what it and the fit's `model` and `residual` are shown in.
 _OVER = {
     "frequency": ("frequency (kHz)", 1e-3, "amplitude (nm/V)", 1e9),
@@ -55,12 +47,12 @@ def fit_figure(check: RecordingCheck, fit: FitResult) -> Figure | None:
         return comparison_figure(fit)
     name = style.plain(check.recording.told.name, 60)
     word = "an adequate fit" if fit.adequacy.adequate else "the fit is NOT adequate"
-    subject = _Subject(check, fit, f"{name}: {word}")
+    title = f"{name}: {word}"
     own = _OWN.get(type(check.recording))
     if own is not None:
-        return own(subject)
+        return own(title, check.recording, fit)
     compared = modelled(check, fit)
-    return None if compared is None else _over_abscissa((subject, compared))
+    return None if compared is None else _over_abscissa(title, compared, fit)
 
 
 def modelled(check: RecordingCheck, fit: FitResult) -> Modelled | None:
@@ -95,8 +87,7 @@ def _admittances(sweep: kinds.ImpedanceSweep, model: si.ComplexArray) -> Modelle
 
 
 @style.drawn
-def _over_abscissa(drawn: tuple[_Subject, Modelled]) -> Figure:
-    (_, fit, title), compared = drawn
+def _over_abscissa(title: str, compared: Modelled, fit: FitResult) -> Figure:
     figure = style.new_figure(title, fit.adequacy.sentence, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     signed = not np.iscomplexobj(compared.data) or not np.any(np.imag(compared.data))
@@ -114,7 +105,6 @@ def _over_abscissa(drawn: tuple[_Subject, Modelled]) -> Figure:
     label = "residual" if signed else "|residual|"
     if compared.relative:
         upper.set_yscale("log")
-        style.plain_log(upper.yaxis)
         left, label = 100 * left / np.abs(compared.data), f"{label} (%)"
     lower.plot(compared.x, left, ".", color=style.PURPLE, ms=4)
     lower.axhline(0, **style.ZERO)
@@ -123,10 +113,8 @@ def _over_abscissa(drawn: tuple[_Subject, Modelled]) -> Figure:
 
 
 @style.drawn
-def _grid(subject: _Subject) -> Figure:
+def _grid(title: str, scan: kinds.GridScan, fit: Any) -> Figure:
     """A scan, and what its shapes leave of it, in the same colours."""
-    check, fit, title = subject
-    scan = cast(kinds.GridScan, check.recording)
     figure = style.new_figure(f"{title}, most like {fit.label}", fit.adequacy.sentence, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True)
     known = np.isfinite(scan.displacement)
@@ -140,9 +128,8 @@ def _grid(subject: _Subject) -> Figure:
 
 
 @style.drawn
-def _raw(subject: _Subject) -> Figure:
+def _raw(title: str, _: kinds.RawSignals, fit: Any) -> Figure:
     """The response between two signals with its standard error, and its coherence."""
-    _, fit, title = subject
     figure = style.new_figure(title, fit.adequacy.sentence, 5.6)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     f, h = fit.response.frequency / 1e3, 1e9 * np.abs(fit.response.displacement_per_volt)
@@ -158,20 +145,17 @@ def _raw(subject: _Subject) -> Figure:
 
 
 @style.drawn
-def _bench(subject: _Subject) -> Figure:
+def _bench(title: str, _: kinds.FrictionBench, fit: Any) -> Figure:
     """µ at each amplitude with its interval."""
-    _, fit, title = subject
-    figure = style.new_figure(title, fit.adequacy.sentence, 4.6)
-    axes = figure.subplots()
+    figure, axes = style.new_axes(title, fit.adequacy.sentence, 4.6)
     for amplitude, estimate in zip(fit.amplitudes, fit.coefficients, strict=True):
-        axes.plot([1e6 * amplitude] * 2, estimate.interval, **style.INTERVAL)
-        axes.plot([1e6 * amplitude], [estimate.value], **style.ESTIMATE)
+        style.estimate(axes, 1e6 * amplitude, estimate.value, *estimate.interval)
     axes.set_ylim(0, None)
     axes.set(xlabel="vibration amplitude, zero-to-peak (µm)", ylabel="friction coefficient µ")
     return figure
 
 
-_OWN: dict[type, Callable[[_Subject], Figure]] = {
+_OWN: dict[type, Callable[[str, Any, Any], Figure]] = {
     kinds.GridScan: _grid,
     kinds.RawSignals: _raw,
     kinds.FrictionBench: _bench,
@@ -205,8 +189,7 @@ def comparison_figure(compared: CurveComparison) -> Figure:
     curve, nearest = compared.curve, compared.nearest
     name = style.plain(curve.told.name, 50)
     title = f"{name}: nearest is {nearest.model}, off by {nearest.difference or np.nan:.3f}"
-    figure = style.new_figure(title, f"friction at rest fitted; {conditions(compared)}", 5)
-    axes = figure.subplots()
+    figure, axes = style.new_axes(title, f"friction at rest fitted; {conditions(compared)}", 5)
     amplitude = 1e6 * curve.vibration_amplitude
     level = si.percent(compared.band.level)
     axes.fill_between(

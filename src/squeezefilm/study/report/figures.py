@@ -52,12 +52,12 @@ def confusion(analysis: IdentificationAnalysis) -> Figure:
     from matplotlib.patches import Rectangle
 
     matrix = analysis.matrix
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         f"{100 * analysis.proportion_correct:.3g} % of the answers are right; {_worst(matrix)}",
         f"{data_of(analysis)}; per cent of each column, trials in brackets",
         1.7 + 0.62 * len(matrix.answers),
     )
-    axes, percent = figure.subplots(), matrix.percent
+    percent = matrix.percent
     shades = LinearSegmentedColormap.from_list("share", [style.PAPER, style.PLUS, "#6fb0d8"])
     axes.imshow(np.nan_to_num(percent), cmap=shades, vmin=0, vmax=100, aspect="auto")
     for (i, j), value in np.ndenumerate(percent):
@@ -71,7 +71,10 @@ def confusion(analysis: IdentificationAnalysis) -> Figure:
     axes.set_xticks(range(len(matrix.stimuli)), [style.plain(name, 16) for name in matrix.stimuli])
     axes.set_yticks(range(len(matrix.answers)), [style.plain(name, 16) for name in matrix.answers])
     axes.set(xlabel="simulated", ylabel="answered")
-    style.bare(axes)
+    # A table of cells.
+    axes.grid(visible=False)
+    axes.tick_params(length=0)
+    axes.spines[:].set_visible(False)
     return figure
 
 
@@ -116,7 +119,8 @@ def sensitivity(analysis: IdentificationAnalysis) -> Figure:
     top.set_yticks([])
     top.spines["left"].set_visible(False)
     top.legend(loc="upper right", frameon=False)
-    style.estimates(below, zip(fit.d_prime, fit.low, fit.high, strict=True))
+    for k, known in enumerate(zip(fit.d_prime, fit.low, fit.high, strict=True)):
+        style.estimate(below, k, *known)
     below.axhline(0, **style.ZERO)
     pairs = [f"{a} – {b}" for a, b in itertools.pairwise(names)]
     below.set_xticks(range(len(pairs)), pairs)
@@ -139,22 +143,22 @@ def response_times(analysis: StudyAnalysis) -> Figure:
             f"{style.plain(slow.name, 16)} takes longest, {slow.geometric_mean:.2g} s; "
             f"{style.plain(quick.name, 16)} shortest, {quick.geometric_mean:.2g} s"
         )
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         title,
         f"{data_of(analysis)}; geometric means over people with {100 * slow.level:g} % t intervals",
         4.0,
     )
-    axes = figure.subplots()
-    style.estimates(axes, ((item.geometric_mean, item.low, item.high) for item in times))
+    for k, item in enumerate(times):
+        style.estimate(axes, k, item.geometric_mean, item.low, item.high)
     named_ticks(axes, [item.name for item in times])
     axes.set(ylabel="response time (s)", xlabel="stimulus")
     axes.set_ylim(0, None)
     return figure
 
 
-def _by_people(figure: Figure, curve: PowerCurve, said: str) -> Axes:
+def _by_people(axes: Axes, curve: PowerCurve, said: str) -> None:
     """Shares of studies with their bounds against the number of people, and how many are needed."""
-    axes, people, share = figure.subplots(), curve.participants, 100 * curve.power
+    people, share = curve.participants, 100 * curve.power
     axes.plot(people, share, color=style.BLUE, lw=1.3)
     axes.vlines(people, 100 * curve.low, 100 * curve.high, **style.INTERVAL)
     axes.plot(people, share, **style.ESTIMATE)
@@ -162,7 +166,6 @@ def _by_people(figure: Figure, curve: PowerCurve, said: str) -> Axes:
     if curve.needed is not None:
         axes.axvline(curve.needed, color=style.ORANGE, lw=1.1, ls=(0, (1.4, 1.2)))
     axes.set(xlabel="participants", ylabel=said, xlim=(0, None), ylim=(0, 103))
-    return axes
 
 
 @style.drawn
@@ -174,13 +177,13 @@ def power(curve: PowerCurve) -> Figure:
     )
     if surely is not None and surely != curve.needed:
         said += f"; {surely} do beyond the simulation's error"
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         said,
         f"simulated studies, {curve.studies} per size; one-sided test at α = {curve.alpha:g}; bars "
         "are 95 % Clopper–Pearson bounds of the simulation",
         4.0,
     )
-    _by_people(figure, curve, "studies that find it (%)")
+    _by_people(axes, curve, "studies that find it (%)")
     return figure
 
 
@@ -192,13 +195,13 @@ def precision(found: PlannedPrecision) -> Figure:
         f"± {100 * found.precision:g} %" if found.measure in PARTS else f"± {found.precision:g}"
     )
     said = people_needed(curve, f"give the {found.measure} within {wanted}")
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         f"{said} in {100 * curve.target:g} % of studies",
         f"simulated studies, {curve.studies} per size; bars are 95 % Clopper–Pearson bounds of the "
         "simulation; dotted: intervals that hold the value of all people (95 % are promised)",
         4.0,
     )
-    axes = _by_people(figure, curve, "studies (%)")
+    _by_people(axes, curve, "studies (%)")
     axes.plot(curve.participants, 100 * found.held, color=style.MUTED, ls=":", lw=1.1)
     axes.axhline(95, **style.GUIDE)
     return figure
@@ -219,8 +222,7 @@ def psychometric_function(fit: PsychometricFit) -> Figure:
         f"{function.shape} function, guess rate {function.guess_rate:.2g}, lapse rate "
         f"{function.lapse_rate:.2g}; {int(fit.trials.sum())} trials; credible interval"
     )
-    figure = style.new_figure(title, "; ".join([made, *fit.notes]), 4.4)
-    axes = figure.subplots()
+    figure, axes = style.new_axes(title, "; ".join([made, *fit.notes]), 4.4)
     first, last = float(fit.intensity[0]), float(fit.intensity[-1])
     room = 0.0 if log else 0.04 * (last - first)
     ends = first - room, last + room
@@ -235,5 +237,4 @@ def psychometric_function(fit: PsychometricFit) -> Figure:
     axes.set(xlabel="intensity", ylabel="positive answers (%)", ylim=(-2, 103))
     if log:
         axes.set_xscale("log")
-        style.plain_log(axes.xaxis)
     return figure

@@ -39,8 +39,7 @@ def answers(analysis: TaskAnalysis) -> Figure:
     """Answers against the stimulus: psychometric functions, or the scale of numbers."""
     if not analysis.conditions:
         return style.message_figure(_said(analysis), "Nobody's answers say anything of it.")
-    figure = style.new_figure(_said(analysis), data_of(analysis), 4.4)
-    axes = figure.subplots()
+    figure, axes = style.new_axes(_said(analysis), data_of(analysis), 4.4)
     model = TASKS[analysis.task].model
     if TASKS[analysis.task].ranks:
         _strengths(axes, analysis)
@@ -81,11 +80,9 @@ def _functions(axes: Axes, analysis: TaskAnalysis) -> None:
 
 def _points(axes: Axes, places: Iterable[float], estimates: Iterable[Estimate | None]) -> None:
     """Estimates with their intervals at places."""
-    for x, estimate in zip(places, estimates, strict=True):
-        if estimate is not None:
-            # An interval that is not known is no line.
-            axes.plot([x, x], [estimate.low, estimate.high], **style.INTERVAL)
-            axes.plot([x], [estimate.value], **style.ESTIMATE)
+    for x, known in zip(places, estimates, strict=True):
+        if known is not None:
+            style.estimate(axes, x, known.value, known.low, known.high)
 
 
 def _shares(axes: Axes, analysis: TaskAnalysis, places: Iterable[float]) -> None:
@@ -144,7 +141,6 @@ def _adaptive(axes: Axes, analysis: TaskAnalysis) -> None:
     axes.set(xlabel="difference from the reference (%)")
     if not is_signed:
         axes.set(xscale="log")
-        style.plain_log(axes.xaxis)
     axes.set_title(f"{thin}dots: eighths of all trials, Wilson's intervals")
 
 
@@ -161,7 +157,6 @@ def _magnitudes(axes: Axes, analysis: TaskAnalysis) -> None:
         law = np.exp(level + analysis.pooled.value * (np.log(line) - middle))
         axes.plot(line, law, color=style.ORANGE, lw=1.4)
     axes.set(xscale="log", yscale="log", xlabel=label, ylabel="number given")
-    style.plain_log(axes.xaxis, axes.yaxis)
     axes.set_title("geometric means, people's scales taken out; line: the mean exponent")
 
 
@@ -185,7 +180,6 @@ def _strengths(axes: Axes, analysis: TaskAnalysis) -> None:
     _points(axes, x, [condition.magnitude for condition in analysis.conditions])
     axes.axhline(1.0, **style.GUIDE)
     axes.set(yscale="log", xlabel=label, ylabel="strength")
-    style.plain_log(axes.yaxis)
     axes.set_title("a surface is named with its share of the strengths; dotted: their mean")
 
 
@@ -194,28 +188,22 @@ def persons(analysis: TaskAnalysis) -> Figure:
     """Each person's estimate with its interval, and the population's."""
     scale, unit = scale_of(analysis)
     people = sorted(analysis.persons, key=lambda person: person.estimate.value)
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         f"{len(people)} people, one by one: {analysis.measure}",
         f"{data_of(analysis)}; {100 * people[0].estimate.level if people else 95:g} % intervals; "
         "band: the population's mean; hollow: not bounded by the answers alone",
         4.0,
     )
-    axes = figure.subplots()
-    for at, one in enumerate(people):
-        ends = scale * one.estimate.low, scale * one.estimate.high
-        axes.plot([at, at], ends, **style.INTERVAL)
-        look = {
-            **style.ESTIMATE,
-            **({"mfc": style.PAPER, "mec": style.BLUE} if one.unbounded else {}),
-        }
-        axes.plot([at], [scale * one.estimate.value], **look)
+    for at, person in enumerate(people):
+        known = through(person.estimate, lambda x: scale * x)
+        look = {"mfc": style.PAPER, "mec": style.BLUE} if person.unbounded else {}
+        style.estimate(axes, at, known.value, known.low, known.high, **look)
     if analysis.pooled is not None:
         low, high = scale * analysis.pooled.low, scale * analysis.pooled.high
         axes.axhspan(low, high, color=style.BAND, zorder=0)
         axes.axhline(scale * analysis.pooled.value, color=style.ORANGE, lw=1.3, zorder=1)
     if analysis.measure in PARTS:
         axes.set_yscale("log")
-        style.plain_log(axes.yaxis)
     few = len(people) <= 16
     axes.set_xticks(
         range(len(people)) if few else [],

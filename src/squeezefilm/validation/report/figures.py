@@ -37,13 +37,12 @@ def frequency_against_half_wavelength(section: Laminate) -> Figure:
     timoshenko = np.asarray(timoshenko_frequency(half, section))
     limit = float(np.interp(-_CRITERION, -euler, half))
     shear_limit = float(np.interp(-_CRITERION, -timoshenko, half))
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         f"20.6 kHz needs a half wavelength below {limit * 1e3:.1f} mm (Euler–Bernoulli) or "
         f"{shear_limit * 1e3:.1f} mm (Timoshenko); the paper reads 16.1 mm",
         "waves in the paper's laminate, E of the substrate and c11_p of the ceramic",
         4.6,
     )
-    axes = figure.subplots()
     axes.plot(1e3 * half, euler / 1e3, color=style.BLUE, label="Euler–Bernoulli")
     axes.plot(1e3 * half, timoshenko / 1e3, color=style.ORANGE, ls="--", label="Timoshenko")
     level = _CRITERION / 1e3
@@ -78,11 +77,21 @@ def pressure(analysis: Analysis) -> Figure:
         )
     names = ", ".join(f"{item.model}" for item in profiles)
     figure = style.new_figure(title, f"{names} (grooves sealed at their ends)", 5.8)
-    grid, strip = style.pairs_of_axes(figure)
+    # The strip has the legend: a figure's own would lie on the small print.
+    gap_axes, near_gap, mean_axes, near_mean, strip = figure.subplot_mosaic(
+        "ab;cd;ss", width_ratios=[2.2, 1], height_ratios=[1, 1, 0.09]
+    ).values()
+    for whole, near in ((gap_axes, near_gap), (mean_axes, near_mean)):
+        near.sharey(whole)
+        near.tick_params(labelleft=False)
     span = 0.5 * _RIDGES_IN_ZOOM * 1e3 * display.finger.ridge_period
     span = min(span, float(x[-1]))
-    for column, (low, high) in enumerate(((float(x[0]), float(x[-1])), (-span, span))):
-        above, below = grid[0][column], grid[1][column]
+    for above, below, ends in (
+        (gap_axes, mean_axes, (float(x[0]), float(x[-1]))),
+        (near_gap, near_mean, (-span, span)),
+    ):
+        below.sharex(above)
+        above.tick_params(labelbottom=False)
         above.fill_between(x, gap, 1.12 * float(np.max(gap)), color=style.SKIN, lw=0)
         above.plot(x, gap, color=style.INK, lw=1.2)
         above.set(ylim=(0, 1.12 * float(np.max(gap))))
@@ -92,12 +101,12 @@ def pressure(analysis: Analysis) -> Figure:
             name = f"{look.name}, mean {mean:.4f}"
             below.plot(x, item.mean_pressure, color=look.color, lw=1.4, label=name)
         below.axhline(carried, **style.WANTED, label=f"would carry the finger: {carried:.4f}")
-        below.set(xlim=(low, high), xlabel="position under the finger (mm)")
-    grid[0][0].set(ylabel="mean gap (µm)")
-    grid[1][0].set(ylabel="pressure over ambient")
-    grid[0][0].set_title("the whole contact: the finger's ridges, and the plate at 0")
-    grid[0][1].set_title("enlarged")
-    style.legend_in(strip, grid[1][0])
+        below.set(xlim=ends, xlabel="position under the finger (mm)")
+    gap_axes.set(ylabel="mean gap (µm)")
+    mean_axes.set(ylabel="pressure over ambient")
+    gap_axes.set_title("the whole contact: the finger's ridges, and the plate at 0")
+    near_gap.set_title("enlarged")
+    style.legend_in(strip, mean_axes)
     return figure
 
 
@@ -114,10 +123,9 @@ def friction(analysis: Analysis) -> Figure:
         + ("more than 50 µm" if needed is None else shown(needed, M, 3))
     )
     models = ", ".join(dict.fromkeys(curve.model for curve in curves))
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         title, f"{models}; {shown(p.normal_force, N)}", 4.4 + 0.24 * (len(curves) + 2)
     )
-    axes = figure.subplots()
     for number, curve in enumerate(curves):
         look = look_of(curve.model)
         # The colour is the model's, the dashes the surface's.
@@ -156,8 +164,7 @@ def wavelength(analysis: Analysis) -> Figure:
         f"{at[curves.index(long)]} at {shown(long.half_wavelength, M, 3)}"
     )
     model = f"{curves[0].model}, {style.plain(p.surface.name, 20)}, {shown(p.normal_force, N)}"
-    figure = style.new_figure(title, model, 4.8)
-    axes = figure.subplots()
+    figure, axes = style.new_axes(title, model, 4.8)
     right = 1e6 * float(max(c.amplitude[-1] for c in curves))
     for number, curve in enumerate(curves):
         color, dashes = style.LINES[number % len(style.LINES)]

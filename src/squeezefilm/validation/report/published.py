@@ -182,12 +182,11 @@ _SHOWN = {"m": ("µm", 1e6), "kg": ("mg", 1e6)}
 def people_figure(compared: PopulationComparison) -> Figure:
     """Share of people below each value, and the values of the models."""
     unit, scale = _SHOWN.get(compared.unit, (compared.unit, 1.0))
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         f"{compared.quantity}: {compared.measured.size} measured",
         f"nothing fitted; {compared.display}, {compared.conditions}",
         4,
     )
-    axes = figure.subplots()
     ordered = scale * np.sort(compared.measured)
     axes.step(
         ordered,

@@ -20,11 +20,12 @@ from squeezefilm.actuators.report.page import AnalyzedActuator, analyze_actuator
 from squeezefilm.core.config.provenance import Provenance
 from squeezefilm.core.errors import ConfigError
 from squeezefilm.core.kit import style
+from squeezefilm.core.kit.page_style import drawn_figures
 
 NAMES = ("biet2008-motor", "biet2008-skin-stretch")
 KINDS = {
-    "biet2008-motor": motor.motor_figures,
-    "biet2008-skin-stretch": skin_stretch.skin_stretch_figures,
+    "biet2008-motor": motor.MOTOR_FIGURES,
+    "biet2008-skin-stretch": skin_stretch.SKIN_STRETCH_FIGURES,
 }
 
 
@@ -51,7 +52,7 @@ def test_all_that_a_page_shows_lies_beside_it(analyzed: AnalyzedActuator, tmp_pa
 
 @pytest.mark.slow
 def test_no_text_lies_on_another_or_is_cut_off(analyzed: AnalyzedActuator) -> None:
-    drawn = analyzed.figures(analyzed.analysis)
+    drawn = drawn_figures(analyzed.figures, analyzed.analysis)
     assert len(drawn) >= 3
     for name, (_, figure) in drawn.items():
         boxes: dict[str, Any] = {}
@@ -117,7 +118,7 @@ def test_a_page_shows_what_it_is_given(tmp_path: Path) -> None:
     )
     numbers = [("Thrust", "1.5 N", "at rest")]
     answers = {"force": "stall force"}
-    path = AnalyzedActuator(made, lambda _: numbers, lambda _: {}, answers).write(tmp_path / "out")
+    path = AnalyzedActuator(made, lambda _: numbers, (), answers).write(tmp_path / "out")
     said = path.read_text(encoding="utf-8")
     for text in ("A &lt;motor&gt;", "it is warm", "Thrust", "at rest", "of the stall force"):
         assert text in said

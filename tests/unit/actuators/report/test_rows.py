@@ -78,7 +78,7 @@ def said(cells: Iterable[str]) -> str:
 
 def test_a_motor_says_what_it_does_and_how_sure_that_is() -> None:
     assert [said(row) for row in motor_rows(motor())] == MOTOR
-    lines = printed(AnalyzedActuator(motor(), motor_rows, dict, {}).show)
+    lines = printed(AnalyzedActuator(motor(), motor_rows, (), {}).show)
     assert lines[0] == "A title [mine]"
     for line in ("Feet in contact 25 %", "it stalls", *SURE):
         assert line in said(lines)
@@ -129,7 +129,7 @@ ARRAY = [
 def test_an_array_says_what_it_does_and_how_sure_that_is() -> None:
     for row, words in zip(skin_stretch_rows(array()), ARRAY, strict=True):
         assert said(row).startswith(words)
-    lines = printed(AnalyzedActuator(array(), skin_stretch_rows, dict, {}).show)
+    lines = printed(AnalyzedActuator(array(), skin_stretch_rows, (), {}).show)
     assert lines[0] == "A title [mine]"
     for line in ("Resonance 350 Hz free;", "it slips", *SURE):
         assert line in said(lines)

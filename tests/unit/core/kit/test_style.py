@@ -125,32 +125,3 @@ def test_micrometres_stand_beside_nanometres_per_volt() -> None:
     low, high = axes.get_ylim()
     assert right.get_ylim() == pytest.approx((1e-2 * low, 1e-2 * high))
     assert right.get_ylabel() == "beside"
-
-
-def test_pairs_of_axes_share_what_stands_beside_them() -> None:
-    with style.rc():
-        figure = style.new_figure("title", "model", 5.0)
-        ((left, right), (below, last)), strip = style.pairs_of_axes(figure)
-        figure.draw_without_rendering()
-    places = {name: axes.get_position() for name, axes in
-              (("left", left), ("right", right), ("below", below), ("last", last))}  # fmt: skip
-    assert places["left"].width == pytest.approx(2.2 * places["right"].width, rel=0.02)
-    assert places["left"].height == pytest.approx(places["below"].height, rel=0.02)
-    assert places["left"].x0 == pytest.approx(places["below"].x0)
-    assert places["right"].x0 == pytest.approx(places["last"].x0)
-    assert places["left"].x1 < places["right"].x0
-    assert places["below"].y1 < places["left"].y0
-    assert places["right"].y0 == pytest.approx(places["left"].y0)
-    assert places["last"].y0 == pytest.approx(places["below"].y0)
-    assert strip.get_position().y1 < places["below"].y0
-    left.set_ylim(0, 7)
-    last.set_xlim(0, 3)
-    assert right.get_ylim() == (0, 7)
-    assert right.get_xlim() == (0, 3)
-    assert last.get_ylim() == below.get_ylim() != (0, 7)
-    assert left.get_xlim() == below.get_xlim() != (0, 3)
-    labelled = [
-        (axes.xaxis.get_tick_params()["labelbottom"], axes.yaxis.get_tick_params()["labelleft"])
-        for axes in (left, right, below, last)
-    ]
-    assert labelled == [(False, True), (False, False), (True, True), (True, False)]

@@ -11,6 +11,7 @@ from matplotlib.colors import to_hex
 from tests.unit.drawn import labelled, words
 from tests.unit.made_curves import AMPLITUDE, CURVES, GRID, made, point
 
+from squeezefilm.core.kit import style
 from squeezefilm.core.kit.model_looks import look_of
 from squeezefilm.core.kit.style import INK, MUTED
 from squeezefilm.design.analysis.curves import PressureProfile, WavelengthCurve
@@ -89,6 +90,36 @@ def test_gap_and_pressure_are_drawn_whole_and_enlarged() -> None:
     assert words(figure.get_supxlabel()) == (
         "Model: paper2008, solved film (grooves sealed at their ends)"
     )
+
+
+def test_gap_and_pressure_share_what_stands_beside_them() -> None:
+    with style.rc():
+        figure = pressure(shown_with())
+        figure.draw_without_rendering()
+    left, right, below, last, strip = figure.axes
+    drawn = {"left": left, "right": right, "below": below, "last": last}
+    places = {name: axes.get_position() for name, axes in drawn.items()}
+    assert places["left"].width == pytest.approx(2.2 * places["right"].width, rel=0.02)
+    assert places["left"].height == pytest.approx(places["below"].height, rel=0.02)
+    assert places["left"].x0 == pytest.approx(places["below"].x0)
+    assert places["right"].x0 == pytest.approx(places["last"].x0)
+    assert places["left"].x1 < places["right"].x0
+    assert places["below"].y1 < places["left"].y0
+    assert places["right"].y0 == pytest.approx(places["left"].y0)
+    assert places["last"].y0 == pytest.approx(places["below"].y0)
+    assert strip.get_position().y1 < places["below"].y0
+    along, up = left.get_shared_x_axes(), left.get_shared_y_axes()
+    assert along.joined(left, below)
+    assert along.joined(right, last)
+    assert not along.joined(left, right)
+    assert up.joined(left, right)
+    assert up.joined(below, last)
+    assert not up.joined(left, below)
+    sides = [
+        (axes.xaxis.get_tick_params()["labelbottom"], axes.yaxis.get_tick_params()["labelleft"])
+        for axes in (left, right, below, last)
+    ]
+    assert sides == [(False, True), (False, False), (True, True), (True, False)]
 
 
 def test_a_smooth_finger_with_wide_ridges_and_one_film() -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -34,8 +34,7 @@ def own_friction(analysis: Analysis) -> Figure:
     """Relative friction against amplitude by the prediction's own model, with the band in which it
     lies and what was measured on plates like it."""
     title = f"How far friction falls with the amplitude: {_takes(analysis)}"
-    figure = style.new_figure(title, _made(analysis), 4.8)
-    axes = figure.subplots()
+    figure, axes = style.new_axes(title, _made(analysis), 4.8)
     _friction(axes, analysis, analysis.own_curves)
     style.legend_below(axes, columns=2)
     return figure
@@ -115,8 +114,7 @@ def frequency_response(analysis: Analysis) -> Figure:
     if driven:
         wide = "" if band is None else f" is {shown(1e3 * (band[1] - band[0]), HZ, 3)} wide"
         title = f"The resonance at {at}{wide}: the drive must stay on it{_lost_beside(p)}"
-    figure = style.new_figure(title, f"{response.model}; without a finger", 4.3)
-    axes = figure.subplots()
+    figure, axes = style.new_axes(title, f"{response.model}; without a finger", 4.3)
     if band is not None:
         name = f"half-power band, {band[0]:.2f} to {band[1]:.2f} kHz (above 71 % of the peak)"
         axes.axvspan(*band, color=style.BAND, lw=0, label=name)
@@ -157,14 +155,7 @@ def _mark_drive(axes: Axes, p: Prediction, voltage: float, peak: float) -> None:
     axes.plot(1e-3 * p.frequency, height, **look, zorder=4, label=name)
 
 
-_PLACE: dict[str, Any] = {
-    "ms": 8,
-    "color": style.PAPER,
-    "mec": style.INK,
-    "mew": 1.2,
-    "ls": "",
-    "clip_on": False,
-}
+_PLACE = style.ESTIMATE | {"ms": 8, "color": style.PAPER, "mec": style.INK, "mew": 1.2}
 
 
 @style.drawn
@@ -178,8 +169,8 @@ def deciding(analysis: Analysis) -> Figure:
     made = f"{_made(analysis)}; {area.shape_model} ({area.shape_words})"
     title = f"Where on the face friction falls, and how far: {_takes(analysis)}"
     figure = style.new_figure(title, made, 5.1)
-    grid = figure.add_gridspec(2, 2, width_ratios=(1.2, 1), height_ratios=(1, 0.27))
-    by_place, by_amplitude = (figure.add_subplot(grid[0, k]) for k in range(2))
+    cells = figure.subplot_mosaic("pa;ll", width_ratios=(1.2, 1), height_ratios=(1, 0.27))
+    by_place, by_amplitude, strip = cells.values()
     by_place.set_anchor("S")
     if 1 in area.amplitude.shape:
         _line(by_place, area)
@@ -189,8 +180,6 @@ def deciding(analysis: Analysis) -> Figure:
         _map(by_place, area, area.relative_friction, "relative friction µ′/µ under the pad")
         _places(by_place, area)
     _friction(by_amplitude, analysis, (analysis.own_curve,))
-    strip = figure.add_subplot(grid[1, :])
-    strip.set_axis_off()
     style.legend_in(strip, by_amplitude, columns=2)
     return figure
 
@@ -239,13 +228,13 @@ def _places(axes: Axes, area: ActiveArea) -> None:
             1e3 * area.x, 1e3 * area.y, shown, levels=within, colors=style.PAPER, linewidths=1.4
         )
         axes.clabel(lines, fmt="%.2f", fontsize=9)
-    for place, name, look in (
+    for place, name, marker in (
         (area.best_place, "best place", "o"),
         (area.worst_place, "worst place", "X"),
     ):
         x, y = (1e3 * value for value in place)
-        said = printable(f"{name}, {place_words(place)}")
-        axes.plot([x], [y], look, **_PLACE, label=said)
+        look = _PLACE | {"marker": marker, "label": printable(f"{name}, {place_words(place)}")}
+        axes.plot([x], [y], clip_on=False, **look)
     side = 1e3 * area.contact_side
     left, bottom = (1e3 * middle - side / 2 for middle in area.best_place)
     axes.add_patch(

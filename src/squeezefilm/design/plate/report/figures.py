@@ -131,8 +131,7 @@ def scan(result: RingAnalysis) -> Figure:
             f"Along a diameter {result.working.label} moves {abs(radial[0]):.0f} nm per volt in "
             f"the middle and {abs(radial[-1]):.0f} at the rim"
         )
-        figure = style.new_figure(title, model, 4.2)
-        below = figure.subplots()
+        figure, below = style.new_axes(title, model, 4.2)
     r = 1e3 * result.response.radius
     below.plot(r, radial, color=style.BLUE, label="at the angle of an antinode" if m else None)
     if not m:
@@ -185,7 +184,6 @@ def response(result: RingAnalysis) -> Figure:
         resistance = printable(shown(result.circuit.motional_resistance, si.Unit("ohm"), 3))
         name = f"equivalent circuit, R1 = {resistance}"
         below.semilogy(f, circuit, color=style.INK, lw=1.0, ls=(0, (1, 2)), label=name)
-    style.plain_log(below.yaxis)
     below.set(xlabel="frequency (kHz)", ylabel="admittance (mS)")
     style.legend_below(below, columns=3, gap=0.28)
     return figure
@@ -211,13 +209,12 @@ def plan_view(result: PlateAnalysis) -> Figure:
     x, y = np.linspace(0, plate.length, 166), np.linspace(0, plate.width, 99)
     w = 1e9 * driven_shape(result, x, y)
     reach = float(np.max(np.abs(w)))
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         f"Mode {result.working.label} at {result.working.frequency / 1e3:.2f} kHz from above: up "
         f"to {reach:.3g} nm per volt",
         f"{result.modes.model}, all electrodes driven at resonance; nodal lines in black",
         5.2,
     )
-    axes = figure.subplots()
     style.motion_field(axes, 1e3 * x, 1e3 * y, w.T, label="w per volt (nm/V)", shrink=0.8)
     axes.set(xlabel="x (mm)", ylabel="y (mm)", aspect="equal")
     return figure
@@ -238,8 +235,7 @@ def line_scan(result: PlateAnalysis) -> Figure:
         f"{1e9 * result.largest_per_volt:.3g} nm per volt at the largest of the face"
     )
     model = f"{result.modes.model}, all electrodes driven at resonance"
-    figure = style.new_figure(title, model, 4.2)
-    axes = figure.subplots()
+    figure, axes = style.new_axes(title, model, 4.2)
     axes.plot(1e3 * x, w[:, 1], color=style.BLUE, label="centreline")
     axes.plot(1e3 * x, w[:, 0], color=style.ORANGE, ls="--", label="edge")
     axes.axhline(0, **style.ZERO)
@@ -262,12 +258,11 @@ def frequency_response(result: PlateAnalysis) -> Figure:
     # Where a neighbour moves more, the highest point is not this mode's.
     band = half_power(f, per_volt) if at == int(np.argmax(per_volt)) else None
     wide = "" if band is None else f", {1e3 * (band[1] - band[0]):.3g} Hz wide at half power"
-    figure = style.new_figure(
+    figure, axes = style.new_axes(
         f"Resonance at {f[at]:.2f} kHz: {per_volt[at]:.3g} nm per volt{wide}",
         f"{response.model}, {response.method}; at the antinode",
         4.2,
     )
-    axes = figure.subplots()
     if band is not None:
         axes.axvspan(*band, color=style.BAND, lw=0, label="half-power band")
     axes.plot(f, per_volt, color=style.BLUE, label="solved plate, all modes")

@@ -161,13 +161,9 @@ def shapes(result: ModeList) -> Figure:
         f"{result.model}; up and down in two colours, each mode to its own scale",
         1.0 + 1.7 * rows,
     )
-    grid = figure.subplots(rows, columns, squeeze=False)
     extent = [1e3 * side for side in result.display.actuator.extent]
-    for number, axes in enumerate(grid.ravel()):
+    for axes, mode in zip(style.panels(figure, len(chosen), columns), chosen, strict=True):
         axes.set_axis_off()
-        if number >= len(chosen):
-            continue
-        mode = chosen[number]
         x = np.linspace(0, extent[0], mode.shape.shape[0])
         y = np.linspace(0, extent[1], mode.shape.shape[1])
         axes.contourf(x, y, mode.shape.T, [-1.01, 0, 1.01], colors=[style.MINUS, style.PLUS])

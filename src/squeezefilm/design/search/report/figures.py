@@ -55,28 +55,9 @@ _SOLVED = "three-dimensional solves of plates as drawn, quality factor assumed"
 # An axis on which the largest is more than so many times the smallest is logarithmic.
 _WIDE = 12.0
 _BROKEN: dict[str, Any] = {"color": style.MUTED, "ls": "", "marker": "x", "ms": 4, "mew": 0.8}
-_SOLVED_LOOK: dict[str, Any] = {
-    "ls": "",
-    "marker": "o",
-    "ms": 5,
-    "mec": style.BLUE,
-    "mfc": style.PAPER,
-}
-_COMPARED: dict[str, Any] = {
-    "color": style.ORANGE,
-    "ls": "",
-    "marker": "s",
-    "ms": 8,
-    "mec": style.PAPER,
-}
-_RING: dict[str, Any] = {
-    "ls": "",
-    "marker": "o",
-    "ms": 13,
-    "mfc": "none",
-    "mec": style.INK,
-    "mew": 1.5,
-}
+_SOLVED_LOOK = style.ESTIMATE | {"ms": 5, "mec": style.BLUE, "mfc": style.PAPER}
+_COMPARED = style.ESTIMATE | {"color": style.ORANGE, "marker": "s", "ms": 8}
+_RING = style.ESTIMATE | {"ms": 13, "mfc": "none", "mec": style.INK, "mew": 1.5}
 _CLOUD: dict[str, Any] = {"color": style.MUTED, "ls": "", "marker": ".", "ms": 5, "alpha": 0.45}
 
 
@@ -97,12 +78,10 @@ def front(search: DesignSearch) -> Figure:
     # Two objectives have room for the whole cloud, and beside it for what matters of it.
     close = [(0, 1, False), (0, 1, True)] if search.front else [(0, 1, False)]
     panels = close if len(pairs) == 1 else [(*pair, False) for pair in pairs]
-    grid = figure.add_gridspec(2, len(panels), height_ratios=[1, 0.14])
-    places = [figure.add_subplot(grid[0, k]) for k in range(len(panels))]
+    cells: list[Any] = [[f"{k}" for k in range(len(panels))], ["legend"] * len(panels)]
+    *places, strip = figure.subplot_mosaic(cells, height_ratios=[1, 0.14]).values()
     for axes, (first, second, zoomed) in zip(places, panels, strict=True):
         _front_axes(axes, search, rows, first, second, zoomed=zoomed)
-    strip = figure.add_subplot(grid[1, :])
-    strip.set_axis_off()
     style.legend_in(strip, places[0], columns=3)
     return figure
 
@@ -171,26 +150,18 @@ def _front_axes(
         axes.plot(*at(reference), **_COMPARED, zorder=5, label=f"{name}, to compare")
     if zoomed:
         axes.set_title("the front, from near")
-    axes.set_xlim(_ends(within[:, 0] * scales[0], axes.get_xscale() == "log"))
-    axes.set_ylim(_ends(within[:, 1] * scales[1], axes.get_yscale() == "log"))
-
-
-def _ends(values: si.FloatArray, logarithmic: bool) -> tuple[float, float]:
-    """The ends of an axis with room for marks around the values."""
-    low, high = float(values.min()), float(values.max())
-    if logarithmic:
-        room = (high / low) ** 0.08
-        return low / room, high * room
-    room = 0.08 * (high - low) or 0.1 * abs(high) or 1.0
-    return low - room, high + room
 
 
 def _axis(axes: Axes, which: str, values: si.FloatArray, label: str) -> None:
-    known = values[np.isfinite(values) & (values > 0)]
-    axes.set(**{f"{which}label": label})
-    if known.size and known.max() > _WIDE * known.min():
-        axes.set(**{f"{which}scale": "log"})
-        style.plain_log(axes.xaxis if which == "x" else axes.yaxis)
+    """Name an axis and end it with room for marks around the values."""
+    low, high = float(values.min()), float(values.max())
+    if high > _WIDE * low > 0:
+        room = (high / low) ** 0.08
+        scale, ends = "log", (low / room, high * room)
+    else:
+        room = 0.08 * (high - low) or 0.1 * abs(high) or 1.0
+        scale, ends = "linear", (low - room, high + room)
+    axes.set(**{f"{which}label": label, f"{which}scale": scale, f"{which}lim": ends})
 
 
 def _rows(search: DesignSearch, designs: Sequence[Evaluated]) -> si.FloatArray:

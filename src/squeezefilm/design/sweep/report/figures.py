@@ -56,15 +56,12 @@ def sweep_figure(sweep: Sweep) -> Figure:
         f"{style.plain(sweep.title)}{crosses}",
         1.2 + 3.2 * -(-len(panels) // 2) if len(panels) > 1 else 4.6,
     )
-    columns = 1 if len(panels) == 1 else 2
-    grid = figure.subplots(-(-len(panels) // columns), columns, squeeze=False)
-    for place, panel in zip(grid.ravel(), panels, strict=False):
+    places = style.panels(figure, len(panels), min(len(panels), 2))
+    for place, panel in zip(places, panels, strict=True):
         if beside is not None and len(beside) > MOST_LINES and beside.numbers is not None:
             _map(figure, place, sweep, along, beside, panel[0])
         else:
             _lines(place, sweep, along, beside, panel)
-    for spare in grid.ravel()[len(panels) :]:
-        spare.set_axis_off()
     return figure
 
 
@@ -107,9 +104,7 @@ def _values(sweep: Sweep, along: Axis, beside: Axis | None, column: SweptColumn)
 def _lines(
     axes: Axes, sweep: Sweep, along: Axis, beside: Axis | None, panel: list[SweptColumn]
 ) -> None:
-    numbers = along.numbers
-    x = np.arange(len(along)) if numbers is None else numbers
-    factor, symbol = (1.0, "") if numbers is None else scaled(numbers, along.units[0])
+    x = _along(axes, along)
     scale, unit = scaled(np.concatenate([c.values for c in panel]), panel[0].unit)
     # Modes that nothing drives are there, and do not matter.
     quiet = {follow.label for follow in sweep.follows if not follow.driven}
@@ -125,13 +120,12 @@ def _lines(
                 color, dashes = style.MUTED, (0, (1.4, 1.2))
                 label = None if named else "not driven"
                 named = True
-            axes.plot(factor * x, line, color=color, ls=dashes, marker="o", ms=3, label=label)
+            axes.plot(x, line, color=color, ls=dashes, marker="o", ms=3, label=label)
             told += 1
             lost = np.isnan(line)
             if lost.any() and not lost.all() and len(panel) == 1:
                 low = float(np.nanmin(values))
-                axes.plot(factor * x[lost], np.full(lost.sum(), low), "x", color=style.MUTED)
-    _along(axes, along, symbol)
+                axes.plot(x[lost], np.full(lost.sum(), low), "x", color=style.MUTED)
     axes.set_ylabel(labelled(_panel_name(panel), unit))
     if told > 1:
         style.legend_below(axes, columns=4, gap=0.22)
@@ -141,44 +135,43 @@ def _panel_name(panel: list[SweptColumn]) -> str:
     return f"{quantity_of(panel[0])} of {len(panel)} modes" if len(panel) > 1 else name_of(panel[0])
 
 
-def _along(axes: Axes, along: Axis, symbol: str) -> None:
-    if along.numbers is None:
+def _along(axes: Axes, along: Axis) -> si.FloatArray:
+    """Label the abscissa; the places of the axis's steps on it."""
+    x, symbol = np.arange(len(along), dtype=float), ""
+    if along.numbers is not None:
+        factor, symbol = scaled(along.numbers, along.units[0])
+        x = factor * along.numbers
+    else:
         axes.set_xticks(
             range(len(along)),
             [style.plain(step_words(along, k), 18) for k in range(len(along))],
             rotation=30 if len(along) > 3 else 0,
             ha="right" if len(along) > 3 else "center",
         )
-    elif along.logarithmic:
+    if along.logarithmic:
         axes.set_xscale("log")
-        style.plain_log(axes.xaxis)
     axes.set_xlabel(labelled(name_of(along), symbol))
+    return x
 
 
 def _map(
     figure: Figure, axes: Axes, sweep: Sweep, along: Axis, beside: Axis, column: SweptColumn
 ) -> None:
     assert beside.numbers is not None
-    x = np.arange(len(along), dtype=float) if along.numbers is None else along.numbers
-    across, xs = (1.0, "") if along.numbers is None else scaled(x, along.units[0])
+    x = _along(axes, along)
     up, ys = scaled(beside.numbers, beside.units[0])
+    y = up * beside.numbers
     scale, unit = scaled(column.values, column.unit)
     values = np.ma.masked_invalid(scale * _values(sweep, along, beside, column).T)
-    image = axes.pcolormesh(
-        across * x, up * beside.numbers, values, shading="nearest", cmap="cividis"
-    )
+    image = axes.pcolormesh(x, y, values, shading="nearest", cmap="cividis")
     if min(values.shape) > 1 and values.count() > 3 and np.ptp(values.compressed()) > 0:
-        lines = axes.contour(
-            across * x, up * beside.numbers, values, 5, colors=style.PAPER, linewidths=0.9
-        )
+        lines = axes.contour(x, y, values, 5, colors=style.PAPER, linewidths=0.9)
         axes.clabel(lines, fontsize=8.5, fmt=lambda v: f"{v:.3g}")
     rows, columns = np.nonzero(np.ma.getmaskarray(values))
-    axes.plot(across * x[columns], up * beside.numbers[rows], "x", color=style.MUTED)
+    axes.plot(x[columns], y[rows], "x", color=style.MUTED)
     figure.colorbar(image, ax=axes, label=labelled(name_of(column), unit))
-    _along(axes, along, xs)
     if beside.logarithmic:
         axes.set_yscale("log")
-        style.plain_log(axes.yaxis)
     axes.set_ylabel(labelled(name_of(beside), ys))
     axes.grid(visible=False)
 
@@ -237,7 +230,6 @@ def _effect(axes: Axes, value: SweptColumn, values: si.FloatArray) -> None:
     axes.plot(factor * x, y, "-o", ms=4, color=style.BLUE)
     if value.logarithmic:
         axes.set_xscale("log")
-        style.plain_log(axes.xaxis)
 
 
 def _short(name: str) -> str:
@@ -247,10 +239,9 @@ def _short(name: str) -> str:
 
 
 @style.drawn
-def tradeoffs_figure(drawn: tuple[Sweep, tuple[tuple[str, int], ...]]) -> Figure:
+def tradeoffs_figure(sweep: Sweep, wanted: tuple[tuple[str, int], ...]) -> Figure:
     """Each two answers against each other; of those of which less (1) or more (-1) is better, by
     name, the points that no other beats are marked."""
-    sweep, wanted = drawn
     better = dict(wanted)
     columns = [c for c in sweep.columns if c.name in better] or drawn_columns(sweep)
     pairs = list(itertools.combinations(columns, 2))[:MOST_PAIRS]
@@ -269,8 +260,7 @@ def tradeoffs_figure(drawn: tuple[Sweep, tuple[tuple[str, int], ...]]) -> Figure
         + ("; marked: those that no other beats in all that is wanted" if better else ""),
         1.0 + 2.9 * down,
     )
-    grid = figure.subplots(down, across, squeeze=False)
-    for axes, (x, y) in zip(grid.ravel(), pairs, strict=False):
+    for axes, (x, y) in zip(style.panels(figure, len(pairs), across), pairs, strict=True):
         across_values, across_label = read_easily(x, _WISHES[better.get(x.name, 0)])
         values, label = read_easily(y, _WISHES[better.get(y.name, 0)])
         axes.plot(across_values, values, ".", color=style.MUTED, ms=5)
@@ -278,6 +268,4 @@ def tradeoffs_figure(drawn: tuple[Sweep, tuple[tuple[str, int], ...]]) -> Figure
             axes.plot(across_values[marked], values[marked], "o", color=style.ORANGE, ms=5)
         axes.set_xlabel(_short(across_label))
         axes.set_ylabel(_short(label))
-    for spare in grid.ravel()[len(pairs) :]:
-        spare.set_axis_off()
     return figure

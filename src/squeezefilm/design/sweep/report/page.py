@@ -87,7 +87,7 @@ def sweep_page(
         figures["sweep"] = ("The sweep", sweep_figure(sweep))
     figures["effects"] = ("Main effects", effects_figure(sweep))
     if len(sweep.columns) > 1:
-        figures["tradeoffs"] = ("Trade-offs", tradeoffs_figure((sweep, better)))
+        figures["tradeoffs"] = ("Trade-offs", tradeoffs_figure(sweep, better))
     title = escape(printable(sweep.title))
     unanswered = counted(reason for reason in sweep.reasons if reason)
     return {
