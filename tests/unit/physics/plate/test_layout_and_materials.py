@@ -106,7 +106,7 @@ def test_a_stator_needs_a_whole_number_of_wavelengths() -> None:
     assert isinstance(good, AnnularStator)
     with pytest.raises(GeometryError, match="whole number"):
         dataclasses.replace(good, wavelength=0.0193)
-    with pytest.raises(GeometryError, match="hole"):
+    with pytest.raises(InputError, match="which is mean_diameter"):
         dataclasses.replace(good, radial_width=0.06)
 
 
