@@ -12,7 +12,6 @@ from tests.verification.square_swing import square_swing_compensated
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.physics.render.fidelity.report import fidelity_report
-from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SENSORS, SensorModel
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
 from squeezefilm.physics.render.resonator.compensation import (
@@ -154,7 +153,6 @@ def test_preview_with_a_good_sensor_takes_the_lag_away() -> None:
         stroke = rendered_stroke(
             Amplitude(SquareWave(0.4e-3), 0.0, 0.8 * LIMIT), Stroke(0.2, 0.04, 4), TIGHT, straight,
             compensation=compensation, sensor=LVDT_10_KHZ, control_rate=40e3,
-            estimator=MotionEstimator.for_sensor(LVDT_10_KHZ),
         )  # fmt: skip
         report = fidelity_report(stroke)
         lags.append(report.lag)
