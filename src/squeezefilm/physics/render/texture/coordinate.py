@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import TEXTURE_LENGTH
 from squeezefilm.physics.render.opcodes import ALONG, RADIUS, Assembler
 
@@ -32,6 +31,9 @@ class Coordinate:
     `AlongDirection` and `FromPoint`."""
 
     __slots__ = ()
+    WANTED: ClassVar[str] = (
+        "coordinate; give AlongX(), AlongY(), AlongDirection(angle) or FromPoint(x, y)"
+    )
 
     def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
         """The coordinate (m) at places `x`, `y` (m), in their shape."""
@@ -121,13 +123,3 @@ def require_fade(value: si.Metre, at_most: si.Metre) -> None:
     """Refuse a fade (m) that is neither 0 nor between a nanometre and `at_most`."""
     if value != 0.0:
         si.require("fade", value, METRE, at_least=FINEST, at_most=at_most)
-
-
-def require_coordinate(value: object) -> None:
-    """Refuse what is no `Coordinate`."""
-    if not isinstance(value, Coordinate):
-        raise InputError(
-            f"along = {value!r} is no coordinate; give AlongX(), AlongY(), AlongDirection(angle) "
-            "or FromPoint(x, y)",
-            quantity="along",
-        )

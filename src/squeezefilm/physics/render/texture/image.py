@@ -25,7 +25,6 @@ from squeezefilm.physics.render.texture.coordinate import (
     X_AXIS,
     Coordinate,
     Place,
-    require_coordinate,
 )
 from squeezefilm.physics.render.texture.pattern import Pattern, part
 
@@ -165,9 +164,6 @@ class Noise(_Added):
     """
 
     along: Coordinate = X_AXIS
-
-    def __post_init__(self) -> None:
-        require_coordinate(self.along)
 
     def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
         self.along._lower(assembler)

@@ -90,6 +90,10 @@ class Pattern(TexturePart):
     """A dimensionless shape, 0 to 1; the base of every generator and composite."""
 
     __slots__ = ()
+    WANTED: ClassVar[str] = (
+        "pattern; give a dimensionless one like SquareWave, Band or Noise (a texture has a "
+        "quantity of its own and can be no mask)"
+    )
 
     def __invert__(self) -> Pattern:
         return self.pattern if isinstance(self, Complement) else Complement(self)
@@ -129,24 +133,11 @@ def _parts(kind: type[_Joined], *operands: Pattern) -> tuple[Pattern, ...]:
     return tuple(patterns)
 
 
-def require_pattern(name: str, value: object) -> None:
-    """Refuse what is no `Pattern`."""
-    if not isinstance(value, Pattern):
-        raise InputError(
-            f"{name} = {value!r} is no pattern; give a dimensionless one like SquareWave, Band or "
-            "Noise (a texture has a quantity of its own and can be no mask)",
-            quantity=name,
-        )
-
-
 @part
 class Complement(Pattern):
     """1 − `pattern`: its ends exchanged."""
 
     pattern: Pattern
-
-    def __post_init__(self) -> None:
-        require_pattern("pattern", self.pattern)
 
     def _lower(self, assembler: Assembler) -> None:
         self.pattern._lower(assembler)
@@ -166,8 +157,6 @@ class _Joined(Pattern):
                 f"{len(self.patterns)} patterns cannot be joined; give 1 to {MOST_PARTS}",
                 quantity="patterns",
             )
-        for pattern in self.patterns:
-            require_pattern("patterns", pattern)
 
     def _lower(self, assembler: Assembler) -> None:
         for index, pattern in enumerate(self.patterns):
@@ -216,9 +205,6 @@ class SpeedScaled(Pattern):
     reference_speed: Annotated[si.MetrePerSecond, si.AtLeast(1e-06), si.AtMost(10.0)]
     slowest: Annotated[si.MetrePerSecond, si.AtLeast(1e-06), si.AtMost(10.0)] = 0.001
     fastest: Annotated[si.MetrePerSecond, si.AtLeast("slowest"), si.AtMost(10.0)] = 1.0
-
-    def __post_init__(self) -> None:
-        require_pattern("pattern", self.pattern)
 
     def _lower(self, assembler: Assembler) -> None:
         low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed

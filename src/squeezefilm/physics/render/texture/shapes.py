@@ -35,7 +35,6 @@ from squeezefilm.physics.render.texture.coordinate import (
     FromPoint,
     Length,
     Place,
-    require_coordinate,
     require_fade,
 )
 from squeezefilm.physics.render.texture.pattern import Pattern, part
@@ -59,9 +58,6 @@ class _Along(Pattern):
 
     __slots__ = ()
     along: Coordinate
-
-    def __post_init__(self) -> None:
-        require_coordinate(self.along)
 
 
 @part
@@ -149,7 +145,6 @@ class Ramp(_Along):
     along: Coordinate = X_AXIS
 
     def __post_init__(self) -> None:
-        _Along.__post_init__(self)
         if abs(self.end - self.start) < 1e-9:
             raise InputError(
                 "start and end of a ramp are the same; they must be a nanometre apart at least; "
@@ -184,7 +179,6 @@ class Band(_Along):
 
     def __post_init__(self) -> None:
         require_fade(self.fade, self.end - self.start)
-        _Along.__post_init__(self)
 
     @classmethod
     @reads_text
