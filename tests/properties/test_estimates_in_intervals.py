@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Estimate, inverse_of
-from squeezefilm.study.identification.confusion import ConfusionMatrix
-from squeezefilm.study.identification.proportions import (
+from squeezefilm.study.identification.confusion import (
     METHODS,
+    ConfusionMatrix,
     participant_interval,
     proportion_interval,
     recentred_interval,

@@ -20,8 +20,9 @@ from squeezefilm.study.identification.condition_means import (
     condition_means,
     response_time_summary,
 )
-from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
-from squeezefilm.study.identification.proportions import (
+from squeezefilm.study.identification.confusion import (
+    ConfusionMatrix,
+    participant_counts,
     participant_interval,
     permutation_test,
     proportion_interval,

@@ -29,8 +29,11 @@ from scipy.special import chdtrc, entr, ndtr, xlogy
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.confusion import whole_counts
-from squeezefilm.study.identification.proportions import recentred_interval, resampled_counts
+from squeezefilm.study.identification.confusion import (
+    recentred_interval,
+    resampled_counts,
+    whole_counts,
+)
 from squeezefilm.study.psychometric.estimate import Estimate
 
 # Beyond this a position stands for "never confused": its likelihood is flat.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -131,9 +131,9 @@ class FitRequest:
     _: KW_ONLY
     shape: Shape = "logistic"
     axis: Axis = "linear"
-    guess_rate: si.Dimensionless | None = 0.5
+    guess_rate: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(0.5)] | None = 0.5
     prior: PsychometricPrior | None = None
-    level: si.Dimensionless = 0.95
+    level: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.95
 
 
 @reads_text
@@ -158,9 +158,6 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
     """
     axis, level, guess_rate = asked.axis, asked.level, asked.guess_rate
     code = shape_code(asked.shape, axis)
-    si.require("level", level, above=0.0, below=1.0)
-    if guess_rate is not None:
-        si.require("guess_rate", guess_rate, at_least=0.0, at_most=0.5)
     places, k, n = _by_place(asked.intensity, asked.positive, asked.trials)
     prior = PsychometricPrior.for_stimuli(places, axis) if asked.prior is None else asked.prior
     answered = Answered(code, axis, prior, guess_rate, on_axis(places, axis), k, n)

@@ -21,7 +21,7 @@ from scipy.special import softmax
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.proportions import proportion_interval
+from squeezefilm.study.identification.confusion import proportion_interval
 from squeezefilm.study.psychometric.estimate import Estimate, student, t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import ConditionFinding, PersonEstimate, through
