@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import get_args
 
 import numpy as np
 from hypothesis import assume, example, given, settings
@@ -11,8 +12,8 @@ from hypothesis import strategies as st
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Estimate, inverse_of
 from squeezefilm.study.identification.confusion import (
-    METHODS,
     ConfusionMatrix,
+    Method,
     participant_interval,
     proportion_interval,
     recentred_interval,
@@ -94,7 +95,7 @@ def test_what_a_confusion_matrix_says_lies_in_its_intervals(made, level, resampl
     names = tuple(str(number) for number in range(made.shape[1]))
     matrix = ConfusionMatrix(made.sum(axis=0), names, names)
     right = matrix.proportion_correct
-    for method in METHODS:
+    for method in get_args(Method):
         assert right in proportion_interval(matrix.correct, matrix.trials, level, method)
     assert right in participant_interval(made, level, resamples, seed)
     carried = information_transfer(made, level, resamples, seed)
