@@ -233,7 +233,7 @@ class Served:
         assert entered
         self.cookie = f"c={entered[0].secret}"
         # These pages compute nothing.
-        self.lab.workers.quick.begin = lambda: None  # type: ignore[method-assign]
+        self.lab.quick.begin = lambda: None  # type: ignore[method-assign]
 
     async def __aenter__(self) -> Served:
         self.task = asyncio.create_task(self.server.serve([self.listener]))

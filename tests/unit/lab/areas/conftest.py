@@ -54,7 +54,7 @@ class Talk:
             self.told = told
             return work(*arguments)
 
-        monkeypatch.setattr(getattr(self.lab.workers, line), "do", do)
+        monkeypatch.setattr(getattr(self.lab, line), "do", do)
 
     def say(self, type: str, **fields: Any) -> dict[str, Any]:
         """A page asks, the participant's where the type is one of its own; the answer."""

@@ -194,7 +194,7 @@ class Talk:
         async def exposed(*_: object) -> Exposure:
             return EXPOSURE
 
-        monkeypatch.setattr(self.lab.workers.slow, "do", exposed)
+        monkeypatch.setattr(self.lab.slow, "do", exposed)
         StudyArea(self.lab, StudyDevices(lambda *_: fake))
         DeviceArea(self.lab)
         self.store = folder / "studies" / "one.sqlite"
@@ -339,7 +339,7 @@ def test_a_check_is_asked_of_the_drive_with_the_display_on_the_page(
     async def named(*_: object) -> str:
         return "mine"
 
-    monkeypatch.setattr(talk.lab.workers.quick, "do", named)
+    monkeypatch.setattr(talk.lab.quick, "do", named)
 
     async def work() -> None:
         text = 'name = "mine"'
