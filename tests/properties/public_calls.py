@@ -200,7 +200,8 @@ NOT_CALLED = {
     design.sweep.sweep.sweep physics.plate.solid.solve.solve_modes
     """,
     "the check of numbers itself, whose bounds are the code's own, and its messages' text": """
-    core.quantities.require.require core.quantities.units.format_quantity
+    core.quantities.require.Rising core.quantities.require.require
+    core.quantities.units.format_quantity
     core.quantities.units.typed_quantity
     """,
 }
