@@ -23,11 +23,10 @@ from squeezefilm.core.interrupts import hear_interrupts
 from squeezefilm.design.search.candidate import Design, Evaluated
 from squeezefilm.design.search.criteria import CRITERIA, bounded, criterion_of
 from squeezefilm.design.search.found import DesignSearch
-from squeezefilm.design.search.reasons import corner_in_words, limit_in_words
+from squeezefilm.design.search.limits import Made, corner_in_words, limit_in_words
 from squeezefilm.design.search.report.page import plate_file
 from squeezefilm.design.search.report.words import setting_words
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.tolerance import Made
 from squeezefilm.lab.files import existing
 from squeezefilm.lab.own_process import Tell, ToldProcess, telling
 from squeezefilm.lab.worker import LARGEST_MEMORY, prepare

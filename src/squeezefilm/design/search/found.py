@@ -15,14 +15,14 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import Result, to_json
 from squeezefilm.design.search.candidate import Evaluated, plates_of, sourced_display_of
 from squeezefilm.design.search.criteria import CRITERIA
-from squeezefilm.design.search.reasons import (
+from squeezefilm.design.search.limits import (
     EmptyCorner,
     LimitReason,
+    Made,
     empty_corners,
     limit_reasons,
 )
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.tolerance import Made
 from squeezefilm.design.search.worth_solving import Correction, objectives_of, worst_corner
 from squeezefilm.design.sweep.tradeoffs import dominates, front_of, hypervolume, knee_of
 from squeezefilm.physics.display import Display

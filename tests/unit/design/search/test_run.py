@@ -18,9 +18,8 @@ from squeezefilm.core.results import config_hash
 from squeezefilm.design.search import candidate
 from squeezefilm.design.search.candidate import Design, Evaluated, Level
 from squeezefilm.design.search.found import DesignSearch
-from squeezefilm.design.search.reasons import limit_in_words, margins
+from squeezefilm.design.search.limits import Made, limit_in_words, margins
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.tolerance import Made
 from squeezefilm.design.sweep.tasks import NoAnswer
 
 FEW = {"screened": 40, "solved": 6}

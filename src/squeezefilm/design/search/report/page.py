@@ -29,7 +29,7 @@ from squeezefilm.core.kit.page_style import (
 from squeezefilm.design.search.candidate import Design, sourced_display_of
 from squeezefilm.design.search.criteria import CRITERIA, bounded
 from squeezefilm.design.search.found import DesignSearch, FrontMember
-from squeezefilm.design.search.reasons import margins
+from squeezefilm.design.search.limits import margins
 from squeezefilm.design.search.report.figures import FIGURES, MARKED
 from squeezefilm.design.search.report.words import (
     asked_sentences,
