@@ -184,7 +184,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "physics.texture_files.image_file.ImageFile": {"file": "picture.png"},
     "core.formats.traces.Table": {"columns": {"time_s": _GRID}},
-    "core.formats.wav.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},
+    "core.formats.traces.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},
     "core.materials.PiezoConstants": Later(lambda: fields_of(PZT.full_constants)),
     "core.materials.Piezoceramic": {
         "in_plane_poisson_ratio": 0.29,

@@ -52,7 +52,7 @@ QUICK = (
     "physics.film.closed",
     "physics.film.planar.grid",
     "physics.film.validity.knudsen_number",
-    "core.formats.wav",
+    "core.formats.traces",
     "physics.texture_files.image_file",
     "core.materials",
     "physics.plate.beam_modes.euler",
