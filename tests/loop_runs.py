@@ -18,7 +18,7 @@ from squeezefilm.instruments.session.loop.process import lateness_in, sample_blo
 from squeezefilm.instruments.session.loop.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUMNS
 from squeezefilm.instruments.session.loop.shared import private_views, ring_put, ring_take
 from squeezefilm.instruments.session.loop.worker import due_ns, make_due_tick
-from squeezefilm.physics.render.motion.sensor import SensorStream
+from squeezefilm.physics.render.motion.estimator import SensorStream
 
 
 @compiled()

@@ -66,7 +66,7 @@ if TYPE_CHECKING:
     from squeezefilm.physics.film.periodic.profile import GapFunction, GapProfile
     from squeezefilm.physics.perception.observer import NamedObserver
     from squeezefilm.physics.plate.working_mode import PlateTheory
-    from squeezefilm.physics.render.motion.sensor import SensorModel
+    from squeezefilm.physics.render.motion.estimator import SensorModel
     from squeezefilm.physics.render.motion.stroke import Stroke as _Stroke
     from squeezefilm.physics.render.texture.coordinate import Coordinate, Length, Place
     from squeezefilm.physics.render.texture.image import Image as _Image

@@ -31,7 +31,7 @@ from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loo
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Reason
 from squeezefilm.instruments.device.wire.streams import open_stream
-from squeezefilm.physics.render.motion.sensor import SensorModel
+from squeezefilm.physics.render.motion.estimator import SensorModel
 
 RATIO = 2e-3
 GAINS = loop_gains(

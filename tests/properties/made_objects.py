@@ -88,9 +88,10 @@ from squeezefilm.physics.plate.surface_shape import (
 )
 from squeezefilm.physics.plate.thermal import Thermal
 from squeezefilm.physics.plate.working_mode import WorkingMode, working_mode
-from squeezefilm.physics.render.motion.estimator import MotionEstimator, MotionModel
-from squeezefilm.physics.render.motion.sensor import (
+from squeezefilm.physics.render.motion.estimator import (
     LVDT_10_KHZ,
+    MotionEstimator,
+    MotionModel,
     SensorModel,
     SensorStream,
     sensor_stream,

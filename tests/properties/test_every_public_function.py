@@ -67,7 +67,7 @@ QUICK = (
     "physics.render.texture.levels",
     "physics.render.motion.estimator.MotionModel",
     "physics.render.texture.pattern",
-    "physics.render.motion.sensor.SensorModel",
+    "physics.render.motion.estimator.SensorModel",
     "physics.render.motion.stroke",
 )
 

@@ -25,7 +25,7 @@ from squeezefilm.instruments.device.machine.playing import Finger
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Frame, Reason
 from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness, lateness_class
-from squeezefilm.physics.render.motion.sensor import SensorModel
+from squeezefilm.physics.render.motion.estimator import SensorModel
 
 FREQUENCY = 30_000.0
 

@@ -12,8 +12,12 @@ from tests.verification.square_swing import square_swing_compensated
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.physics.render.fidelity.report import fidelity_report
-from squeezefilm.physics.render.motion.estimator import MotionEstimator
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SENSORS, SensorModel
+from squeezefilm.physics.render.motion.estimator import (
+    LVDT_10_KHZ,
+    SENSORS,
+    MotionEstimator,
+    SensorModel,
+)
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
 from squeezefilm.physics.render.resonator.compensation import (
     DrivenEnvelope,

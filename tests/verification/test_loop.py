@@ -20,11 +20,11 @@ from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.lateness import CLASSES, lateness_class
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
-from squeezefilm.physics.render.motion.estimator import MotionEstimator
-from squeezefilm.physics.render.motion.sensor import (
+from squeezefilm.physics.render.motion.estimator import (
     LVDT_10_KHZ,
     TOUCH_PANEL_60_HZ,
     TOUCH_PANEL_240_HZ,
+    MotionEstimator,
     SensorModel,
     sensor_stream,
 )

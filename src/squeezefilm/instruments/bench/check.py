@@ -28,7 +28,7 @@ from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Fault, Reason, State
 from squeezefilm.instruments.device.wire.link import ANSWER_LIMIT
 from squeezefilm.instruments.session.play.plan import REPORT_PERIOD
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, SensorModel
 
 TEST_VOLTAGE: si.Volt = 1.0
 """The most that a check may ask of a device."""

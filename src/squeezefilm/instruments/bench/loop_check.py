@@ -14,8 +14,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.process import LoopProcess
-from squeezefilm.physics.render.motion.estimator import MotionEstimator
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, MotionEstimator
 from squeezefilm.physics.render.program.lowering import lower
 from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.physics.render.texture.levels import Amplitude

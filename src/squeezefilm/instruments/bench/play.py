@@ -43,7 +43,7 @@ from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.chain.played_texture import FingerMotion, require_on_display
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel, sensor_named
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, SensorModel, sensor_named
 from squeezefilm.physics.texture_files.texture_file import NamedTexture, TextureFile
 from squeezefilm.physics.texture_files.trajectories import motion_from, read_trajectory
 

@@ -18,8 +18,7 @@ from squeezefilm.instruments.bench.resonance_sweep import peak
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.session.play.plan import REPORT_PERIOD
-from squeezefilm.physics.render.motion.estimator import MotionEstimator
-from squeezefilm.physics.render.motion.sensor import SensorModel
+from squeezefilm.physics.render.motion.estimator import MotionEstimator, SensorModel
 
 DELAY_WITHIN: si.Second = 1e-3
 """By how much a sensor's delay may differ from what a session believes: 0.08 mm at 80 mm/s."""

@@ -45,7 +45,7 @@ from squeezefilm.physics.render.fidelity.report import (
     fidelity_report,
     strongest_lines,
 )
-from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_named
+from squeezefilm.physics.render.motion.estimator import SensorModel, sensor_named
 from squeezefilm.physics.render.motion.stroke import Stroke
 from squeezefilm.physics.render.program.renderer import Counters, render
 from squeezefilm.physics.render.resonator.compensation import (

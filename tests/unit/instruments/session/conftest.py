@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.physics.render.motion.estimator import MotionEstimator
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, MotionEstimator
 from squeezefilm.physics.render.program.inverse import FrictionTable
 from squeezefilm.physics.render.program.lowering import lower
 from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
