@@ -388,8 +388,8 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "physics.render.program.renderer.Renderer.tick": {"t": 0.001},
     "physics.render.motion.estimator.SensorModel": {"rate": 1e3, "noise": 1e-6},
     "physics.render.motion.estimator.sensor_stream": {"position": np.cos, "duration": 0.02},
-    "physics.render.program.wave.WaveCompensation": {"factors": (1.0, 1.0, 1.0, 1.0)},
-    "physics.render.program.wave.WaveCompensation.from_ripple": {
+    "physics.render.program.inverse.WaveCompensation": {"factors": (1.0, 1.0, 1.0, 1.0)},
+    "physics.render.program.inverse.WaveCompensation.from_ripple": {
         "position": _WAVE,
         "relative_friction": np.full(8, 0.7),
     },

@@ -103,10 +103,13 @@ from squeezefilm.physics.render.motion.stroke import (
     Stroke,
     Trajectory,
 )
-from squeezefilm.physics.render.program.inverse import FrictionInverse, FrictionTable
+from squeezefilm.physics.render.program.inverse import (
+    FrictionInverse,
+    FrictionTable,
+    WaveCompensation,
+)
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import MadeForSpeed, Renderer
-from squeezefilm.physics.render.program.wave import WaveCompensation
 from squeezefilm.physics.render.resonator.compensation import (
     DrivenEnvelope,
 )

@@ -12,8 +12,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render import opcodes as op
 from squeezefilm.physics.render.opcodes import Assembler
 from squeezefilm.physics.render.program import layout as at
-from squeezefilm.physics.render.program.inverse import FrictionInverse
-from squeezefilm.physics.render.program.wave import WaveCompensation
+from squeezefilm.physics.render.program.inverse import FrictionInverse, WaveCompensation
 from squeezefilm.physics.render.texture.composition import Composable, Quantity
 from squeezefilm.physics.render.texture.coordinate import FARTHEST, METRE
 from squeezefilm.physics.render.texture.levels import LARGEST_AMPLITUDE
