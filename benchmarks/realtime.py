@@ -35,10 +35,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from tests.loop_runs import run_ticks
 
 from squeezefilm.instruments.session.loop import shared
-from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.process import PRIORITY, LoopProcess, lateness_in
-from squeezefilm.instruments.session.loop.shared import ring_put_all, store_release, taken
+from squeezefilm.instruments.session.loop.shared import Lateness, ring_put_all, store_release, taken
 from squeezefilm.instruments.session.loop.worker import Orders, run_loop
 from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, MotionEstimator
 from squeezefilm.physics.render.program.lowering import lower

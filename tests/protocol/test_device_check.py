@@ -24,7 +24,7 @@ from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.playing import Finger
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Frame, Reason
-from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness, lateness_class
+from squeezefilm.instruments.session.loop.shared import CLASSES, Lateness, lateness_class
 from squeezefilm.physics.render.motion.estimator import SensorModel
 
 FREQUENCY = 30_000.0

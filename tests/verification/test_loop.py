@@ -17,8 +17,8 @@ from tests.loop_runs import SimulatedRun, run_ticks, stream_samples
 from tests.simulated_loop import SimulatedLoop
 
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.lateness import CLASSES, lateness_class
 from squeezefilm.instruments.session.loop.plan import LoopPlan
+from squeezefilm.instruments.session.loop.shared import CLASSES, lateness_class
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.physics.render.motion.estimator import (
     LVDT_10_KHZ,

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.process import LoopProcess
+from squeezefilm.instruments.session.loop.shared import Lateness
 from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, MotionEstimator
 from squeezefilm.physics.render.program.lowering import lower
 from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope

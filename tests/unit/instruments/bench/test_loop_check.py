@@ -10,8 +10,8 @@ import pytest
 
 from squeezefilm.instruments.bench import loop_check
 from squeezefilm.instruments.bench.loop_check import check_loop, loop_lateness, loop_result
-from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness, lateness_class
 from squeezefilm.instruments.session.loop.plan import LoopPlan
+from squeezefilm.instruments.session.loop.shared import CLASSES, Lateness, lateness_class
 
 
 def lateness(made: int, lost: int, late_ns: float = 12_000.0) -> Lateness:
