@@ -1,4 +1,6 @@
-"""Tables of samples in CSV and Parquet: units in the names of columns, origin kept with the file.
+"""Samples in files that say their units: tables as CSV and Parquet, one channel as WAV.
+
+A table has units in the names of its columns, and its origin is kept with the file.
 
 CSV is UTF-8 with a comma, one header line, and before it one comment line ``# {JSON}`` with the
 metadata, in whose texts commas and semicolons are escaped, so that no spreadsheet finds a formula

@@ -1,4 +1,5 @@
-"""Parts that solved plate, disc and stator share: its modes, the working one, a summary."""
+"""A solved plate, disc or stator: its modes, the working one, a summary, and what the working mode
+becomes where one thing is different."""
 
 from __future__ import annotations
 
@@ -200,7 +201,8 @@ def half_power(frequency: si.FloatArray, amplitude: si.FloatArray) -> tuple[floa
     return edges[0], edges[1]
 
 
-# Each is solved in three dimensions; solved plates are kept, so that asking again costs nothing.
+# Plates with one thing different. Each is solved in three dimensions; solved plates are kept, so
+# that asking again costs nothing.
 LOSSLESS: si.Dimensionless = 1e5
 """The quality factor that stands for a substrate without losses of its own."""
 _POINTS = 61

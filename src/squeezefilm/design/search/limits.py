@@ -1,4 +1,4 @@
-"""Limits of a search: which bind and what each costs, and the share of the plates made that keep them."""
+"""Limits of a search: which bind, what each costs, and the share of plates made that keep them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""The memory that a loop and its host share: control words, a histogram and three rings of rows.
+"""The memory that a loop and its host share: control words, a histogram of lateness,
+three rings of rows.
 
 One stretch of memory, mapped by both. Control words are int64 on cache lines of their own; each is
 written by one side only. An aligned 64-bit word is read whole or not at all on x86-64 and ARM64;

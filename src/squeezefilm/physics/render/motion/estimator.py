@@ -1,4 +1,5 @@
-"""Estimator of a finger's place and speed from samples that are noisy, late and irregular.
+"""A finger's motion as a display knows it: what a sensor reports of it, noisy, late and
+irregular, and the place and speed that are estimated from this.
 
 The finger's acceleration (or jerk) is taken as white noise: over a time h without news its state
 (x, v, a) is carried along by x + v h + a h²/2, and its covariance grows by
@@ -32,10 +33,10 @@ from squeezefilm.core.hard_limits import MOTION_SAMPLES, require_motion
 from squeezefilm.physics.render.motion import kernel
 
 
-# A touch panel samples the finger seldom, late and irregularly; a displacement transducer samples
-# it often and at once. `SensorModel` holds what matters of either, `sensor_stream` plays it on any
-# motion, with a seed. The presets are assumed: their numbers are typical of such devices, none was
-# measured or published for one.
+# Finger sensors as numbers. A touch panel samples the finger seldom, late and irregularly; a
+# displacement transducer samples it often and at once. `SensorModel` holds what matters of either,
+# `sensor_stream` plays it on any motion, with a seed. The presets are assumed: their numbers are
+# typical of such devices, none was measured or published for one.
 @si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class SensorModel:

@@ -1,5 +1,8 @@
-"""A friction law as a table, which what takes many samples asks in place of the law, and the table
-read backwards: the amplitude that makes a wanted friction."""
+"""Inverses of a display, as tables that a renderer takes: the amplitude that makes a wanted
+friction, and the share that a contact meets of it along the wave, by which it is divided.
+
+A friction law is also asked as a table by what takes many samples.
+"""
 
 from __future__ import annotations
 
@@ -286,8 +289,6 @@ def _changes_nothing() -> InputError:
 
 # A plate in a standing wave |cos(πx/λ½)| vibrates at antinodes and rests at nodes, so a texture
 # that asks for one amplitude is felt with a ripple of period λ½, half the wavelength.
-# `WaveCompensation` gives the share of the amplitude that a contact meets to the renderer, which
-# divides by it.
 _MOST_FACTORS = 65_536
 
 
