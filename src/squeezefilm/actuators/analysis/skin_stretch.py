@@ -11,16 +11,14 @@ import numpy as np
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers, Usual, drawn_answers
 from squeezefilm.actuators.skin_stretch.array import (
     ArrayPull,
+    Lines,
     SkinStretchArray,
     SkinStretchDescription,
-)
-from squeezefilm.actuators.skin_stretch.bimorph import LoadedTip, loaded_tip, tip_motion
-from squeezefilm.actuators.skin_stretch.budget import (
-    Lines,
     charging_power,
     lines_needed,
     loss_power,
 )
+from squeezefilm.actuators.skin_stretch.bimorph import LoadedTip, loaded_tip, tip_motion
 from squeezefilm.actuators.skin_stretch.cradle import (
     Seating,
     finest_period,
