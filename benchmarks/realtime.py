@@ -41,7 +41,7 @@ from squeezefilm.instruments.session.loop.shared import Lateness, ring_put_all, 
 from squeezefilm.instruments.session.loop.worker import Orders, run_loop
 from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, MotionEstimator
 from squeezefilm.physics.render.program.lowering import lower
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 from squeezefilm.physics.render.texture.levels import Amplitude
 from squeezefilm.physics.render.texture.shapes import SquareWave
 

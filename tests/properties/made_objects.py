@@ -110,7 +110,7 @@ from squeezefilm.physics.render.program.inverse import (
 )
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import MadeForSpeed, Renderer
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator.envelope import (
     DrivenEnvelope,
 )
 from squeezefilm.physics.render.texture.composition import Composable, Texture

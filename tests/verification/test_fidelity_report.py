@@ -19,10 +19,10 @@ from squeezefilm.physics.render.motion.estimator import (
     SensorModel,
 )
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator.envelope import (
     DrivenEnvelope,
+    sine_swing_kept,
 )
-from squeezefilm.physics.render.resonator.envelope import sine_swing_kept
 from squeezefilm.physics.render.texture.levels import Amplitude
 from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 

@@ -31,7 +31,7 @@ from squeezefilm.physics.render.motion.estimator import (
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.physics.render.program.inverse import FrictionTable
 from squeezefilm.physics.render.program.lowering import lower
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.render.texture.image import Noise
 from squeezefilm.physics.render.texture.levels import Amplitude

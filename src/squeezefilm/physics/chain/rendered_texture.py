@@ -48,12 +48,12 @@ from squeezefilm.physics.render.fidelity.report import (
 from squeezefilm.physics.render.motion.estimator import SensorModel, sensor_named
 from squeezefilm.physics.render.motion.stroke import Stroke
 from squeezefilm.physics.render.program.renderer import Counters, render
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator.envelope import (
     COMPENSATIONS,
     Compensation,
     DrivenEnvelope,
+    envelope_time_constant,
 )
-from squeezefilm.physics.render.resonator.envelope import envelope_time_constant
 from squeezefilm.physics.texture_files.texture_file import NamedTexture, TextureFile
 from squeezefilm.physics.texture_files.trajectories import Motion, NamedMotion
 

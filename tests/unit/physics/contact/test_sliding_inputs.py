@@ -18,7 +18,7 @@ from squeezefilm.physics.contact.sliding.march import (
     slide,
 )
 from squeezefilm.physics.render.motion.stroke import Stroke
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 
 DT = 1e-4
 BONE = 0.08 * DT * np.arange(2000)

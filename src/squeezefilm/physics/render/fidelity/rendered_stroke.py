@@ -25,7 +25,7 @@ from squeezefilm.physics.render.motion.estimator import (
 )
 from squeezefilm.physics.render.motion.stroke import Stroke, Trajectory
 from squeezefilm.physics.render.resonator import kernel
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator.envelope import (
     CompensatedDrive,
     Compensation,
     DrivenEnvelope,

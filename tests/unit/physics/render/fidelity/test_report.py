@@ -19,7 +19,7 @@ from squeezefilm.physics.render.motion.estimator import (
     MotionModel,
 )
 from squeezefilm.physics.render.motion.stroke import Stroke
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 from squeezefilm.physics.render.texture.levels import Amplitude
 from squeezefilm.physics.render.texture.shapes import SquareWave
 

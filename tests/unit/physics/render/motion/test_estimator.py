@@ -26,8 +26,11 @@ from squeezefilm.physics.render.motion.estimator import (
 )
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.physics.render.resonator import kernel as compensation_kernel
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope, preview_work
-from squeezefilm.physics.render.resonator.envelope import carrier_block
+from squeezefilm.physics.render.resonator.envelope import (
+    DrivenEnvelope,
+    carrier_block,
+    preview_work,
+)
 
 ESTIMATOR = MotionEstimator(MotionModel(), 2e-5)
 
