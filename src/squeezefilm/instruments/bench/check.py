@@ -21,8 +21,13 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import DeviceError
 from squeezefilm.instruments.bench.conversation import Conversation
-from squeezefilm.instruments.bench.loop_check import CheckResult, DeviceCheck, in_ms
-from squeezefilm.instruments.bench.reading_check import reading_checks, sensor_checks
+from squeezefilm.instruments.bench.reading_check import (
+    CheckResult,
+    DeviceCheck,
+    in_ms,
+    reading_checks,
+    sensor_checks,
+)
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Fault, Reason, State
