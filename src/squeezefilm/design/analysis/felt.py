@@ -35,9 +35,8 @@ from squeezefilm.physics.render.resonator.envelope import (
     finest_period,
     sine_swing_kept,
 )
-from squeezefilm.physics.uncertainty.drawn import hash_of_draws
 from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, mixture_of
-from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, ends
+from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, ends, hash_of_draws
 from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 
 PAPER_PERIODS: tuple[si.Metre, ...] = (0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3)

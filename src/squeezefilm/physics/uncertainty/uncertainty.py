@@ -18,7 +18,6 @@ from squeezefilm.core.results import Interval, to_json
 from squeezefilm.physics.chain.friction import where_known
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.uncertainty.drawn import evaluate, hash_of_draws, require_samples
 from squeezefilm.physics.uncertainty.draws import (
     Mixture,
     Outcome,
@@ -34,10 +33,13 @@ from squeezefilm.physics.uncertainty.intervals import (
     GroupInfluence,
     Influence,
     ends,
+    evaluate,
     followed,
     groups_of,
+    hash_of_draws,
     influences_of,
     quantiles,
+    require_samples,
 )
 
 SAMPLES, POINTS = 16, 8
