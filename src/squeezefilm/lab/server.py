@@ -22,8 +22,7 @@ from starlette.websockets import WebSocket
 from squeezefilm.core.errors import InputError
 from squeezefilm.lab.connections import NowPlaying, OpenPage, PageProtocol, TimedProtocol
 from squeezefilm.lab.door import Connection, Door
-from squeezefilm.lab.guard import CONNECTION, Guard, Places
-from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.guard import CONNECTION, Guard, Keys, Places
 from squeezefilm.lab.wire import LARGEST_FROM_PARTICIPANT, LARGEST_MESSAGE, Dispatcher, as_text
 from squeezefilm.lab.worker import PAGE, Busy, SupersededError
 from squeezefilm.physics import render

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 from pydantic import Field
 
 from squeezefilm.core.errors import DeviceError, InputError
-from squeezefilm.lab.keys import CODE_LIFE
+from squeezefilm.lab.guard import CODE_LIFE
 from squeezefilm.lab.studying.devices import MeasuredDevice, StudyDevices
 from squeezefilm.lab.studying.jobs import analysis_of, rehearsed, report_of
 from squeezefilm.lab.studying.studies import PrepareSitting, Studies

@@ -10,8 +10,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.lab.guard import Places
-from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.guard import Keys, Places
 from squeezefilm.lab.server import Lab
 from squeezefilm.lab.worker import Told
 

@@ -17,8 +17,7 @@ from squeezefilm.lab import own_process
 from squeezefilm.lab.areas import study as study_area
 from squeezefilm.lab.areas.device import DeviceArea
 from squeezefilm.lab.areas.study import StudyArea
-from squeezefilm.lab.guard import Places
-from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.guard import Keys, Places
 from squeezefilm.lab.own_process import DeviceSession
 from squeezefilm.lab.server import PAGE, Lab
 from squeezefilm.lab.studying.devices import StudyDevices
