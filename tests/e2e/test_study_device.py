@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.errors import DeviceError
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.record.trace import read_trace

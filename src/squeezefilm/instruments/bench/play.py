@@ -19,7 +19,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.core.formats.traces import table_from_csv
 from squeezefilm.core.hard_limits import TABLE_BYTES

@@ -29,7 +29,7 @@ from squeezefilm.core.arguments import ReadBy
 
 # Read for their classes: what a file may name is what is below Composable, Pattern, Coordinate.
 from squeezefilm.core.config.load import load, load_text
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.results import write_new
 from squeezefilm.physics.render.texture import image, levels, shapes

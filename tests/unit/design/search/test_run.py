@@ -307,7 +307,7 @@ def test_a_plate_of_the_front_is_a_display_that_can_be_written_and_read(
     whole: DesignSearch,
 ) -> None:
     from squeezefilm.core import config
-    from squeezefilm.core.config.write import text_of
+    from squeezefilm.core.config.schema import text_of
     from squeezefilm.physics.display import Display
 
     found = whole

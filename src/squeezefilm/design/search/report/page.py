@@ -9,7 +9,7 @@ from html import escape
 from pathlib import Path
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import csv_text, json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import printable
