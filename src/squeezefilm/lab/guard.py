@@ -1,4 +1,5 @@
-"""Guard before every request: host, origin, session, size, and the headers that go back.
+"""Guard before every request: the keys that let a browser in; its host, origin, session and size,
+and the headers that go back.
 
 A page that only this computer may use is still reachable by any website that this computer's
 browser shows. The Host check stops DNS rebinding, the Origin check foreign pages and cross-site
@@ -31,9 +32,10 @@ from squeezefilm.core.hard_limits import OWN_BYTES
 from squeezefilm.core.regular_file import read_json
 from squeezefilm.lab.files import write_secret
 
-# A link works once and is exchanged for a cookie that no script can read. Keys belong to one run of
-# the lab; they outlive it only when it is killed, so that a page that was open can go on after a
-# restart. Secrets are compared in constant time.
+# Keys: one-time links, sessions with a role, pairing codes. A link works once and is exchanged for
+# a cookie that no script can read. Keys belong to one run of the lab; they outlive it only when it
+# is killed, so that a page that was open can go on after a restart. Secrets are compared in
+# constant time.
 Role = Literal["experimenter", "participant"]
 
 LINK_LIFE: si.Second = 600.0

@@ -1,4 +1,5 @@
-"""The whole array on a fingertip: from volts to forces, displacements and strain of the skin.
+"""The whole array on a fingertip: from volts to forces, displacements and strain of the skin; and
+its budget of mass, volume, power and lines, checked against stated limits.
 
 Actuator i gives x_i = δ V_i − F_i/k, the skin x = C F with the tissue's influence C; where every
 contactor sticks, (C + 1/k) F = δ V. Linear and quasi-static: what comes of 60 voltages is a product

@@ -1,4 +1,5 @@
-"""A pydantic model for every frozen dataclass that a room owns, built from its annotations.
+"""Frozen dataclasses from and to TOML: a pydantic model for each that a room owns, built from its
+annotations, and text with units, such that `load_text` reads the same value back.
 
 The rooms stay free of pydantic: a field annotated `Metre` becomes one that reads quantity text
 with a dimension of length; unknown keys are refused.

@@ -21,7 +21,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import DeviceError
 from squeezefilm.instruments.bench.conversation import Conversation
-from squeezefilm.instruments.bench.reading_check import (
+from squeezefilm.instruments.bench.timing_checks import (
     CheckResult,
     DeviceCheck,
     in_ms,

@@ -29,8 +29,8 @@ from squeezefilm.core.results import Result, stamp
 from squeezefilm.instruments.bench.check import WATCHED, check_device
 from squeezefilm.instruments.bench.conversation import Conversation
 from squeezefilm.instruments.bench.played_session import PlayedSession, judge_session, tile_summary
-from squeezefilm.instruments.bench.reading_check import DeviceCheck, check_loop, waited_time
 from squeezefilm.instruments.bench.setup import HowToPlay, PlaySetup, play_setup
+from squeezefilm.instruments.bench.timing_checks import DeviceCheck, check_loop, waited_time
 from squeezefilm.instruments.control.gains import IdentifiedPlate, identified_plate
 from squeezefilm.instruments.device.ports import ReplaySensor
 from squeezefilm.instruments.device.wire.streams import open_stream

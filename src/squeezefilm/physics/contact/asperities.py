@@ -1,4 +1,5 @@
-"""Pressure of the roughness of skin and surface at a gap: laws of asperities.
+"""Pressure of the roughness of skin and surface at a gap: laws of asperities, and
+what they carry over a period, compiled.
 
 A law gives the pressure p_a (Pa) of the asperities on a plateau as a function of the gap h between
 the mean planes, and of nothing else: it does not know the load, nor the frequency. Two laws:
@@ -37,7 +38,7 @@ _FAINTEST = 780.0
 class CompiledAsperities(NamedTuple):
     """A law of asperities for compiled code: its constants, and the cubics of ln p (p in Pa)
     between gaps at equal steps, the first of them straight at nearer gaps too. For the constants
-    see `asperity_kernel`."""
+    see `asperity_mean`."""
 
     constants: si.FloatArray
     table: si.FloatArray
@@ -172,10 +173,10 @@ class AsperityLaw:
         return CompiledAsperities(np.array(constants), table)
 
 
-# The constants of a law are a pressure, a gap and a decay length, p_ref exp(−(h − h_ref)/λ) being
-# the law or near it, then of its table the first gap, the step and the decay length at the end, in
-# m. All functions run without the interpreter.
-# What is e^-30 of the most that a period carries is left out.
+# The constants of a law for compiled code are a pressure, a gap and a decay length, p_ref exp(−(h −
+# h_ref)/λ) being the law or near it, then of its table the first gap, the step and the decay length
+# at the end, in m. All functions run without the interpreter. What is e^-30 of the most that a
+# period carries is left out.
 _FADED = 30.0
 # Of ln p: what a float holds, however far two surfaces are pushed into each other.
 _LARGEST = 700.0

@@ -1,5 +1,6 @@
-"""What draws say: the ends of an interval, of which some may be refused and some out of reach, and
-the share of the variance that each input explains, by Sobol' indices from Saltelli's design.
+"""Draws, kept on disk, and what they say: the ends of an interval, of which some may be refused and
+some out of reach, and the share of the variance that each input explains, by Sobol' indices from
+Saltelli's design.
 
 Most inputs of a display explain next to nothing, which some rows of the design show: the others are
 drawn for the rest alone.
@@ -174,10 +175,10 @@ def _ratio(
     return share, 1.96 * float(np.std(part - share * whole)) / scale / len(part) ** 0.5
 
 
-# Whoever analyses a display again, with another texture or report, asks for the same draws again.
 # So many messages take no time.
 _TOLD = 20
 
+# Whoever analyses a display again, with another texture or report, asks for the same draws again.
 # Fewer are drawn again sooner than found.
 _WORTH_KEEPING = 100
 

@@ -1,4 +1,5 @@
-"""A study's answers analysed, display by display: what its task allows."""
+"""A study's answers analysed, display by display: what its task allows, and the methods section of
+a paper on it, written out from what the study did, with its citations."""
 
 from __future__ import annotations
 

@@ -27,7 +27,7 @@ def _mixture(display: Display, **other: float) -> Mixture:
 
 @pytest.fixture
 def calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[int]:
-    """How many draws were intervals, each time that some were."""
+    """How many draws were drawn, each time that some were."""
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     found: list[int] = []
     draw = intervals._drawn_now
@@ -69,7 +69,7 @@ def test_whatever_draws_come_from_makes_them_others(calls: list[int]) -> None:
     )
     asked = {intervals.hash_of_draws(one, points) for one in others}
     assert len(asked) == len(others)
-    # A range is a part of what is intervals, though displays of other ranges count as equal.
+    # A range is a part of what is drawn, though displays of other ranges count as equal.
     measured = _mixture(narrower)
     assert intervals.hash_of_draws(measured, points[:, : len(measured.inputs)]) not in asked
     assert intervals.hash_of_draws(others[0], points[:64]) not in asked

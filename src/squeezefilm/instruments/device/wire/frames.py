@@ -1,4 +1,5 @@
-"""Frames: a header, a payload and a CRC-32, stuffed by COBS and ended by a zero byte.
+"""Frames: a header, a payload and a CRC-32, stuffed by COBS and ended by a zero byte; and
+the numbers that a host may send in one.
 
 Before stuffing a frame is `version u8, type u8, sequence u16, payload, CRC-32 u32`, little-endian;
 the CRC (that of zlib) covers everything before it, in every frame. `docs/development/protocol.md`
@@ -173,7 +174,8 @@ class Reason(IntEnum):
     NO_LOOPS = 11
 
 
-# The device refuses a whole frame for one bad number, when it is too late to say whose it was.
+# Anything else than what the wire can carry is refused here. The device refuses a whole frame for
+# one bad number, when it is too late to say whose it was.
 def number(name: str, value: Any, unit: si.Unit, at_least: float, at_most: float) -> float:
     """One finite number between two bounds in SI. Raises `InputError` for anything else."""
     array = _numbers(name, value, 0, f"one number in {unit.symbol}")

@@ -1,4 +1,5 @@
-"""The resonator's envelope: how slowly vibration amplitude follows its command.
+"""The resonator's envelope: how slowly vibration amplitude follows its command, and its inverse
+within the voltage, which gets a texture through.
 
 A plate driven at its resonance answers a change of drive with an amplitude that closes in
 exponentially: da/dt = (c - a)/τ with τ = Q/(πf) (PHYSICS §4), where c is the amplitude commanded.
@@ -167,10 +168,10 @@ def samples_per_command(command_rate: si.Hertz, sample_rate: si.Hertz = DAC_RATE
     return count
 
 
-# The envelope follows its command by τ da/dt = c − a (`envelope`). Its inverse, c = w + τ dw/dt,
-# would make the amplitude the one wanted; between samples, exactly,
+# The inverse of the envelope, c = w + τ dw/dt, would make the amplitude the one wanted; between
+# samples, exactly,
 #
-# c[k] = (w[k+1] − a[k] E) / (1 − E), E = exp(−Δt/τ).
+#     c[k] = (w[k+1] − a[k] E) / (1 − E),   E = exp(−Δt/τ).
 #
 # The command is bounded by the drive's voltage, −b c_max ≤ c ≤ c_max with c_max the amplitude that
 # the full voltage holds; b = 1 where the amplifier may invert the carrier's phase to brake, else 0.

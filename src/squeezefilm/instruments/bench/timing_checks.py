@@ -1,5 +1,5 @@
-"""Checks of what a device reads: how often and on which clock, and of its position sensor's rate,
-delay and silence."""
+"""Checks of timing: of this computer's loop before it plays, of a device's readings (how often, on
+which clock), and of its position sensor's rate, delay and silence."""
 
 from __future__ import annotations
 
