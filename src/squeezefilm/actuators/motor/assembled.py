@@ -1,4 +1,5 @@
-"""A motor ready to be computed: its plate solved, its feet on the solved shape."""
+"""A motor ready to be computed: its plate solved, its feet on the solved shape, and its modes, feet
+and slider as the plain arrays and numbers that compiled code takes."""
 
 from __future__ import annotations
 

@@ -1,6 +1,7 @@
-"""The gas of a film: laws of slip, what no solver has, and what compiled solvers are given of it.
+"""The gas of a film: laws of slip, what no solver has, what compiled solvers are given of it, and
+its mobility in the gap, compiled.
 
-The laws of slip are known by name, and to compiled code (`mobility`) by numbers.
+The laws of slip are known by name, and to compiled code by numbers.
 """
 
 from __future__ import annotations

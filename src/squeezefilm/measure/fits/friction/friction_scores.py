@@ -1,5 +1,5 @@
-"""Scores of models beside measured friction: a score that no normalisation decides, beside shapes
-of which one amplitude is fitted.
+"""Measured friction beside models: scores that no normalisation decides, beside shapes of which one
+amplitude is fitted; and the finger that is nearest, this person's, a new one's or the mean one's.
 
 The friction at rest is fitted to each curve, whatever the model: an extrapolated one differs by
 25 to 35 % between models and would decide in place of the shape. Differences are over one friction

@@ -1,4 +1,5 @@
-"""Patterns: dimensionless shapes between 0 and 1 over place, speed and time, and their algebra.
+"""Patterns: dimensionless shapes between 0 and 1 over place, speed and time, their algebra, and the
+coordinates along which they run.
 
 A pattern alone says nothing about friction; `levels` gives it two ends with a quantity, and a
 texture takes it as a mask. Patterns compose: with a, b patterns,
