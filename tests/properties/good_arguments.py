@@ -338,7 +338,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "physics.render.texture.composition.Composable.then": {
         "other": Later(lambda: made(RelativeFriction))
     },
-    "physics.render.texture.coordinate.require_fade": {"value": 1e-4, "at_most": 1e-3},
+    "physics.render.texture.pattern.require_fade": {"value": 1e-4, "at_most": 1e-3},
     "core.calibration_record.CalibratedAnswer": {"said": "mass", "draws": (0.02, 0.021)},
     "core.calibration_record.ComparedAnswer": {
         "said": "mass",

@@ -114,9 +114,14 @@ from squeezefilm.physics.render.resonator.envelope import (
     DrivenEnvelope,
 )
 from squeezefilm.physics.render.texture.composition import Composable, Texture
-from squeezefilm.physics.render.texture.coordinate import AlongX, AlongY, Coordinate
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.physics.render.texture.pattern import Pattern, TexturePart
+from squeezefilm.physics.render.texture.pattern import (
+    AlongX,
+    AlongY,
+    Coordinate,
+    Pattern,
+    TexturePart,
+)
 from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 from squeezefilm.physics.texture_files.hjif import ReferenceDevice, hjif_of
 

@@ -21,7 +21,7 @@ from squeezefilm.physics.render.program.inverse import (
     FrictionTable,
     WaveCompensation,
 )
-from squeezefilm.physics.render.texture.coordinate import AlongX, AlongY
+from squeezefilm.physics.render.texture.pattern import AlongX, AlongY
 
 Wave = Literal["ignored", "felt", "compensated"]
 WAVES: tuple[Wave, ...] = get_args(Wave)

@@ -28,8 +28,8 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.render.program.renderer import MadeForSpeed
 from squeezefilm.physics.render.texture.composition import Composable
-from squeezefilm.physics.render.texture.coordinate import AlongX
 from squeezefilm.physics.render.texture.levels import RelativeFriction
+from squeezefilm.physics.render.texture.pattern import AlongX
 from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 
 VERSION, PROFILE, LEVEL, TIMESCALE = "2023", "Main", 1, 1000

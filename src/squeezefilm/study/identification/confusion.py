@@ -1,9 +1,12 @@
-"""Answers of identification, counted: confusion matrices, and proportions of right answers with
-intervals and tests of whether people did better than by guessing.
+"""Confusion matrices of identification, and their share of right answers with intervals and tests.
 
-Rows of a matrix are answers, columns are what was presented. This is the layout of Biet, Giraud &
-Lemaire-Semail's tables: a row for each real grating that a person may answer with, a column for
-each simulated spatial period, percentages per column.
+Rows of a matrix are answers, columns are what was presented: the layout of Biet, Giraud &
+Lemaire-Semail's tables, with a row for each real grating that a person may answer with, a column
+for each simulated spatial period, percentages per column.
+
+In the participant bootstrap people are drawn with replacement, each with all their trials: trials
+of one person are not independent, so an interval over people must resample people (the cluster
+bootstrap; Davison & Hinkley 1997, 10.1017/CBO9780511802843, section 3.8).
 """
 
 from __future__ import annotations
@@ -161,9 +164,6 @@ def _index(name: str, values: ArrayLike, count: int) -> si.IntArray:
     return given.astype(np.int64)
 
 
-# In the participant bootstrap people are drawn with replacement, each with all their trials: trials
-# of one person are not independent, so an interval over people must resample people (the cluster
-# bootstrap; Davison & Hinkley 1997, 10.1017/CBO9780511802843, section 3.8).
 def resampled_counts(counts: ArrayLike, resamples: int, seed: int) -> si.IntArray:
     """Pooled matrices of resampled participants, shape (resamples, answers, stimuli).
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.physics.render.texture.coordinate import FARTHEST, X_AXIS, Coordinate, FromPoint
+from squeezefilm.physics.render.texture.pattern import FARTHEST, X_AXIS, Coordinate, FromPoint
 
 _METRE, _SPEED = si.Unit("m"), si.Unit("m/s")
 _MOST_KNOTS = 65_536

@@ -14,8 +14,8 @@ from squeezefilm.physics.render.opcodes import Assembler
 from squeezefilm.physics.render.program import layout as at
 from squeezefilm.physics.render.program.inverse import FrictionInverse, WaveCompensation
 from squeezefilm.physics.render.texture.composition import Composable, Quantity
-from squeezefilm.physics.render.texture.coordinate import FARTHEST, METRE
 from squeezefilm.physics.render.texture.levels import LARGEST_AMPLITUDE
+from squeezefilm.physics.render.texture.pattern import FARTHEST, METRE
 
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 """The quantities in the order of their number in a program."""

@@ -33,17 +33,15 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.opcodes import ADD, CROSS, FADE, MULTIPLY, WEIGH, Assembler
-from squeezefilm.physics.render.texture.coordinate import (
-    X_AXIS,
-    Coordinate,
-    Place,
-    require_fade,
-)
 from squeezefilm.physics.render.texture.pattern import (
     MOST_PARTS,
+    X_AXIS,
+    Coordinate,
     Pattern,
+    Place,
     TexturePart,
     part,
+    require_fade,
 )
 
 Quantity = Literal["amplitude", "relative_friction", "friction_reduction"]

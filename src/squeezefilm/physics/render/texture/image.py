@@ -21,12 +21,13 @@ from squeezefilm.physics.render.opcodes import (
     Assembler,
     mixed,
 )
-from squeezefilm.physics.render.texture.coordinate import (
+from squeezefilm.physics.render.texture.pattern import (
     X_AXIS,
     Coordinate,
+    Pattern,
     Place,
+    part,
 )
-from squeezefilm.physics.render.texture.pattern import Pattern, part
 
 LARGEST_PIXEL: si.Metre = 0.1
 MOST_PIXELS = int(PIXELS.most)

@@ -9,8 +9,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.opcodes import BETWEEN, Assembler
 from squeezefilm.physics.render.texture.composition import Composable, Quantity
-from squeezefilm.physics.render.texture.coordinate import METRE, X_AXIS
-from squeezefilm.physics.render.texture.pattern import Pattern, part
+from squeezefilm.physics.render.texture.pattern import METRE, X_AXIS, Pattern, part
 from squeezefilm.physics.render.texture.shapes import Constant
 
 LARGEST_AMPLITUDE: si.Metre = 1e-3

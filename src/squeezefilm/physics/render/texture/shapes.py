@@ -29,15 +29,16 @@ from squeezefilm.physics.render.opcodes import (
     WITHIN,
     Assembler,
 )
-from squeezefilm.physics.render.texture.coordinate import (
+from squeezefilm.physics.render.texture.pattern import (
     X_AXIS,
     Coordinate,
     FromPoint,
     Length,
+    Pattern,
     Place,
+    part,
     require_fade,
 )
-from squeezefilm.physics.render.texture.pattern import Pattern, part
 
 # Full width at half height of a Gaussian, in standard deviations.
 _FULL_WIDTH = 2.0 * math.sqrt(2.0 * math.log(2.0))

@@ -7,8 +7,8 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.program.inverse import FrictionInverse, WaveCompensation
 from squeezefilm.physics.render.program.lowering import lower
 from squeezefilm.physics.render.program.renderer import render
-from squeezefilm.physics.render.texture.coordinate import AlongDirection, AlongY, FromPoint
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.physics.render.texture.pattern import AlongDirection, AlongY, FromPoint
 from squeezefilm.physics.render.texture.shapes import SquareWave
 
 HALF = 8e-3
