@@ -15,8 +15,7 @@ import pytest
 from squeezefilm.core import interrupts
 from squeezefilm.core.errors import SqueezefilmError, SqueezefilmWarning
 from squeezefilm.lab import worker
-from squeezefilm.lab.guard import Places
-from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.guard import Keys, Places
 from squeezefilm.lab.server import Lab
 
 
