@@ -17,6 +17,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.core.kept.store import Kept
+from squeezefilm.core.results import values_of
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.contact.finger.fingertip import rest_friction_factor
 from squeezefilm.physics.display import DECAY_LENGTH, Display
@@ -133,12 +134,9 @@ class FeltGratings:
         then at each."""
         return {
             **_row(self.here),
-            "observer": self.observer,
+            **values_of(self, "observer draws why_no_interval model"),
             "detection_criterion_d_prime": self.criterion,
             "interval_level": self.level,
-            "draws": self.draws,
-            "why_no_interval": self.why_no_interval,
-            "model": self.model,
             "by_speed": [_row(felt) for felt in self.at],
         }
 

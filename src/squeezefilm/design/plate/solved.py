@@ -13,7 +13,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.kept.store import Kept
-from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.core.results import Result, stamp, to_json, values_of
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.physics.plate.electronics import ElectricalLoad, electrical_load
@@ -130,39 +130,27 @@ class SolvedBody(Result):
 
     def summary(self) -> dict[str, Any]:
         """Mapping of plain JSON values; keys carry units."""
-        volts, load = self.display.drive.voltage, self.load
         levels = zip(self.sound.distances, self.sound.sound_pressure_level_dB, strict=True)
         return {
             "display": self.display.name,
             "mode": self.working.label,
-            "frequency_Hz": self.working.frequency,
-            "frequency_error_Hz": self.working.frequency_error,
-            "amplitude_per_volt_m_per_V": self.amplitude_per_volt,
-            "largest_per_volt_m_per_V": self.largest_per_volt,
-            "alone_per_volt_m_per_V": self.working.alone_per_volt,
-            "neighbour": to_json(self.mode.neighbour),
-            "half_wavelength_m": self.working.half_wavelength,
-            "quality_factor": self.working.quality_factor,
-            "coupling_coefficient": self.working.coupling_coefficient,
-            "coupling_coefficient_error": self.working.coupling_coefficient_error,
-            "parallel_resonance_frequency_Hz": self.working.parallel_resonance_frequency,
-            "parallel_resonance_frequency_error_Hz": (
-                self.working.parallel_resonance_frequency_error
-            ),
             "modes": to_json(self.rows),
-            "voltage_V": volts,
-            "current_A": load.current,
-            "apparent_power_VA": load.apparent_power,
-            "input_power_W": load.real_power,
             "heat": to_json(self.heat),
+            "input_power_W": self.load.real_power,
             "equivalent_circuit": to_json(self.circuit),
             "equivalent_circuit_said": self.circuit_said,
+            **values_of(
+                self,
+                "working.frequency working.frequency_error amplitude_per_volt largest_per_volt "
+                "working.alone_per_volt mode.neighbour working.half_wavelength "
+                "working.quality_factor working.coupling_coefficient "
+                "working.coupling_coefficient_error working.parallel_resonance_frequency "
+                "working.parallel_resonance_frequency_error display.drive.voltage load.current "
+                "load.apparent_power model status objections",
+            ),
             **self._particulars(),
             "sound_pressure_level_dB": {f"{far:g} m": level for far, level in levels},
             "sound_guidance": to_json(self.sound.guidance),
-            "model": self.model,
-            "status": self.status,
-            "objections": list(self.objections),
             "provenance": stamp(self.display),
         }
 

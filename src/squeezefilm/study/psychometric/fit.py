@@ -14,7 +14,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.results import Interval, Result, to_json
+from squeezefilm.core.results import Interval, Result, values_of
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.estimate import holding
 from squeezefilm.study.psychometric.function import (
@@ -102,18 +102,14 @@ class PsychometricFit(Result):
     def summary(self) -> dict[str, Any]:
         """The numbers for JSON."""
         return {
-            "shape": self.function.shape,
-            "axis": self.function.axis,
             **{name: getattr(self.function, name) for name in PARAMETERS},
-            "fitted": list(self.fitted),
+            **values_of(
+                self,
+                "function.shape function.axis fitted posterior_interval deviance bounded_by_prior "
+                "falling_p notes prior",
+            ),
             "interval_level": self.level,
-            "posterior_interval": {k: list(v) for k, v in self.posterior_interval.items()},
-            "deviance": self.deviance,
             "trials": int(self.trials.sum()),
-            "bounded_by_prior": list(self.bounded_by_prior),
-            "falling_p": self.falling_p,
-            "notes": list(self.notes),
-            "prior": to_json(self.prior),
         }
 
     def _table(self) -> Any:
