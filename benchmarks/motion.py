@@ -25,12 +25,12 @@ from squeezefilm.physics.render.motion import kernel as motion_kernel
 from squeezefilm.physics.render.motion.estimator import MotionEstimator, MotionModel
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.physics.render.resonator import kernel as compensation_kernel
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator.envelope import (
     DrivenEnvelope,
+    carrier_block,
     preview_samples,
     preview_work,
 )
-from squeezefilm.physics.render.resonator.envelope import carrier_block
 
 TAU, LIMIT, RATE = 0.5687e-3, 1e-6, 20e3
 

@@ -35,15 +35,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from tests.loop_runs import run_ticks
 
 from squeezefilm.instruments.session.loop import shared
-from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.process import PRIORITY, LoopProcess, lateness_in
-from squeezefilm.instruments.session.loop.shared import ring_put_all, store_release, taken
+from squeezefilm.instruments.session.loop.shared import Lateness, ring_put_all, store_release, taken
 from squeezefilm.instruments.session.loop.worker import Orders, run_loop
-from squeezefilm.physics.render.motion.estimator import MotionEstimator
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, MotionEstimator
 from squeezefilm.physics.render.program.lowering import lower
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 from squeezefilm.physics.render.texture.levels import Amplitude
 from squeezefilm.physics.render.texture.shapes import SquareWave
 

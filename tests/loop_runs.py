@@ -12,13 +12,12 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import shared
-from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
 from squeezefilm.instruments.session.loop.process import lateness_in, sample_block
 from squeezefilm.instruments.session.loop.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUMNS
-from squeezefilm.instruments.session.loop.shared import private_views, ring_put, ring_take
+from squeezefilm.instruments.session.loop.shared import Lateness, private_views, ring_put, ring_take
 from squeezefilm.instruments.session.loop.worker import due_ns, make_due_tick
-from squeezefilm.physics.render.motion.sensor import SensorStream
+from squeezefilm.physics.render.motion.estimator import SensorStream
 
 
 @compiled()

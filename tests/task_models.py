@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from scipy.special import ndtr
+from scipy.special import entr, ndtr
 
 from squeezefilm.core import quantities as si
 from squeezefilm.physics.perception.senses import D_PRIME_OF_75
@@ -67,10 +67,15 @@ class Placement:
 
     def expected_information(self) -> si.FloatArray:
         """Information of the next answer to each stimulus on what is of interest (nat)."""
-        told = np.empty(len(self.model.stimuli))
         nuisance = math.prod(self.model.sizes[self.model.interest :])
-        information(self._weights, np.ascontiguousarray(self.model.chances[:-1]), nuisance, told)
-        return told
+        weights, chances = self._weights.reshape(-1, nuisance), self.model.chances
+        if len(chances) == 2:
+            return information(self._weights, np.ascontiguousarray(chances[0]), nuisance)
+        share = weights.sum(axis=1, keepdims=True)
+        cells = chances.reshape(len(chances), *weights.shape, -1)
+        joint = np.einsum("gn,agns->ags", weights, cells)
+        known = (share * entr(joint / share)).sum(axis=(0, 1))
+        return np.asarray(entr(joint.sum(axis=1)).sum(axis=0) - known)
 
     def next_stimulus(self) -> int:
         """The number of the stimulus whose answer tells the most; of equals the first."""

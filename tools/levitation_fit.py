@@ -23,8 +23,14 @@ from scipy.stats import gaussian_kde, multivariate_normal
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError, OutOfRangeError
-from squeezefilm.measure.fits.friction.friction_scores import nearest_scale, rest_friction, scored
-from squeezefilm.measure.fits.friction.person import PersonFit, fitted_person, with_decay_length
+from squeezefilm.measure.fits.friction.friction_scores import (
+    PersonFit,
+    fitted_person,
+    nearest_scale,
+    rest_friction,
+    scored,
+    with_decay_length,
+)
 from squeezefilm.measure.recordings.kinds import FrictionCurve, FrictionDecays
 from squeezefilm.measure.recordings.read import check_folder
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law

@@ -26,7 +26,7 @@ from levitation_fit import law_of
 from predict_disc import is_sealed, sealed
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
-from squeezefilm.measure.fits.friction.person import with_decay_length
+from squeezefilm.measure.fits.friction.friction_scores import with_decay_length
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.contact.finger.fingertip import (

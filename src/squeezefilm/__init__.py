@@ -23,7 +23,7 @@ _NAMES = {
     "load_texture": "physics.texture_files.texture_file",
     "save_texture": "physics.texture_files.texture_file",
     "replaced": "physics.uncertainty.parameters",
-    "with_finger": "measure.fits.friction.person",
+    "with_finger": "measure.fits.friction.friction_scores",
     # What a display does
     "predict": "physics.chain.prediction",
     "predict_grid": "physics.chain.prediction_grid",

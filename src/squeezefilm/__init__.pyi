@@ -66,16 +66,15 @@ if TYPE_CHECKING:
     from squeezefilm.physics.film.periodic.profile import GapFunction, GapProfile
     from squeezefilm.physics.perception.observer import NamedObserver
     from squeezefilm.physics.plate.working_mode import PlateTheory
-    from squeezefilm.physics.render.motion.sensor import SensorModel
+    from squeezefilm.physics.render.motion.estimator import SensorModel
     from squeezefilm.physics.render.motion.stroke import Stroke as _Stroke
-    from squeezefilm.physics.render.texture.coordinate import Coordinate, Length, Place
     from squeezefilm.physics.render.texture.image import Image as _Image
     from squeezefilm.physics.render.texture.image import Noise as _Noise
     from squeezefilm.physics.render.texture.image import Share
     from squeezefilm.physics.render.texture.levels import Amplitude as _Amplitude
     from squeezefilm.physics.render.texture.levels import FrictionShare, VibrationAmplitude
     from squeezefilm.physics.render.texture.levels import RelativeFriction as _RelativeFriction
-    from squeezefilm.physics.render.texture.pattern import Pattern
+    from squeezefilm.physics.render.texture.pattern import Coordinate, Length, Pattern, Place
     from squeezefilm.physics.render.texture.shapes import Band as _Band
     from squeezefilm.physics.render.texture.shapes import Bump as _Bump
     from squeezefilm.physics.render.texture.shapes import SineWave as _SineWave

@@ -63,7 +63,7 @@ ALLOWED: Mapping[str, Mapping[str, str]] = {
     "core/presets/materials.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
     "physics/display.py": {"read_text": PACKAGE},
     "physics/plausibility/checks.py": {"read_text": PACKAGE, "tomllib.loads": TOML},
-    "instruments/bench/loop_check.py": {"read_text": "/proc, of the kernel"},
+    "instruments/bench/timing_checks.py": {"read_text": "/proc, of the kernel"},
     "core/config/load.py": {"tomllib.loads": TOML},
     "actuators/described.py": {"tomllib.loads": TOML},
     "cli/__init__.py": {"os.open": "/dev/null, to write"},

@@ -26,12 +26,12 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.instruments.bench.check import check_device
 from squeezefilm.instruments.bench.conversation import Conversation
-from squeezefilm.instruments.bench.loop_check import waited_time
+from squeezefilm.instruments.bench.timing_checks import waited_time
 from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loop_gains
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Reason
 from squeezefilm.instruments.device.wire.streams import open_stream
-from squeezefilm.physics.render.motion.sensor import SensorModel
+from squeezefilm.physics.render.motion.estimator import SensorModel
 
 RATIO = 2e-3
 GAINS = loop_gains(

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from squeezefilm.core.calibration_record import CalibrationRecord, ComparedAnswer, UsedRecording
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.physics.display import load_display
 
 from .test_lab_areas import CUT_OFF

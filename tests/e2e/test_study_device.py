@@ -14,13 +14,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.errors import DeviceError
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.record.trace import read_trace
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ
 from squeezefilm.study.conduct.played_device import SessionDevice
 from squeezefilm.study.conduct.playing_process import WorkerOrders
 from squeezefilm.study.conduct.run import Acknowledgement, Presentation, StudyRun

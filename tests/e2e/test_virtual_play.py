@@ -23,7 +23,7 @@ from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ, SensorModel
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, TOUCH_PANEL_240_HZ, SensorModel
 from squeezefilm.physics.texture_files.texture_file import load_texture
 
 

@@ -17,8 +17,8 @@ from tests.unit.design.search.made_up import formula, requirements
 import squeezefilm.design.search.run as run
 from squeezefilm.design.search.candidate import Design, Evaluated, Level
 from squeezefilm.design.search.found import DesignSearch
+from squeezefilm.design.search.limits import Made
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.tolerance import Made
 
 
 def searched(folder: Path, pause: float = 0.0) -> DesignSearch:

@@ -22,7 +22,7 @@ from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.pty_server import PtyServer
 from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ
 
 
 class Observed(Machine):

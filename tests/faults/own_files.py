@@ -23,7 +23,7 @@ from squeezefilm.design.sweep.points import Answer, KeptAnswers, Point
 from squeezefilm.design.sweep.report.terminal import compared_rows
 from squeezefilm.instruments.session.record.trace import export_trace
 from squeezefilm.instruments.session.record.trace_file import TraceWriter
-from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.guard import Keys
 from squeezefilm.lab.lan import certificate
 from squeezefilm.measure.calibration.blind import (
     BlindPrediction,

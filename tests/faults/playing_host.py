@@ -16,10 +16,9 @@ from squeezefilm.core.errors import DeviceError
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.play.plan import PlayPlan
 from squeezefilm.instruments.session.play.real_time import run_play
-from squeezefilm.physics.render.motion.estimator import MotionEstimator
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, MotionEstimator
 from squeezefilm.physics.render.program.lowering import lower
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 from squeezefilm.physics.render.texture.levels import Amplitude
 from squeezefilm.physics.render.texture.shapes import SquareWave
 

@@ -184,7 +184,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     },
     "physics.texture_files.image_file.ImageFile": {"file": "picture.png"},
     "core.formats.traces.Table": {"columns": {"time_s": _GRID}},
-    "core.formats.wav.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},
+    "core.formats.traces.Waveform": {"samples": _GRID * 1e-7, "unit": "m", "full_scale": 1e-6},
     "core.materials.PiezoConstants": Later(lambda: fields_of(PZT.full_constants)),
     "core.materials.Piezoceramic": {
         "in_plane_poisson_ratio": 0.29,
@@ -338,7 +338,7 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "physics.render.texture.composition.Composable.then": {
         "other": Later(lambda: made(RelativeFriction))
     },
-    "physics.render.texture.coordinate.require_fade": {"value": 1e-4, "at_most": 1e-3},
+    "physics.render.texture.pattern.require_fade": {"value": 1e-4, "at_most": 1e-3},
     "core.calibration_record.CalibratedAnswer": {"said": "mass", "draws": (0.02, 0.021)},
     "core.calibration_record.ComparedAnswer": {
         "said": "mass",
@@ -386,10 +386,10 @@ FOR_ONE_CALL: dict[str, dict[str, Any]] = {
     "physics.render.program.renderer.render": _SERIES,
     "physics.render.program.renderer.evaluate": _SERIES,
     "physics.render.program.renderer.Renderer.tick": {"t": 0.001},
-    "physics.render.motion.sensor.SensorModel": {"rate": 1e3, "noise": 1e-6},
-    "physics.render.motion.sensor.sensor_stream": {"position": np.cos, "duration": 0.02},
-    "physics.render.program.wave.WaveCompensation": {"factors": (1.0, 1.0, 1.0, 1.0)},
-    "physics.render.program.wave.WaveCompensation.from_ripple": {
+    "physics.render.motion.estimator.SensorModel": {"rate": 1e3, "noise": 1e-6},
+    "physics.render.motion.estimator.sensor_stream": {"position": np.cos, "duration": 0.02},
+    "physics.render.program.inverse.WaveCompensation": {"factors": (1.0, 1.0, 1.0, 1.0)},
+    "physics.render.program.inverse.WaveCompensation.from_ripple": {
         "position": _WAVE,
         "relative_friction": np.full(8, 0.7),
     },

@@ -88,9 +88,10 @@ from squeezefilm.physics.plate.surface_shape import (
 )
 from squeezefilm.physics.plate.thermal import Thermal
 from squeezefilm.physics.plate.working_mode import WorkingMode, working_mode
-from squeezefilm.physics.render.motion.estimator import MotionEstimator, MotionModel
-from squeezefilm.physics.render.motion.sensor import (
+from squeezefilm.physics.render.motion.estimator import (
     LVDT_10_KHZ,
+    MotionEstimator,
+    MotionModel,
     SensorModel,
     SensorStream,
     sensor_stream,
@@ -102,17 +103,25 @@ from squeezefilm.physics.render.motion.stroke import (
     Stroke,
     Trajectory,
 )
-from squeezefilm.physics.render.program.inverse import FrictionInverse, FrictionTable
+from squeezefilm.physics.render.program.inverse import (
+    FrictionInverse,
+    FrictionTable,
+    WaveCompensation,
+)
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import MadeForSpeed, Renderer
-from squeezefilm.physics.render.program.wave import WaveCompensation
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator.envelope import (
     DrivenEnvelope,
 )
 from squeezefilm.physics.render.texture.composition import Composable, Texture
-from squeezefilm.physics.render.texture.coordinate import AlongX, AlongY, Coordinate
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.physics.render.texture.pattern import Pattern, TexturePart
+from squeezefilm.physics.render.texture.pattern import (
+    AlongX,
+    AlongY,
+    Coordinate,
+    Pattern,
+    TexturePart,
+)
 from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 from squeezefilm.physics.texture_files.hjif import ReferenceDevice, hjif_of
 

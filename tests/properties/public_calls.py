@@ -175,7 +175,7 @@ NOT_CALLED = {
     physics.plate.elements.slabs.Slabs.mass_times
     physics.plate.elements.slabs.Slabs.places physics.plate.elements.slabs.Slabs.stiffness_times
     physics.plate.elements.slabs.Slabs.weighted_sections physics.render.opcodes.Assembler.emit
-    physics.render.opcodes.Assembler.table physics.render.texture.coordinate.require_fade
+    physics.render.opcodes.Assembler.table physics.render.texture.pattern.require_fade
     physics.render.interpret.samples_of physics.render.interpret.values_of
     physics.film.periodic.resolution.resolution_of
     """,
@@ -187,7 +187,7 @@ NOT_CALLED = {
     physics.plate.solid.volume.PlateVolume.displacement
     physics.plate.solid.volume.PlateVolume.potential physics.plate.solid.volume.harmonic_fields
     physics.plate.solid.volume.mode_fields physics.plate.solid.volume.plate_volume
-    physics.render.texture.coordinate.Coordinate.at physics.render.texture.coordinate.FromPoint.at
+    physics.render.texture.pattern.Coordinate.at physics.render.texture.pattern.FromPoint.at
     physics.render.fidelity.report.fidelity_report physics.render.fidelity.report.strongest_lines
     physics.render.fidelity.rendered_stroke.friction_of
     physics.render.fidelity.rendered_stroke.per_sample
@@ -200,7 +200,8 @@ NOT_CALLED = {
     design.sweep.sweep.sweep physics.plate.solid.solve.solve_modes
     """,
     "the check of numbers itself, whose bounds are the code's own, and its messages' text": """
-    core.quantities.require.require core.quantities.units.format_quantity
+    core.quantities.require.Rising core.quantities.require.require
+    core.quantities.units.format_quantity
     core.quantities.units.typed_quantity
     """,
 }

@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.measure.fits.estimate import Estimate, inverse_of
-from squeezefilm.study.identification.confusion import ConfusionMatrix
-from squeezefilm.study.identification.proportions import (
+from squeezefilm.study.identification.confusion import (
+    ConfusionMatrix,
     Method,
     participant_interval,
     proportion_interval,

@@ -37,7 +37,7 @@ LEFT_OUT = {
     "no number but the index of what its other arguments hold, or an array the package made": 18,
     "the real-time tick: it takes any floats, flags what it cannot use and never raises": 1,
     "a verb that is called with the fields of a record, which is attacked itself": 2,
-    "the check of numbers itself, whose bounds are the code's own, and its messages' text": 3,
+    "the check of numbers itself, whose bounds are the code's own, and its messages' text": 4,
 }
 
 # Calls that neither solve nor need something solved: what the default run draws from.
@@ -52,7 +52,7 @@ QUICK = (
     "physics.film.closed",
     "physics.film.planar.grid",
     "physics.film.validity.knudsen_number",
-    "core.formats.wav",
+    "core.formats.traces",
     "physics.texture_files.image_file",
     "core.materials",
     "physics.plate.beam_modes.euler",
@@ -67,7 +67,7 @@ QUICK = (
     "physics.render.texture.levels",
     "physics.render.motion.estimator.MotionModel",
     "physics.render.texture.pattern",
-    "physics.render.motion.sensor.SensorModel",
+    "physics.render.motion.estimator.SensorModel",
     "physics.render.motion.stroke",
 )
 

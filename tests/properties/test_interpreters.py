@@ -19,10 +19,9 @@ from tests.numpy_textures import numpy_values
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render import opcodes
 from squeezefilm.physics.render.opcodes import mixed
-from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.inverse import FrictionInverse, WaveCompensation
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import evaluate, render
-from squeezefilm.physics.render.program.wave import WaveCompensation
 from squeezefilm.physics.render.texture.composition import Composable, Product
 from squeezefilm.physics.render.texture.image import Image
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction

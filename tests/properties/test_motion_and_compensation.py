@@ -12,7 +12,7 @@ from tests.verification.square_swing import square_swing_compensated
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.physics.render.motion import kernel
 from squeezefilm.physics.render.motion.estimator import MotionEstimator, MotionModel
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator.envelope import (
     DrivenEnvelope,
     compensated_drive,
 )

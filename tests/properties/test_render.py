@@ -7,8 +7,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from squeezefilm.physics.render.motion.stroke import Stroke
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.physics.render.resonator.envelope import (
+    DrivenEnvelope,
     fastest_speed,
     finest_period,
     sine_swing_kept,

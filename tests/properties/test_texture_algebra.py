@@ -8,8 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from squeezefilm.physics.render.texture.composition import AT_REST, Composable
-from squeezefilm.physics.render.texture.coordinate import AlongDirection, AlongY
-from squeezefilm.physics.render.texture.pattern import Pattern
+from squeezefilm.physics.render.texture.pattern import AlongDirection, AlongY, Pattern
 from squeezefilm.physics.render.texture.shapes import Constant, SineWave, SquareWave
 
 from .texture_strategies import (

@@ -5,8 +5,7 @@ from hypothesis import strategies as st
 
 from squeezefilm.core.config.schema import family
 from squeezefilm.physics.render.texture.composition import Composable
-from squeezefilm.physics.render.texture.coordinate import Coordinate
-from squeezefilm.physics.render.texture.pattern import Pattern
+from squeezefilm.physics.render.texture.pattern import Coordinate, Pattern
 from squeezefilm.physics.texture_files.texture_file import (
     TextureFile,
     texture_from_text,

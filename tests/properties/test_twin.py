@@ -18,7 +18,7 @@ from squeezefilm.instruments.twin.plant import Plant
 from squeezefilm.instruments.twin.settings import PickupModel, PlateDrift, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_stream
+from squeezefilm.physics.render.motion.estimator import SensorModel, sensor_stream
 
 SETTINGS = TwinSettings(truth_period=100e-6, seed=9)
 LIMITS = Limits(20.0, 10_000.0, 20.0, 100.0, 20e3, 30e3)

@@ -13,17 +13,15 @@ from squeezefilm.physics.render.texture.composition import (
     Sequence,
     Sum,
 )
-from squeezefilm.physics.render.texture.coordinate import (
-    X_AXIS,
-    AlongDirection,
-    AlongY,
-    Coordinate,
-    FromPoint,
-)
 from squeezefilm.physics.render.texture.image import Image, Noise, NoiseField
 from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
 from squeezefilm.physics.render.texture.pattern import (
+    X_AXIS,
+    AlongDirection,
+    AlongY,
     Complement,
+    Coordinate,
+    FromPoint,
     Greatest,
     Least,
     Pattern,

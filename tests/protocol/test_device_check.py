@@ -14,18 +14,22 @@ import pytest
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import DeviceError
-from squeezefilm.instruments.bench import loop_check
+from squeezefilm.instruments.bench import timing_checks
 from squeezefilm.instruments.bench.check import check_device
 from squeezefilm.instruments.bench.conversation import Conversation
-from squeezefilm.instruments.bench.loop_check import DeviceCheck, loop_result
-from squeezefilm.instruments.bench.reading_check import DELAY_WITHIN, reading_checks
+from squeezefilm.instruments.bench.timing_checks import (
+    DELAY_WITHIN,
+    DeviceCheck,
+    loop_result,
+    reading_checks,
+)
 from squeezefilm.instruments.device.machine import device
 from squeezefilm.instruments.device.machine.device import Machine
 from squeezefilm.instruments.device.machine.playing import Finger
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Frame, Reason
-from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness, lateness_class
-from squeezefilm.physics.render.motion.sensor import SensorModel
+from squeezefilm.instruments.session.loop.shared import CLASSES, Lateness, lateness_class
+from squeezefilm.physics.render.motion.estimator import SensorModel
 
 FREQUENCY = 30_000.0
 
@@ -394,12 +398,12 @@ def test_what_the_host_took_is_read_where_the_system_tells(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     told = tmp_path / "stat"
-    monkeypatch.setattr(loop_check, "Path", lambda _: told)
-    assert loop_check.stolen_time() == 0.0
+    monkeypatch.setattr(timing_checks, "Path", lambda _: told)
+    assert timing_checks.stolen_time() == 0.0
     told.write_text("cpu  11 22 33 44 55 66 77 250 0 0\ncpu0 1 2 3 4 5 6 7 8 0 0\n")
-    assert loop_check.stolen_time() == 250 / os.sysconf("SC_CLK_TCK")
+    assert timing_checks.stolen_time() == 250 / os.sysconf("SC_CLK_TCK")
     told.write_text("cpu  11 22\n")
-    assert loop_check.stolen_time() == 0.0
+    assert timing_checks.stolen_time() == 0.0
 
 
 def test_every_promise_is_looked_at() -> None:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from squeezefilm.design.plate.changed_plates import with_glue
+from squeezefilm.design.plate.solved import with_glue
 from squeezefilm.physics.plate.layout import CeramicPatch, FoamSupport, RectangularPlate
 
 

@@ -10,7 +10,7 @@ import dataclasses
 
 from squeezefilm.core.distributions import Distribution, Uniform
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.design.plate.changed_plates import with_glue
+from squeezefilm.design.plate.solved import with_glue
 from squeezefilm.measure.calibration.calibrate import USUAL_EFFORT, Effort, calibrate
 from squeezefilm.measure.calibration.calibration import Calibration
 from squeezefilm.measure.calibration.priors import calibration_parameters

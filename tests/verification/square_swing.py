@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from squeezefilm.core import quantities as si
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 
 Way = Literal["none", "inverse"]
 

@@ -11,14 +11,12 @@ from tests.verification.second_order import carried
 from tests.verification.square_swing import Way, fastest_compensated_speed, square_swing_compensated
 
 from squeezefilm.physics.render.resonator import kernel
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator.envelope import (
     DrivenEnvelope,
     compensated_drive,
-    preview_work,
-)
-from squeezefilm.physics.render.resonator.envelope import (
     envelope_time_constant,
     finest_period,
+    preview_work,
 )
 
 # The paper's plate: solved resonance and assumed Q (page of models); limits in units of a_max.

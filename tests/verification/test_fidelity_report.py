@@ -12,12 +12,16 @@ from tests.verification.square_swing import square_swing_compensated
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
 from squeezefilm.physics.render.fidelity.report import fidelity_report
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SENSORS, SensorModel
-from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
-from squeezefilm.physics.render.resonator.compensation import (
-    DrivenEnvelope,
+from squeezefilm.physics.render.motion.estimator import (
+    LVDT_10_KHZ,
+    SENSORS,
+    SensorModel,
 )
-from squeezefilm.physics.render.resonator.envelope import sine_swing_kept
+from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke, Stroke
+from squeezefilm.physics.render.resonator.envelope import (
+    DrivenEnvelope,
+    sine_swing_kept,
+)
 from squeezefilm.physics.render.texture.levels import Amplitude
 from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 

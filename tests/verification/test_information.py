@@ -20,7 +20,7 @@ from tests.known_observers import (
 )
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.proportions import (
+from squeezefilm.study.identification.confusion import (
     recentred_interval,
     resampled_counts,
 )

@@ -17,21 +17,21 @@ from tests.loop_runs import SimulatedRun, run_ticks, stream_samples
 from tests.simulated_loop import SimulatedLoop
 
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.lateness import CLASSES, lateness_class
 from squeezefilm.instruments.session.loop.plan import LoopPlan
+from squeezefilm.instruments.session.loop.shared import CLASSES, lateness_class
 from squeezefilm.physics.render.fidelity.rendered_stroke import RenderedStroke, rendered_stroke
-from squeezefilm.physics.render.motion.estimator import MotionEstimator
-from squeezefilm.physics.render.motion.sensor import (
+from squeezefilm.physics.render.motion.estimator import (
     LVDT_10_KHZ,
     TOUCH_PANEL_60_HZ,
     TOUCH_PANEL_240_HZ,
+    MotionEstimator,
     SensorModel,
     sensor_stream,
 )
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.physics.render.program.inverse import FrictionTable
 from squeezefilm.physics.render.program.lowering import lower
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.render.texture.image import Noise
 from squeezefilm.physics.render.texture.levels import Amplitude

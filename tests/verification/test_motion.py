@@ -12,14 +12,12 @@ import scipy.linalg
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.physics.render.motion import kernel
 from squeezefilm.physics.render.motion.estimator import (
+    LVDT_10_KHZ,
     MotionEstimator,
     MotionModel,
-    estimate_motion,
-)
-from squeezefilm.physics.render.motion.sensor import (
-    LVDT_10_KHZ,
     SensorModel,
     SensorStream,
+    estimate_motion,
     sensor_stream,
 )
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke

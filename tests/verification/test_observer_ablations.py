@@ -12,7 +12,7 @@ import pytest
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.perception.observer import Observer, load_observer
 from squeezefilm.physics.perception.percepts import Apparatus
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ
 from squeezefilm.study.design.study_design import StudyDesign, load_design
 from squeezefilm.study.simulated.answers import SimulatedStudy, simulate_participants
 from squeezefilm.study.simulated.chain_tables import ChainTables, chain_tables

@@ -9,7 +9,7 @@ import pytest
 from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.core.materials import ElasticMaterial
 from squeezefilm.design.analysis.sensitivities import CoarseShifts
-from squeezefilm.design.plate.changed_plates import (
+from squeezefilm.design.plate.solved import (
     with_ceramic_stiffness,
     with_glue,
     with_loss_in_ceramic_alone,

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
 from squeezefilm.physics.render.resonator.envelope import (
+    DrivenEnvelope,
     envelope_bandwidth,
     envelope_time_constant,
     finest_period,

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tests.verification.square_swing import Way, fastest_compensated_speed, square_swing_compensated
 
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 
 TOP = 3e-6
 BRAKED, COASTING = (DrivenEnvelope(2e-3, 5e-3, TOP, braking) for braking in (True, False))

@@ -24,7 +24,7 @@ from tests.task_models import (
 from tests.verification.test_psychometric import posterior_mean
 
 from squeezefilm.study.adaptive.bayesian import AdaptiveDesign, BayesianAdaptive
-from squeezefilm.study.design.tasks.two_surfaces import QUARTILE
+from squeezefilm.study.design.tasks.surfaces import QUARTILE
 from squeezefilm.study.psychometric.fit import fit_psychometric
 from squeezefilm.study.psychometric.function import PsychometricFunction, PsychometricPrior
 from squeezefilm.study.tasks.scales import exponents

@@ -13,10 +13,9 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.uncertainty.drawn import evaluate
 from squeezefilm.physics.uncertainty.draws import Mixture, as_drawn, outcome_of
 from squeezefilm.physics.uncertainty.free_amplitude import FreeAmplitude
-from squeezefilm.physics.uncertainty.intervals import quantiles
+from squeezefilm.physics.uncertainty.intervals import evaluate, quantiles
 from squeezefilm.physics.uncertainty.uncertainty import POINTS, SAMPLES, sobol_points
 
 

@@ -171,7 +171,7 @@ def analyze(asked: AnalyzeOptions) -> None:
     with one_blas_thread(), working(asked.as_json) as step:
         from squeezefilm.design.analysis.analyze import analyze as run
         from squeezefilm.design.analysis.report import page
-        from squeezefilm.measure.fits.friction.person import with_finger
+        from squeezefilm.measure.fits.friction.friction_scores import with_finger
 
         display = with_finger(display, asked.finger)
         options = given(asked, leave="target finger out as_json")
@@ -210,7 +210,7 @@ def friction(asked: FrictionOptions) -> None:
     """The friction a finger meets, how the load is shared, and how sure all of it is."""
     from squeezefilm.design.friction import analyze_friction
     from squeezefilm.design.report.friction import show_friction, write_friction
-    from squeezefilm.measure.fits.friction.person import with_finger
+    from squeezefilm.measure.fits.friction.friction_scores import with_finger
 
     display = to_be_solved(
         asked.target, asked.voltage, amplitude=asked.vibration_amplitude, quiet=asked.as_json

@@ -136,15 +136,12 @@ def material_list(name: str | None = None) -> list[dict[str, Any]]:
     `InputError` for a name that is not known.
     """
     from squeezefilm.core.presets import materials
+    from squeezefilm.core.results import values_of
 
     known = materials.materials() if name is None else (materials.named(name),)
     return [
         {
-            "name": one.name,
-            "kind": one.kind,
-            "title": one.title,
-            "also": list(one.also),
-            "spread": one.spread,
+            **values_of(one, "name kind title also spread"),
             "values": [
                 {
                     "path": path,

@@ -258,7 +258,7 @@ def sweep(asked: SweepOptions) -> None:
         show_sweep,
     )
     from squeezefilm.design.sweep.sweep import SweepRequest, sweep_until_stopped
-    from squeezefilm.measure.fits.friction.person import with_finger
+    from squeezefilm.measure.fits.friction.friction_scores import with_finger
     from squeezefilm.physics.display import load_display
 
     if asked.answers:

@@ -83,7 +83,7 @@ def render(asked: RenderOptions) -> None:
         show_render,
         write_render,
     )
-    from squeezefilm.measure.fits.friction.person import with_finger
+    from squeezefilm.measure.fits.friction.friction_scores import with_finger
     from squeezefilm.physics.chain.rendered_texture import render_texture
     from squeezefilm.physics.display import load_display
     from squeezefilm.physics.texture_files.texture_file import load_texture
@@ -190,7 +190,7 @@ def play(asked: PlayOptions) -> None:
     """
     from squeezefilm.instruments.bench.play import play_texture
     from squeezefilm.instruments.report.terminal import line_a_second, show_play
-    from squeezefilm.measure.fits.friction.person import with_finger
+    from squeezefilm.measure.fits.friction.friction_scores import with_finger
     from squeezefilm.physics.display import load_display
     from squeezefilm.physics.texture_files.texture_file import load_texture
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import functools
 import hashlib
 import html
 import inspect
@@ -67,6 +68,20 @@ def to_json(value: Any) -> Any:
     if isinstance(value, Path):
         return str(value)
     raise TypeError(f"{type(value).__name__} has no JSON form")
+
+
+def values_of(owner: Any, names: str) -> dict[str, Any]:
+    """Attributes (named between blanks) as plain JSON values, with keys as `to_json` makes them.
+
+    ``mode.quality_factor`` is an attribute of another, ``quality_factor`` its key.
+    """
+    values: dict[str, Any] = {}
+    for path in names.split():
+        *owners, name = path.split(".")
+        holder = functools.reduce(getattr, owners, owner)
+        unit = _unit_of_attribute(type(holder), name)
+        values[name + (unit.suffix if unit is not None else "")] = to_json(getattr(holder, name))
+    return values
 
 
 class Interval(NamedTuple):

@@ -30,7 +30,7 @@ from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.wanted_voltage import WantedFriction, WorkingPoint
 from squeezefilm.physics.contact.sharing.pad import FrictionRipple
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.uncertainty.drawn import require_samples
+from squeezefilm.physics.uncertainty.intervals import require_samples
 from squeezefilm.physics.uncertainty.uncertainty import (
     SAMPLES,
     UncertainFriction,

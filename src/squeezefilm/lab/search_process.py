@@ -20,14 +20,14 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.config.syntax import require_quick_toml
 from squeezefilm.core.errors import ConfigError, SqueezefilmError
 from squeezefilm.core.interrupts import hear_interrupts
+from squeezefilm.core.results import values_of
 from squeezefilm.design.search.candidate import Design, Evaluated
 from squeezefilm.design.search.criteria import CRITERIA, bounded, criterion_of
 from squeezefilm.design.search.found import DesignSearch
-from squeezefilm.design.search.reasons import corner_in_words, limit_in_words
+from squeezefilm.design.search.limits import Made, corner_in_words, limit_in_words
 from squeezefilm.design.search.report.page import plate_file
 from squeezefilm.design.search.report.words import setting_words
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.tolerance import Made
 from squeezefilm.lab.files import existing
 from squeezefilm.lab.own_process import Tell, ToldProcess, telling
 from squeezefilm.lab.worker import LARGEST_MEMORY, prepare
@@ -107,17 +107,12 @@ def result(search: DesignSearch) -> dict[str, Any]:
         **_so_far(search),
         "chosen": search.chosen and search.chosen.name,
         "beats": [member.name for member in search.beats_reference],
-        "plates_better": search.plates_better,
+        **values_of(search, "plates_better hypervolume requirements.assumed computed kept stopped"),
         "limits": [
             limit_in_words(limit, len(search.screened)) for limit in search.limits if limit.broken
         ],
         "corners": [corner_in_words(corner) for corner in search.corners[:_ALL_WORDS]],
-        "hypervolume": search.hypervolume,
         "ranks": {criterion_of(key).said: value for key, value in search.ranks.items()},
-        "assumed": list(search.requirements.assumed),
-        "computed": search.computed,
-        "kept": search.kept,
-        "stopped": search.stopped,
     }
 
 
@@ -266,9 +261,7 @@ def asked_of(text: str, folder: Path) -> dict[str, Any]:
     `requirements_of`, and for a display that they start from and that cannot be read."""
     asked = requirements_of(text, folder)
     return {
-        "name": asked.name,
-        "title": asked.title,
-        "note": asked.note,
+        **values_of(asked, "name title note assumed"),
         "objectives": [
             {
                 "key": criterion.key,
@@ -284,7 +277,6 @@ def asked_of(text: str, folder: Path) -> dict[str, Any]:
         ],
         "start_from": Path(asked.start_from).stem,
         "compare_with": Path(asked.compare_with).stem if asked.compare_with else "",
-        "assumed": list(asked.assumed),
     }
 
 

@@ -18,8 +18,7 @@ from squeezefilm.lab.areas.feel import FeelArea
 from squeezefilm.lab.areas.search import SearchArea
 from squeezefilm.lab.areas.study import StudyArea
 from squeezefilm.lab.door import Door, room_for
-from squeezefilm.lab.guard import Places
-from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.guard import Keys, Places
 from squeezefilm.lab.server import PORT, Lab, listening_socket, server_of
 
 if TYPE_CHECKING:

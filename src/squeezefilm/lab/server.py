@@ -22,10 +22,9 @@ from starlette.websockets import WebSocket
 from squeezefilm.core.errors import InputError
 from squeezefilm.lab.connections import NowPlaying, OpenPage, PageProtocol, TimedProtocol
 from squeezefilm.lab.door import Connection, Door
-from squeezefilm.lab.guard import CONNECTION, Guard, Places
-from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.guard import CONNECTION, Guard, Keys, Places
 from squeezefilm.lab.wire import LARGEST_FROM_PARTICIPANT, LARGEST_MESSAGE, Dispatcher, as_text
-from squeezefilm.lab.worker import PAGE, LabWorkers, SupersededError
+from squeezefilm.lab.worker import PAGE, Busy, SupersededError
 from squeezefilm.physics import render
 
 if TYPE_CHECKING:
@@ -57,8 +56,9 @@ class LanPlace:
 
 @dataclass(slots=True)
 class Lab:
-    """A running lab: where its files lie, its keys, its workers, who answers what.
+    """A running lab: where its files lie, its keys, who answers what.
 
+    `quick` computes what a drag asks for, `slow` what takes seconds.
     `left` is called with each page that went away, `closing` when the lab ends.
     `lan` says where tablets reach it; None where they were not asked for.
     """
@@ -68,7 +68,9 @@ class Lab:
     places: Places
     experimenter: Dispatcher = field(default_factory=Dispatcher)
     participant: Dispatcher = field(default_factory=lambda: Dispatcher(LARGEST_FROM_PARTICIPANT))
-    workers: LabWorkers = field(default_factory=LabWorkers)
+    # Long enough for what is compiled when it is asked for the first time.
+    quick: Busy = field(default_factory=lambda: Busy(120.0))
+    slow: Busy = field(default_factory=lambda: Busy(600.0))
     pages: dict[WebSocket, OpenPage] = field(default_factory=dict)
     closing: list[Callable[[], None]] = field(default_factory=list)
     left: list[Callable[[WebSocket], None]] = field(default_factory=list)
@@ -85,11 +87,17 @@ class Lab:
             if page.is_participant == participants:
                 page.say(text)
 
+    def cancel(self, page: WebSocket | None) -> None:
+        """End a page's work that gives way."""
+        self.quick.cancel(page)
+        self.slow.cancel(page)
+
     def close(self) -> None:
-        """Stop what runs: devices, workers."""
+        """Stop what runs: devices, searches, and what is computed."""
         for close in self.closing:
             close()
-        self.workers.close()
+        self.quick.close()
+        self.slow.close()
 
 
 def application(lab: Lab) -> Guard:
@@ -178,7 +186,7 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
     line = lab.pages[page] = OpenPage(page)
     PAGE.set(page)
     if not line.is_participant:
-        lab.workers.quick.begin()
+        lab.quick.begin()
     waiting: set[asyncio.Task[None]] = set()
 
     async def one(text: str) -> None:
@@ -207,7 +215,7 @@ async def converse(lab: Lab, dispatcher: Dispatcher, page: WebSocket) -> None:
             told(page)
         for task in waiting:
             task.cancel()
-        lab.workers.cancel(page)
+        lab.cancel(page)
 
 
 def listening_socket(port: int, host: str = "127.0.0.1") -> socket.socket:

@@ -233,25 +233,6 @@ class Busy:
             self._process = None
 
 
-class LabWorkers:
-    """Two lines of work: one for what a drag asks for, one for what takes seconds."""
-
-    def __init__(self) -> None:
-        # Long enough for what is compiled when it is asked for the first time.
-        self.quick = Busy(120.0)
-        self.slow = Busy(600.0)
-
-    def cancel(self, page: WebSocket | None) -> None:
-        """End a page's work that gives way, in both."""
-        self.quick.cancel(page)
-        self.slow.cancel(page)
-
-    def close(self) -> None:
-        """End both."""
-        self.quick.close()
-        self.slow.close()
-
-
 _line: Connection | None = None
 _told_last = 0.0
 

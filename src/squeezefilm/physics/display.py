@@ -13,7 +13,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import ReadBy
 from squeezefilm.core.calibration_record import CalibrationRecord, JointSpread
 from squeezefilm.core.config.provenance import Provenance, References
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE, TOUCH_VOLTAGE, Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import FREQUENCY, ROUGHNESS

@@ -17,7 +17,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.design.analysis.published_claims import measured_of_preset
-from squeezefilm.design.plate.changed_plates import (
+from squeezefilm.design.plate.solved import (
     PlatePoint,
     with_ceramic_stiffness,
     with_glue,

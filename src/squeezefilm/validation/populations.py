@@ -20,7 +20,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.core.results import to_json
+from squeezefilm.core.results import to_json, values_of
 from squeezefilm.measure.fits.friction.friction_scores import fitted_shape
 from squeezefilm.measure.recordings.kinds import (
     DetectionThresholds,
@@ -64,10 +64,7 @@ class PopulationComparison:
         low, median, high = np.quantile(self.measured, [0.05, 0.5, 0.95])
         return {
             "recording": to_json(self.told),
-            "display": self.display,
-            "conditions": self.conditions,
-            "quantity": self.quantity,
-            "unit": self.unit,
+            **values_of(self, "display conditions quantity unit"),
             "count": int(self.measured.size),
             "median": float(median),
             "5_to_95_percent": [float(low), float(high)],

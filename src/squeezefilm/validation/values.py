@@ -18,7 +18,7 @@ from squeezefilm.design.analysis.paper_procedure import (
     friction_criterion,
     timoshenko_half_wavelength,
 )
-from squeezefilm.design.plate.changed_plates import (
+from squeezefilm.design.plate.solved import (
     PlatePoint,
     with_glue,
     with_loss_in_ceramic_alone,

@@ -11,7 +11,15 @@ import pytest
 
 from squeezefilm.actuators.described import load_actuator
 from squeezefilm.actuators.motor import average_kernel, kernel
-from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled, face_mode
+from squeezefilm.actuators.motor.assembled import (
+    AssembledMotor,
+    Feet,
+    Slider,
+    Stator,
+    Working,
+    assembled,
+    face_mode,
+)
 from squeezefilm.actuators.motor.averaged import (
     AveragedMotor,
     averaged,
@@ -27,7 +35,6 @@ from squeezefilm.actuators.motor.description import (
     MotorDescription,
 )
 from squeezefilm.actuators.motor.in_time import STEPS, MotorMotion, resting, simulate
-from squeezefilm.actuators.motor.parts import Feet, Slider, Stator
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
 from squeezefilm.physics.display import load_display

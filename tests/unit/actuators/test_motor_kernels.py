@@ -10,14 +10,13 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from squeezefilm.actuators.motor import kernel
-from squeezefilm.actuators.motor.assembled import Working
+from squeezefilm.actuators.motor.assembled import Working, damping_at, mode_energy, spring_at
 from squeezefilm.actuators.motor.average_kernel import (
     MEANS,
     Swing,
     average_contact,
 )
 from squeezefilm.actuators.motor.averaged import _means
-from squeezefilm.actuators.motor.parts import damping_at, mode_energy, spring_at
 
 from .test_plane_kernel import FEET, MODES, foot, made
 

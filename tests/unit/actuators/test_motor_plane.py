@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.optimize import root
 
-from squeezefilm.actuators.motor import parts, plane
-from squeezefilm.actuators.motor.assembled import AssembledMotor, Working, assembled
+from squeezefilm.actuators.motor import plane
+from squeezefilm.actuators.motor.assembled import AssembledMotor, Stator, Working, assembled
 from squeezefilm.actuators.motor.averaged import averaged
 from squeezefilm.actuators.motor.in_time import simulate
 from squeezefilm.actuators.motor.plane import _resting, simulate_plane
@@ -170,4 +170,4 @@ def test_kernels_agree_on_the_works_they_count() -> None:
     from squeezefilm.actuators.motor import kernel
 
     assert kernel.GUIDE_LOSS + 1 == kernel.THRUST == plane.TOTALS - 2
-    assert parts.Stator._fields[-1] == "held"
+    assert Stator._fields[-1] == "held"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from squeezefilm.actuators.motor.parts import Feet, Slider, Stator
+from squeezefilm.actuators.motor.assembled import Feet, Slider, Stator
 from squeezefilm.actuators.motor.plane import TOTALS, PlaneMarch, march_plane
 
 MODES, FEET, H = 2, 5, 0.01

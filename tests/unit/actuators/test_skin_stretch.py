@@ -6,8 +6,15 @@ import numpy as np
 import pytest
 
 from squeezefilm.actuators.described import load_actuator
-from squeezefilm.actuators.skin_stretch import bimorph, budget, cradle
-from squeezefilm.actuators.skin_stretch.array import SkinStretchArray, SkinStretchDescription
+from squeezefilm.actuators.skin_stretch import bimorph, cradle
+from squeezefilm.actuators.skin_stretch.array import (
+    Budget,
+    SkinStretchArray,
+    SkinStretchDescription,
+    charging_power,
+    lines_needed,
+    loss_power,
+)
 from squeezefilm.core.errors import GeometryError, InputError, OutOfRangeError, UnreachableError
 from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.render.texture.shapes import SineWave
@@ -211,18 +218,18 @@ def test_what_cannot_be_is_refused_in_words(array: SkinStretchArray) -> None:
 
 
 def test_lines_and_power(array: SkinStretchArray) -> None:
-    assert budget.lines_needed(60, "direct") == 61
-    assert budget.lines_needed(60, "matrix") == 16
-    assert budget.lines_needed(60, "daisy_chain") == 5
+    assert lines_needed(60, "direct") == 61
+    assert lines_needed(60, "matrix") == 16
+    assert lines_needed(60, "daisy_chain") == 5
     bender = array.bender
-    one = budget.loss_power(array.actuator, bender, 100.0, 250.0)
+    one = loss_power(array.actuator, bender, 100.0, 250.0)
     assert one == pytest.approx(np.pi * 250 * bender.capacitance * 0.02 * 1e4)
-    assert budget.charging_power(bender, 60, 100.0, 250.0) == pytest.approx(
+    assert charging_power(bender, 60, 100.0, 250.0) == pytest.approx(
         60 * 250 * bender.capacitance * 4e4
     )
     actuator = array.actuator
     volume = 60 * actuator.length * actuator.width * actuator.thickness
-    assert array.budget == budget.Budget(60 * actuator.mass, volume, array.cradle.active_area)
+    assert array.budget == Budget(60 * actuator.mass, volume, array.cradle.active_area)
     small = dataclasses.replace(array.budget, most_mass=10e-3, most_volume=1e-6)
     assert len(small.over) == 2
     assert "10 mm" not in dataclasses.replace(array.budget, area=1e-5).over[0]

@@ -12,7 +12,7 @@ import pytest
 from tests.e2e.program import run
 
 from squeezefilm.cli.textures import device_app
-from squeezefilm.instruments.bench.loop_check import CheckResult, DeviceCheck
+from squeezefilm.instruments.bench.timing_checks import CheckResult, DeviceCheck
 from squeezefilm.instruments.session.record.trace import TraceExport
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.texture_files.texture_file import load_texture

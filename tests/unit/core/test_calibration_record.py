@@ -14,7 +14,7 @@ from squeezefilm.core.calibration_record import (
     UsedRecording,
 )
 from squeezefilm.core.config.load import load_text, written_values
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.errors import InputError
 from squeezefilm.design.analysis.report.rows import display_values
 from squeezefilm.lab.designing.form import edited, form

@@ -12,7 +12,7 @@ import pytest
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config.load import load_text
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.formats.traces import Table, table_from_csv
 from squeezefilm.core.presets import path as preset_path

@@ -92,7 +92,7 @@ def talked(
     def begin() -> None:
         lab.begun += 1
 
-    lab.workers = SimpleNamespace(quick=SimpleNamespace(begin=begin), cancel=lab.ended.append)
+    lab.quick, lab.cancel = SimpleNamespace(begin=begin), lab.ended.append
 
     async def talk() -> None:
         # In a context of its own, as a server's.

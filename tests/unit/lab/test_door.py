@@ -21,8 +21,7 @@ from websockets.typing import Origin
 from squeezefilm.lab import connections
 from squeezefilm.lab import door as doors
 from squeezefilm.lab.door import Connection, Door, room_for
-from squeezefilm.lab.guard import Places
-from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.guard import Keys, Places
 from squeezefilm.lab.lan import certificate
 from squeezefilm.lab.server import Lab, UnheardServer, listening_socket, server_of
 
@@ -233,7 +232,7 @@ class Served:
         assert entered
         self.cookie = f"c={entered[0].secret}"
         # These pages compute nothing.
-        self.lab.workers.quick.begin = lambda: None  # type: ignore[method-assign]
+        self.lab.quick.begin = lambda: None  # type: ignore[method-assign]
 
     async def __aenter__(self) -> Served:
         self.task = asyncio.create_task(self.server.serve([self.listener]))

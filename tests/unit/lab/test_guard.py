@@ -6,8 +6,15 @@ import pytest
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
-from squeezefilm.lab.guard import LARGEST_BODY, POLICY, Places
-from squeezefilm.lab.keys import CODE_LIFE, LINK_LIFE, SESSION_LIFE, Keys
+from squeezefilm.lab.guard import (
+    CODE_LIFE,
+    LARGEST_BODY,
+    LINK_LIFE,
+    POLICY,
+    SESSION_LIFE,
+    Keys,
+    Places,
+)
 from squeezefilm.lab.server import Lab, application, static_file
 
 HOST = "127.0.0.1:8631"

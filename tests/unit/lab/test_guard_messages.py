@@ -9,8 +9,7 @@ from typing import Any
 import pytest
 
 from squeezefilm.lab import guard as guard_module
-from squeezefilm.lab.guard import CONNECTION, HEADERS, LARGEST_BODY, Guard, Places
-from squeezefilm.lab.keys import Keys, Session
+from squeezefilm.lab.guard import CONNECTION, HEADERS, LARGEST_BODY, Guard, Keys, Places, Session
 
 HOST = "127.0.0.1:8631"
 ORIGIN = f"http://{HOST}"

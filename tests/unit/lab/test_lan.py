@@ -18,8 +18,7 @@ from starlette.testclient import TestClient
 from squeezefilm.core.errors import InputError
 from squeezefilm.lab import lan
 from squeezefilm.lab.door import MOST_OF_ADDRESS, MOST_OPEN
-from squeezefilm.lab.guard import Places
-from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.guard import Keys, Places
 from squeezefilm.lab.lan import certificate, lan_application, lan_listener, lan_server
 from squeezefilm.lab.server import STATIC, Lab
 

@@ -16,7 +16,7 @@ import pytest
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.core.results import to_json
 from squeezefilm.instruments.bench import play as bench_play
-from squeezefilm.instruments.bench.loop_check import CheckResult
+from squeezefilm.instruments.bench.timing_checks import CheckResult
 from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.report import page
 from squeezefilm.instruments.session.loop.rows import COLUMNS

@@ -247,15 +247,3 @@ def test_only_what_would_give_way_and_was_asked_by_the_page_is_cancelled(
     monkeypatch.setattr(busy, "_end", lambda job, why: ended.append((job, str(why))))
     busy.cancel(one)  # type: ignore[arg-type]
     assert ended == [(jobs[at], "the computation was cancelled") for at in (0, 3)]
-
-
-def test_both_lines_of_work_cancel_and_close(monkeypatch: pytest.MonkeyPatch) -> None:
-    lines = worker.LabWorkers()
-    did: list[Any] = []
-    for name in ("quick", "slow"):
-        line = getattr(lines, name)
-        monkeypatch.setattr(line, "cancel", lambda page, name=name: did.append((name, page)))
-        monkeypatch.setattr(line, "close", lambda name=name: did.append(name))
-    lines.cancel(None)
-    lines.close()
-    assert did == [("quick", None), ("slow", None), "quick", "slow"]

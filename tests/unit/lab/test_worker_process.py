@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import warnings
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,6 +15,8 @@ import pytest
 from squeezefilm.core import interrupts
 from squeezefilm.core.errors import SqueezefilmError, SqueezefilmWarning
 from squeezefilm.lab import worker
+from squeezefilm.lab.guard import Keys, Places
+from squeezefilm.lab.server import Lab
 
 
 class Line:
@@ -167,18 +170,18 @@ def test_a_system_without_such_limits_has_none(monkeypatch: pytest.MonkeyPatch) 
 
 
 def test_two_lines_of_work_are_cancelled_and_closed_together(
-    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     done: list[Any] = []
     monkeypatch.setattr(worker.Busy, "cancel", lambda self, page: done.append((self, page)))
     monkeypatch.setattr(worker.Busy, "close", lambda self: done.append((self, "closed")))
-    workers = worker.LabWorkers()
-    assert workers.quick is not workers.slow
+    lab = Lab(tmp_path, Keys(), Places(frozenset(), cookie="c"))
+    assert lab.quick is not lab.slow
     page: Any = object()
-    workers.cancel(page)
-    workers.close()
+    lab.cancel(page)
+    lab.close()
     assert done == [
-        (workers.quick, page), (workers.slow, page),
-        (workers.quick, "closed"), (workers.slow, "closed"),
+        (lab.quick, page), (lab.slow, page),
+        (lab.quick, "closed"), (lab.slow, "closed"),
     ]  # fmt: skip
-    assert (workers.quick._longest, workers.slow._longest) == (120.0, 600.0)
+    assert (lab.quick._longest, lab.slow._longest) == (120.0, 600.0)

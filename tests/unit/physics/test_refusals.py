@@ -41,7 +41,7 @@ from squeezefilm.physics.plate.solid.forecast import estimated_frequency
 from squeezefilm.physics.render.texture.pattern import Greatest, Least, Times
 from squeezefilm.physics.render.texture.shapes import Attack
 from squeezefilm.physics.texture_files.image_file import ImageFile, picture_from
-from squeezefilm.physics.uncertainty.drawn import require_samples
+from squeezefilm.physics.uncertainty.intervals import require_samples
 
 GAP = PaperGap(1e-6, np.array([1e-6, 2e-6]), 0.0, 0.4e-3, 14.4e-3, 9e-3)
 STEEL = isotropic_solid(ElasticMaterial("steel", 200e9, 0.3, 7800.0))

@@ -149,10 +149,9 @@ def test_a_study_refuses_a_drive_that_does_not_stop_by_itself(
 ) -> None:
     from squeezefilm.core.drive_limits import Limits
     from squeezefilm.instruments.session.loop.plan import LoopPlan
-    from squeezefilm.physics.render.motion.estimator import MotionEstimator
-    from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+    from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, MotionEstimator
     from squeezefilm.physics.render.program.lowering import lower
-    from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+    from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
     from squeezefilm.physics.render.texture.levels import Amplitude
     from squeezefilm.physics.render.texture.shapes import SquareWave
 

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from squeezefilm.core.errors import SqueezefilmError
-from squeezefilm.design.plate.changed_plates import PlatePoint
+from squeezefilm.design.plate.solved import PlatePoint
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.validation import explanations as prototype
 from squeezefilm.validation.explanations import (

@@ -31,7 +31,7 @@ from squeezefilm.actuators.motor.plane import PlaneMotion, simulate_plane
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, UnreachableError
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.core.results import Result, to_json
+from squeezefilm.core.results import Result, to_json, values_of
 
 # Where the mean over a period is off by more than this of µ times the preload, it is warned of.
 _APART = 0.05
@@ -139,22 +139,19 @@ class MotorAnalysis(Result):
 
     def summary(self) -> dict[str, Any]:
         """Numbers as plain JSON values, with units in the keys."""
-        mode = self.motor.modes[0].working
         return {
             "actuator": self.described.name,
             "kind": "motor",
-            "voltage_V": self.voltage,
-            "resonance_frequency_Hz": mode.resonance_frequency,
-            "quality_factor": mode.quality_factor,
-            "free_amplitude_m": self.free_amplitude,
             "amplitude_under_the_slider_m": self.rest.amplitude,
-            "preload_N": self.motor.motor.cradle.preload,
-            "stall_force_N": self.stall_force,
-            "no_load_speed_m_per_s": self.no_load_speed,
             "holding_force_unpowered_N": self.motor.quiescent_force,
-            "contact_share": self.rest.contact_share,
+            **values_of(
+                self,
+                "voltage free_amplitude motor.motor.cradle.preload stall_force no_load_speed "
+                "rest.contact_share input_power motion.energy_residual motor.highest_voltage "
+                "drawn warnings",
+            ),
+            **values_of(self.motor.modes[0].working, "resonance_frequency quality_factor"),
             "best": to_json(self.best) | {"efficiency": self.best.efficiency},
-            "input_power_W": self.input_power,
             "best_of_map": dict(
                 zip(("efficiency", "preload_N", "amplitude_m"), self.best_of_map, strict=True)
             ),
@@ -164,24 +161,11 @@ class MotorAnalysis(Result):
                 for speed, force in self.resolved.tolist()
             ],
             "averaged_less_resolved_thrust": self.thrust_apart,
-            "energy_residual": self.motion.energy_residual,
-            "highest_voltage_V": self.motor.highest_voltage,
             "speed_force_curve": [
-                {
-                    "speed_m_per_s": point.speed,
-                    "force_N": point.force,
-                    "efficiency": point.efficiency,
-                }
-                for point in self.curve
+                values_of(point, "speed force efficiency") for point in self.curve
             ],
-            "drawn": to_json(self.drawn),
             "over_frequency": [
-                {
-                    "frequency_Hz": point.working.frequency,
-                    "force_N": point.force,
-                    "amplitude_m": point.amplitude,
-                }
-                for point in self.tuned
+                values_of(point, "working.frequency force amplitude") for point in self.tuned
             ],
             "over_place_of_the_feet": [
                 {"shift_m": shift, "force_N": None if shifted is None else shifted.force}
@@ -190,7 +174,6 @@ class MotorAnalysis(Result):
             "velocity_in_the_plane_m_per_s": None
             if self.plane is None
             else self.plane.final_velocity.tolist(),
-            "warnings": list(self.warnings),
         }
 
 

@@ -11,16 +11,14 @@ import numpy as np
 from squeezefilm.actuators.analysis.drawn import DrawnAnswers, Usual, drawn_answers
 from squeezefilm.actuators.skin_stretch.array import (
     ArrayPull,
+    Lines,
     SkinStretchArray,
     SkinStretchDescription,
-)
-from squeezefilm.actuators.skin_stretch.bimorph import LoadedTip, loaded_tip, tip_motion
-from squeezefilm.actuators.skin_stretch.budget import (
-    Lines,
     charging_power,
     lines_needed,
     loss_power,
 )
+from squeezefilm.actuators.skin_stretch.bimorph import LoadedTip, loaded_tip, tip_motion
 from squeezefilm.actuators.skin_stretch.cradle import (
     Seating,
     finest_period,
@@ -32,7 +30,7 @@ from squeezefilm.actuators.skin_stretch.cradle import (
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import UnreachableError
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.core.results import Result, to_json
+from squeezefilm.core.results import Result, values_of
 from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.render.texture.shapes import SineWave
 
@@ -140,23 +138,22 @@ class SkinStretchAnalysis(Result):
 
     def summary(self) -> dict[str, Any]:
         """Numbers as plain JSON values, with units in the keys."""
-        array, bender, budget = self.array, self.array.bender, self.array.budget
+        array, budget = self.array, self.array.budget
         heat, driven = self.power
         return {
             "actuator": self.described.name,
             "kind": "skin_stretch",
-            "voltage_V": self.voltage,
-            "largest_voltage_V": array.actuator.largest_voltage,
             "actuators": array.cradle.count,
-            "free_deflection_m": self.free_deflection,
-            "blocked_force_N": self.blocked_force,
+            **values_of(
+                self,
+                "voltage array.actuator.largest_voltage free_deflection blocked_force "
+                "array.bender.resonance_frequency array.crosstalk lines drawn warnings",
+            ),
             "deflection_on_skin_m": self.tip.deflection,
             "force_on_skin_N": self.tip.force,
             "skin_stiffness_N_per_m": self.skin.stiffness,
-            "resonance_frequency_Hz": bender.resonance_frequency,
             "resonance_frequency_on_skin_Hz": self.tip.resonance_frequency,
             "bandwidth_on_skin_Hz": self.tip.bandwidth,
-            "crosstalk": array.crosstalk,
             "all_together_mean_displacement_m": float(np.mean(self.together.displacements)),
             "contactors_that_slip_together": self.together.slipping,
             "contactors_that_slip_in_the_wave": self.wave.pull.slipping,
@@ -170,9 +167,6 @@ class SkinStretchAnalysis(Result):
             "active_area_m2": budget.area,
             "heat_at_100_Hz_W": heat,
             "driver_power_at_100_Hz_W": driven,
-            "lines": self.lines,
-            "drawn": to_json(self.drawn),
-            "warnings": list(self.warnings),
         }
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm.actuators.motor.parts import Feet, Stator, followed
+from squeezefilm.actuators.motor.assembled import Feet, Stator, followed
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 

@@ -16,10 +16,9 @@ from typing import Annotated
 import numpy as np
 from scipy.optimize import brentq
 
-from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
+from squeezefilm.actuators.motor.assembled import AssembledMotor, Stator, Working
 from squeezefilm.actuators.motor.average_kernel import MEANS, Swing, average_contact
 from squeezefilm.actuators.motor.in_time import require_no_pull
-from squeezefilm.actuators.motor.parts import Stator
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError, InputError, OutOfRangeError, UnreachableError
 

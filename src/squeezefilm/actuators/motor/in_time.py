@@ -8,8 +8,14 @@ from typing import Annotated
 import numpy as np
 
 from squeezefilm.actuators.motor import kernel
-from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
-from squeezefilm.actuators.motor.parts import Feet, Slider, Stator, mode_energy
+from squeezefilm.actuators.motor.assembled import (
+    AssembledMotor,
+    Feet,
+    Slider,
+    Stator,
+    Working,
+    mode_energy,
+)
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConvergenceError, OutOfRangeError
 

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from squeezefilm.actuators.motor.parts import Feet, Slider, Stator, damping_at, spring_at
+from squeezefilm.actuators.motor.assembled import Feet, Slider, Stator, damping_at, spring_at
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 

@@ -14,17 +14,18 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from squeezefilm.actuators.motor.assembled import AssembledMotor, Working
-from squeezefilm.actuators.motor.in_time import Motion, require_no_pull
-from squeezefilm.actuators.motor.parts import (
+from squeezefilm.actuators.motor.assembled import (
+    AssembledMotor,
     Feet,
     Slider,
     Stator,
+    Working,
     damping_at,
     followed,
     mode_energy,
     spring_at,
 )
+from squeezefilm.actuators.motor.in_time import Motion, require_no_pull
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 

@@ -19,7 +19,7 @@ from squeezefilm.core import hard_limits as hard
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import GeometryError, InputError, UnreachableError
 from squeezefilm.core.hard_limits import MOTION_SAMPLES, require_within
-from squeezefilm.physics.render.texture.pattern import Pattern, require_pattern
+from squeezefilm.physics.render.texture.pattern import Pattern
 
 _M = si.Unit("m")
 Radius = Annotated[si.Metre, si.Above(0)]
@@ -259,7 +259,6 @@ def pattern_voltages(
     pitches are not resolved (`finest_period`). Raises `InputError` for what is no pattern, times
     that are no row, or more than 20 million samples.
     """
-    require_pattern("pattern", pattern)
     si.require("times", times, si.Unit("s"), axes=1)
     if times.size == 0:
         raise InputError("times is empty; give at least one", quantity="times")

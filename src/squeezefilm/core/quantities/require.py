@@ -30,6 +30,7 @@ __all__ = [
     "AtMost",
     "Below",
     "Limit",
+    "Rising",
     "bounds_of",
     "real_numbers",
     "require",
@@ -75,6 +76,23 @@ class Limit(Protocol):
 
     def refuse_outside(self, asked: Any, quantity: str) -> None:
         """Raise `InputError` that names the quantity."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rising:
+    """Limit in an annotation: a row of at least `count` numbers, each above the one before."""
+
+    count: int = 1
+
+    def refuse_outside(self, asked: Any, quantity: str) -> None:
+        """Raise `InputError` for any other array."""
+        shape = np.shape(asked)
+        if len(shape) != 1 or shape[0] < self.count or np.any(np.diff(asked) <= 0):
+            raise InputError(
+                f"{quantity} of shape {shape} must rise from each number to the next, and be one "
+                f"row of at least {self.count}; sort it, and leave out what is there twice",
+                quantity=quantity,
+            )
 
 
 def bounds_of(

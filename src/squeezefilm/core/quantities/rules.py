@@ -31,7 +31,8 @@ _PURE = Unit("1")
 _MOST_BITS = 64
 _MOST = sys.float_info.max
 
-Kind = Literal["number", "array", "either", "complex", "count", "row", "table", "container", "word"]
+_Numbers = Literal["number", "array", "either", "complex", "count", "row", "table", "container"]
+Kind = Literal[_Numbers, "word", "part", "parts"]
 _PLAIN_TYPES: dict[str, tuple[type, ...]] = {
     "number": (float,),
     "array": (np.ndarray,),
@@ -45,7 +46,8 @@ _PLAIN_TYPES: dict[str, tuple[type, ...]] = {
 class Rule:
     """The demand of an annotation on an argument: one number, an array, either, a count, a row (a
     tuple or list of numbers), a table (a tuple of rows), or numbers in another container, which is
-    left as it is; or a word, one of `words`. `length` is of a row, `bounds` as `require` takes
+    left as it is; or a word, one of `words`; or one of `records` (a part), or a tuple of those,
+    whose class says as `WANTED` what to give. `length` is of a row, `bounds` as `require` takes
     them. One of `records`, which checked its own numbers, may stand in a number's place.
     `named_bounds` are others' values: word of `require`, name of the other."""
 
@@ -56,7 +58,7 @@ class Rule:
     limits: tuple[Limit, ...] = ()
     length: int | None = None
     words: tuple[Any, ...] = ()
-    records: tuple[type, ...] = ()
+    records: tuple[Any, ...] = ()
     named_bounds: tuple[tuple[str, str], ...] = ()
     _plain_types: tuple[type, ...] = field(init=False, compare=False)
     _least: float = field(init=False, compare=False)
@@ -108,6 +110,11 @@ class Rule:
             return value
         if self.kind == "word":
             require_one_of(name, value, self.words)
+        elif self.kind in ("part", "parts"):
+            for part in value if self.kind == "parts" else (value,):
+                if not isinstance(part, self.records):
+                    wanted = self.records[0].WANTED
+                    raise InputError(f"{name} = {part!r} is no {wanted}", quantity=name)
         elif self.kind == "count":
             self._require_count(name, value)
         elif self.kind == "complex":
@@ -173,6 +180,10 @@ def rule_of(hint: Any, more: dict[str, Any]) -> Rule | None:
     if plain and all(typing.get_origin(member) is Literal for member in plain):
         words = tuple(word for member in plain for word in typing.get_args(member))
         return Rule("word", is_optional=is_optional, words=words)
+    is_tuple = typing.get_origin(hint) is tuple
+    kinds = [kind for kind in typing.get_args(hint) if kind is not Ellipsis] if is_tuple else plain
+    if kinds and all(hasattr(kind, "WANTED") for kind in kinds):
+        return Rule("parts" if is_tuple else "part", is_optional=is_optional, records=tuple(kinds))
     unit = unit_of(hint)
     records = tuple(m for m in plain if unit and isinstance(m, type) and is_dataclass(m))
     numbers = [member for member in plain if member not in records]

@@ -56,7 +56,7 @@ from squeezefilm.physics.plate.electronics import ElectricalLoad, load_of_mode
 from squeezefilm.physics.plate.laminate import CrossSection
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.plate.solid.working import solid_mode
-from squeezefilm.physics.uncertainty.drawn import description_of
+from squeezefilm.physics.uncertainty.intervals import description_of
 from squeezefilm.physics.uncertainty.uncertainty import (
     FrictionBand,
     UncertainFriction,

@@ -22,7 +22,7 @@ from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.chain.wanted_voltage import WantedFriction, WorkingPoint
 from squeezefilm.physics.plate.working_mode import PlateTheory
 from squeezefilm.physics.render.resonator.envelope import envelope_bandwidth
-from squeezefilm.physics.uncertainty.drawn import require_samples
+from squeezefilm.physics.uncertainty.intervals import require_samples
 from squeezefilm.physics.uncertainty.uncertainty import (
     SAMPLES,
     interval_or_reason,

@@ -24,9 +24,8 @@ from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.pad_place import pad_place
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.uncertainty.drawn import evaluate, hash_of_draws
 from squeezefilm.physics.uncertainty.draws import Mixture, Outcome, as_drawn, mixture_of
-from squeezefilm.physics.uncertainty.intervals import quantiles
+from squeezefilm.physics.uncertainty.intervals import evaluate, hash_of_draws, quantiles
 from squeezefilm.physics.uncertainty.uncertainty import POINTS, SAMPLES, sobol_points
 
 _KEPT: Kept[si.FloatArray] = Kept("draws-over-areas", si.FloatArray, large=True)

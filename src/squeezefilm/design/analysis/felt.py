@@ -17,6 +17,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.core.kept.store import Kept
+from squeezefilm.core.results import values_of
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.contact.finger.fingertip import rest_friction_factor
 from squeezefilm.physics.display import DECAY_LENGTH, Display
@@ -35,9 +36,8 @@ from squeezefilm.physics.render.resonator.envelope import (
     finest_period,
     sine_swing_kept,
 )
-from squeezefilm.physics.uncertainty.drawn import hash_of_draws
 from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, mixture_of
-from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, ends
+from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, ends, hash_of_draws
 from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 
 PAPER_PERIODS: tuple[si.Metre, ...] = (0.4e-3, 2e-3, 4e-3, 8e-3, 10e-3)
@@ -134,12 +134,9 @@ class FeltGratings:
         then at each."""
         return {
             **_row(self.here),
-            "observer": self.observer,
+            **values_of(self, "observer draws why_no_interval model"),
             "detection_criterion_d_prime": self.criterion,
             "interval_level": self.level,
-            "draws": self.draws,
-            "why_no_interval": self.why_no_interval,
-            "model": self.model,
             "by_speed": [_row(felt) for felt in self.at],
         }
 

@@ -12,6 +12,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import OutOfRangeError, SqueezefilmError, UnreachableError
 from squeezefilm.core.progress import SayProgress
+from squeezefilm.core.results import values_of
 from squeezefilm.physics.chain.friction import FrictionLaw
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.chain.touch import amplitude_per_volt, kept_at
@@ -90,11 +91,9 @@ class Wanted:
         """Numbers as plain JSON values."""
         unsure = self.uncertain
         return {
-            "relative_friction": self.relative_friction,
-            "vibration_amplitude_m": self.vibration_amplitude,
-            "voltage_V": self.voltage,
-            "why_not": self.why_not,
-            "why_no_interval": self.why_no_interval,
+            **values_of(
+                self, "relative_friction vibration_amplitude voltage why_not why_no_interval"
+            ),
             **({} if unsure is None else unsure.summary()),
         }
 

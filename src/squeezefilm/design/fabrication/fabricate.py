@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.core.results import Result, stamp, to_json, values_of
 from squeezefilm.design.fabrication.test_plan import BenchFacts, TestStep, test_plan
 from squeezefilm.design.fabrication.wiring import (
     BillRow,
@@ -82,18 +82,16 @@ class Fabrication(BenchFacts, Result):
         """The numbers as plain JSON values, units in the keys."""
         return {
             "display": self.display.name,
+            **values_of(
+                self,
+                "prediction.mode.resonance_frequency prediction.vibration_amplitude "
+                "prediction.relative_friction prediction.warnings bill electrodes expected "
+                "no_intervals",
+            ),
             "mass_kg": self.mass,
-            "resonance_frequency_Hz": self.prediction.mode.resonance_frequency,
-            "vibration_amplitude_m": self.prediction.vibration_amplitude,
-            "relative_friction": self.prediction.relative_friction,
-            "bill": to_json(self.bill),
-            "electrodes": to_json(self.electrodes),
             "nodal_lines": to_json(self.nodal),
-            "expected": to_json(self.expected),
-            "no_intervals": self.no_intervals,
             "drive_electronics": to_json(self.load),
             "test_plan": to_json(self.steps),
-            "warnings": list(self.prediction.warnings),
             "provenance": stamp(self.display),
         }
 

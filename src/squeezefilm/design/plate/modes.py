@@ -13,7 +13,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import SqueezefilmError
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.core.results import Result, stamp, to_json, values_of
 from squeezefilm.design.plate.listed_modes import (
     DRIVEN_SHARE,
     HEARING,
@@ -83,25 +83,15 @@ class ModeList(Result):
         """Mapping of plain JSON values; keys carry units."""
         return {
             "display": self.display.name,
-            "band_Hz": list(self.band),
+            **values_of(
+                self,
+                "band working working_mode forbidden rules suggestion pair model frequency_error",
+            ),
             "modes": [
-                {
-                    **to_json(mode),
-                    "crowded": mode.crowded,
-                    "hidden": mode.hidden,
-                    "half_bandwidth_Hz": mode.half_bandwidth,
-                }
+                to_json(mode) | values_of(mode, "crowded hidden half_bandwidth")
                 for mode in self.modes
             ],
-            "working": self.working,
-            "working_mode": to_json(self.working_mode),
             "working_mode_per_volt": self._solved_summary(),
-            "forbidden": self.forbidden,
-            "rules": list(self.rules),
-            "suggestion": to_json(self.suggestion),
-            "pair": to_json(self.pair),
-            "model": self.model,
-            "frequency_error": self.frequency_error,
             "provenance": stamp(self.display),
         }
 
@@ -112,12 +102,9 @@ class ModeList(Result):
             return None
         largest = None if solved.solid is None else solved.solid.largest_per_volt
         return {
-            "resonance_frequency_Hz": solved.resonance_frequency,
-            "amplitude_per_volt_m_per_V": solved.amplitude_per_volt,
+            **values_of(solved, "resonance_frequency amplitude_per_volt neighbour model"),
             "largest_per_volt_m_per_V": largest,
             "antinode_m": list(solved.lobe),
-            "neighbour": to_json(solved.neighbour),
-            "model": solved.model,
         }
 
     def _table(self) -> Any:

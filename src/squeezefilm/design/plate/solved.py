@@ -1,21 +1,30 @@
-"""Parts that solved plate, disc and stator share: its modes, the working one, a summary."""
+"""A solved plate, disc or stator: its modes, the working one, a summary, and what the working mode
+becomes where one thing is different."""
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar
 
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.core.kept.store import Kept
+from squeezefilm.core.results import Result, stamp, to_json, values_of
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.circuit import DrivenResponse, EquivalentCircuit
 from squeezefilm.physics.plate.electronics import ElectricalLoad, electrical_load
+from squeezefilm.physics.plate.layout import DiscPlate, GlueLayer, RectangularPlate
+from squeezefilm.physics.plate.solid.modes import Label, PlateModes
+from squeezefilm.physics.plate.solid.response import harmonic_response
+from squeezefilm.physics.plate.solid.solve import solve_modes
+from squeezefilm.physics.plate.solid.symmetry import drive_signs
 from squeezefilm.physics.plate.sound import SoundField
 from squeezefilm.physics.plate.working_mode import WorkingMode
+from squeezefilm.physics.uncertainty.parameters import with_values
 
 if TYPE_CHECKING:
     from squeezefilm.physics.plate.warming import Warming
@@ -121,39 +130,27 @@ class SolvedBody(Result):
 
     def summary(self) -> dict[str, Any]:
         """Mapping of plain JSON values; keys carry units."""
-        volts, load = self.display.drive.voltage, self.load
         levels = zip(self.sound.distances, self.sound.sound_pressure_level_dB, strict=True)
         return {
             "display": self.display.name,
             "mode": self.working.label,
-            "frequency_Hz": self.working.frequency,
-            "frequency_error_Hz": self.working.frequency_error,
-            "amplitude_per_volt_m_per_V": self.amplitude_per_volt,
-            "largest_per_volt_m_per_V": self.largest_per_volt,
-            "alone_per_volt_m_per_V": self.working.alone_per_volt,
-            "neighbour": to_json(self.mode.neighbour),
-            "half_wavelength_m": self.working.half_wavelength,
-            "quality_factor": self.working.quality_factor,
-            "coupling_coefficient": self.working.coupling_coefficient,
-            "coupling_coefficient_error": self.working.coupling_coefficient_error,
-            "parallel_resonance_frequency_Hz": self.working.parallel_resonance_frequency,
-            "parallel_resonance_frequency_error_Hz": (
-                self.working.parallel_resonance_frequency_error
-            ),
             "modes": to_json(self.rows),
-            "voltage_V": volts,
-            "current_A": load.current,
-            "apparent_power_VA": load.apparent_power,
-            "input_power_W": load.real_power,
             "heat": to_json(self.heat),
+            "input_power_W": self.load.real_power,
             "equivalent_circuit": to_json(self.circuit),
             "equivalent_circuit_said": self.circuit_said,
+            **values_of(
+                self,
+                "working.frequency working.frequency_error amplitude_per_volt largest_per_volt "
+                "working.alone_per_volt mode.neighbour working.half_wavelength "
+                "working.quality_factor working.coupling_coefficient "
+                "working.coupling_coefficient_error working.parallel_resonance_frequency "
+                "working.parallel_resonance_frequency_error display.drive.voltage load.current "
+                "load.apparent_power model status objections",
+            ),
             **self._particulars(),
             "sound_pressure_level_dB": {f"{far:g} m": level for far, level in levels},
             "sound_guidance": to_json(self.sound.guidance),
-            "model": self.model,
-            "status": self.status,
-            "objections": list(self.objections),
             "provenance": stamp(self.display),
         }
 
@@ -190,3 +187,100 @@ def half_power(frequency: si.FloatArray, amplitude: si.FloatArray) -> tuple[floa
         share = (level - amplitude[low]) / (amplitude[high] - amplitude[low])
         edges.append(float(frequency[low] + share * (frequency[high] - frequency[low])))
     return edges[0], edges[1]
+
+
+# Plates with one thing different. Each is solved in three dimensions; solved plates are kept, so
+# that asking again costs nothing.
+LOSSLESS: si.Dimensionless = 1e5
+"""The quality factor that stands for a substrate without losses of its own."""
+_POINTS = 61
+
+_Plate = TypeVar("_Plate", RectangularPlate, DiscPlate)
+
+
+@dataclass(frozen=True)
+class PlatePoint:
+    """Working mode of a plate: its frequency with its estimated error,
+    the largest amplitude per volt on the upper face at resonance (None where nothing drives it),
+    quality factor, and the frequency with the drive's terminals open."""
+
+    label: Label
+    frequency: si.Hertz
+    frequency_error: si.Hertz
+    largest_per_volt: si.MetrePerVolt | None
+    quality_factor: si.Dimensionless
+    open_frequency: si.Hertz
+
+
+_MODES: Kept[PlateModes] = Kept("compared-modes", PlateModes)
+_AMPLITUDES: Kept[float] = Kept("compared-amplitudes", float)
+
+
+@functools.lru_cache(maxsize=256)
+def _solved(plate: RectangularPlate, label: Label) -> PlateModes:
+    def modes() -> PlateModes:
+        # Without what fields are evaluated on: megabytes each, and not asked for here.
+        return dataclasses.replace(solve_modes(plate, mode=label), _fields=(), _again=None)
+
+    return _MODES.found(repr((plate, label)), modes)
+
+
+@functools.lru_cache(maxsize=256)
+def _amplitude(
+    plate: RectangularPlate, frequency: si.Hertz, quality: si.Dimensionless
+) -> si.MetrePerVolt:
+    def largest() -> float:
+        # The harmonic mesh is another one, so the peak need not lie at the middle exactly.
+        response = harmonic_response(plate, sweep_around(frequency, quality, _POINTS))
+        return float(np.max(response.maximum))
+
+    return _AMPLITUDES.found(repr((plate, frequency, quality)), largest)
+
+
+def working_point(
+    plate: RectangularPlate, label: Label | None = None, *, amplitude: bool = True
+) -> PlatePoint:
+    """A plate's working mode (or the one with this label) as explanations are compared by it.
+
+    Raises what `solve_modes` raises. The amplitude is left out where no electrode is driven or
+    `amplitude` is False.
+    """
+    wanted = label or (plate.nodal_lines, 0)
+    modes = _solved(plate, wanted)
+    index = modes.index(wanted)
+    frequency, quality = float(modes.frequencies[index]), float(modes.quality_factors[index])
+    driven = amplitude and bool(np.any(drive_signs(plate)))
+    return PlatePoint(
+        wanted,
+        frequency,
+        float(modes.errors[index]),
+        _amplitude(plate, frequency, quality) if driven else None,
+        quality,
+        float(modes.open_frequencies[index]),
+    )
+
+
+def with_ceramic_stiffness(plate: _Plate, share: si.Dimensionless) -> _Plate:
+    """The plate or disc with all stiffnesses of its ceramic multiplied, d31 (or e31) kept."""
+    return dataclasses.replace(plate, ceramic=plate.ceramic.scaled(stiffness=share))
+
+
+def with_other_data_set(plate: RectangularPlate) -> RectangularPlate:
+    """The plate with the other of the two data sets of its ceramic believed."""
+    ceramic = plate.ceramic
+    other: Literal["from_d31", "printed_e31"] = (
+        "printed_e31" if ceramic.data_set == "from_d31" else "from_d31"
+    )
+    return dataclasses.replace(plate, ceramic=dataclasses.replace(ceramic, data_set=other))
+
+
+def with_glue(
+    plate: RectangularPlate, thickness: si.Metre, young_modulus: si.Pascal
+) -> RectangularPlate:
+    """The plate with a glue line of this thickness and Young's modulus (losses as `GlueLayer`)."""
+    return dataclasses.replace(plate, glue=GlueLayer(thickness, young_modulus))
+
+
+def with_loss_in_ceramic_alone(plate: RectangularPlate) -> RectangularPlate:
+    """The plate with no losses but its ceramic's (and its glue's, where it has one)."""
+    return with_values(plate, {"substrate.quality_factor": LOSSLESS})

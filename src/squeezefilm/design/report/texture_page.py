@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.formats.traces import Table, csv_text, parquet_bytes
-from squeezefilm.core.formats.wav import Waveform, wav_bytes
+from squeezefilm.core.formats.traces import Table, Waveform, csv_text, parquet_bytes, wav_bytes
 from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import HZ, SPEED, M, N, S, V, printable, shown
 from squeezefilm.core.kit.page_style import (

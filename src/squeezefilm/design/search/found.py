@@ -12,17 +12,17 @@ from scipy.stats import spearmanr
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.results import Result, to_json
+from squeezefilm.core.results import Result, to_json, values_of
 from squeezefilm.design.search.candidate import Evaluated, plates_of, sourced_display_of
 from squeezefilm.design.search.criteria import CRITERIA
-from squeezefilm.design.search.reasons import (
+from squeezefilm.design.search.limits import (
     EmptyCorner,
     LimitReason,
+    Made,
     empty_corners,
     limit_reasons,
 )
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.tolerance import Made
 from squeezefilm.design.search.worth_solving import Correction, objectives_of, worst_corner
 from squeezefilm.design.sweep.tradeoffs import dominates, front_of, hypervolume, knee_of
 from squeezefilm.physics.display import Display
@@ -193,13 +193,13 @@ class DesignSearch(Result):
         chosen = self.chosen
         return {
             "requirements": self.requirements.name,
-            "title": self.requirements.title,
-            "objectives": list(self.requirements.objectives),
+            **values_of(
+                self,
+                "requirements.title requirements.objectives requirements.assumed plates_solved "
+                "plates_feasible plates_on_front hypervolume limits stopped provenance",
+            ),
             "screened": len(self.screened),
             "screened_feasible": sum(candidate.is_feasible for candidate in self.screened),
-            "plates_solved": self.plates_solved,
-            "plates_feasible": self.plates_feasible,
-            "plates_on_front": self.plates_on_front,
             "front": [_row(self.requirements, member) for member in self.front],
             "chosen": None if chosen is None else chosen.name,
             "reference": None
@@ -211,9 +211,7 @@ class DesignSearch(Result):
                 "reason": self.reference.reason,
                 "beaten_by": [member.name for member in self.beats_reference],
             },
-            "hypervolume": self.hypervolume,
             "hypervolume_corner": self.worst.tolist(),
-            "limits": to_json(self.limits),
             "empty_corners": to_json(self.corners),
             "screening_ranks": self.ranks,
             "screening_errors": {
@@ -228,12 +226,9 @@ class DesignSearch(Result):
                     self.requirements.spaces, self.corrections, strict=True
                 )
             },
-            "assumed": list(self.requirements.assumed),
             "answers_computed": self.computed,
             "answers_kept": self.kept,
             "seconds": self.seconds,
-            "stopped": self.stopped,
-            "provenance": dict(self.provenance),
         }
 
     def _table(self) -> Any:

@@ -18,7 +18,7 @@ from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.design.search.shapes import AnyShape, Ring, shape_called
 from squeezefilm.design.search.space import VOLTAGE, Space, number
 from squeezefilm.design.search.stock import OWN, Body, PlateRoom
-from squeezefilm.measure.fits.friction.person import with_finger
+from squeezefilm.measure.fits.friction.friction_scores import with_finger
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.plate.layout import DiscPlate, RectangularPlate

@@ -31,10 +31,10 @@ from squeezefilm.design.search.candidate import (
 )
 from squeezefilm.design.search.evolution import POPULATION, Proposals
 from squeezefilm.design.search.found import DesignSearch, FrontMember
+from squeezefilm.design.search.limits import Made, made_of
 from squeezefilm.design.search.requirements import NamedRequirements
 from squeezefilm.design.search.space import Space
 from squeezefilm.design.search.store import DesignStore
-from squeezefilm.design.search.tolerance import Made, made_of
 from squeezefilm.design.sweep.tasks import NoAnswer, Workers
 from squeezefilm.design.sweep.tradeoffs import front_of
 from squeezefilm.design.sweep.workers import workers

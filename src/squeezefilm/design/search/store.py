@@ -12,8 +12,8 @@ from squeezefilm.core.kept.computed_by import computed_by
 from squeezefilm.core.results import config_hash, to_json
 from squeezefilm.design.search.candidate import Design, Evaluated, Level
 from squeezefilm.design.search.criteria import breaches
+from squeezefilm.design.search.limits import DRAWS, Made
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.tolerance import DRAWS, Made
 from squeezefilm.design.sweep.points import Lines
 
 FILE = "designs.jsonl"

@@ -30,8 +30,8 @@ from squeezefilm.physics.chain.rendered_texture import render_texture
 from squeezefilm.physics.chain.standing_wave import WAVES
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.working_mode import PLATE_THEORIES
-from squeezefilm.physics.render.motion.sensor import sensor_named
-from squeezefilm.physics.render.resonator.compensation import COMPENSATIONS
+from squeezefilm.physics.render.motion.estimator import sensor_named
+from squeezefilm.physics.render.resonator.envelope import COMPENSATIONS
 from squeezefilm.physics.texture_files.texture_file import load_texture
 from squeezefilm.physics.texture_files.trajectories import motion_from
 from squeezefilm.physics.uncertainty.parameters import with_values

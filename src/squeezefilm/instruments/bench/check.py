@@ -21,14 +21,19 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import DeviceError
 from squeezefilm.instruments.bench.conversation import Conversation
-from squeezefilm.instruments.bench.loop_check import CheckResult, DeviceCheck, in_ms
-from squeezefilm.instruments.bench.reading_check import reading_checks, sensor_checks
+from squeezefilm.instruments.bench.timing_checks import (
+    CheckResult,
+    DeviceCheck,
+    in_ms,
+    reading_checks,
+    sensor_checks,
+)
 from squeezefilm.instruments.device.machine.playing import CLOCK
 from squeezefilm.instruments.device.wire import messages as m
 from squeezefilm.instruments.device.wire.frames import Fault, Reason, State
 from squeezefilm.instruments.device.wire.link import ANSWER_LIMIT
 from squeezefilm.instruments.session.play.plan import REPORT_PERIOD
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, SensorModel
 
 TEST_VOLTAGE: si.Volt = 1.0
 """The most that a check may ask of a device."""

@@ -19,7 +19,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.core.formats.traces import table_from_csv
 from squeezefilm.core.hard_limits import TABLE_BYTES
@@ -28,9 +28,9 @@ from squeezefilm.core.regular_file import read_regular_text
 from squeezefilm.core.results import Result, stamp
 from squeezefilm.instruments.bench.check import WATCHED, check_device
 from squeezefilm.instruments.bench.conversation import Conversation
-from squeezefilm.instruments.bench.loop_check import DeviceCheck, check_loop, waited_time
 from squeezefilm.instruments.bench.played_session import PlayedSession, judge_session, tile_summary
 from squeezefilm.instruments.bench.setup import HowToPlay, PlaySetup, play_setup
+from squeezefilm.instruments.bench.timing_checks import DeviceCheck, check_loop, waited_time
 from squeezefilm.instruments.control.gains import IdentifiedPlate, identified_plate
 from squeezefilm.instruments.device.ports import ReplaySensor
 from squeezefilm.instruments.device.wire.streams import open_stream
@@ -43,7 +43,7 @@ from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.chain.played_texture import FingerMotion, require_on_display
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel, sensor_named
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, SensorModel, sensor_named
 from squeezefilm.physics.texture_files.texture_file import NamedTexture, TextureFile
 from squeezefilm.physics.texture_files.trajectories import motion_from, read_trajectory
 

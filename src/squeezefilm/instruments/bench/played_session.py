@@ -18,7 +18,7 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.formats.traces import table_from_csv
-from squeezefilm.core.results import Result, to_json
+from squeezefilm.core.results import Result, to_json, values_of
 from squeezefilm.instruments.bench.setup import PlaySetup
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.play.plan import PlayPlan
@@ -109,32 +109,23 @@ class PlayedSession(Result):
             "display": self.setup.display.name,
             "surface": p.surface.name,
             "finger": self.setup.display.whose_finger,
-            "mode": plan.mode,
+            **values_of(
+                self,
+                "setup.plan.mode setup.prediction.voltage setup.plan.frequency "
+                "setup.plan.loop.rate setup.plan.loop.compensation setup.plan.loop.output_delay "
+                "setup.plan.limits setup.assumed_limits setup.plan.device.sensor lag "
+                "position_error flags setup.prediction.warnings",
+            ),
             "tile": tile_summary(plan),
-            "voltage_V": p.voltage,
-            "frequency_Hz": plan.frequency,
-            "rate_Hz": plan.loop.rate,
-            "compensation": plan.loop.compensation,
-            "output_delay_s": plan.loop.output_delay,
             "largest_amplitude_m": plan.loop.envelope.amplitude_limit,
             "envelope_time_constant_s": plan.loop.envelope.rise_time_constant,
-            "limits": to_json(plan.limits),
-            "assumed_limits": list(self.setup.assumed_limits),
-            "sensor": to_json(plan.device.sensor),
             "rows": len(self.trace.rows),
-            "end": to_json(dict(self.last("end"))),
-            "loop": to_json(dict(self.last("loop"))),
-            "link": to_json(dict(self.last("link"))),
-            "usability": to_json(dict(self.last("usability"))),
-            "lag": to_json(self.lag),
-            "position_error_m": self.position_error,
-            "flags": dict(self.flags),
+            **{kind: to_json(self.last(kind)) for kind in ("end", "loop", "link", "usability")},
             "device": [dict(device_event) for device_event in self.device_events],
             "by_record": _judged_json(self.by_record),
             "by_truth": None if self.by_truth is None else _judged_json(self.by_truth),
             "damage": list(self.trace.damage.sentences),
             "provenance": dict(self.trace.metadata),
-            "warnings": list(p.warnings),
         }
 
 

@@ -24,8 +24,7 @@ from squeezefilm.physics.chain.played_texture import lowered
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.render.motion.estimator import MotionEstimator
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
-from squeezefilm.physics.render.resonator.envelope import envelope_time_constant
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope, envelope_time_constant
 from squeezefilm.physics.texture_files.texture_file import TextureFile
 
 OUTPUT_DELAY: si.Second = 6e-3

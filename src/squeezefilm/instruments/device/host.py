@@ -25,13 +25,15 @@ from squeezefilm.instruments.control.gains import IdentifiedPlate, LoopAims, loo
 from squeezefilm.instruments.device.machine.limits import level_of
 from squeezefilm.instruments.device.machine.playing import CLOCK, LONGEST_REPORT, SHORTEST_REPORT
 from squeezefilm.instruments.device.wire import messages as m
-from squeezefilm.instruments.device.wire.arguments import (
+from squeezefilm.instruments.device.wire.frames import (
+    Fault,
+    Reason,
+    State,
     amplitudes,
     binary32_below,
     number,
     whole_number,
 )
-from squeezefilm.instruments.device.wire.frames import Fault, Reason, State
 from squeezefilm.instruments.device.wire.link import DeviceClock, Link, refusal
 
 MOST_READINGS = 10_000

@@ -19,7 +19,7 @@ from squeezefilm.core.drive_limits import TOUCH_VOLTAGE, Limits
 from squeezefilm.core.errors import DeviceError, InputError
 from squeezefilm.instruments.device.host import DeviceHost
 from squeezefilm.instruments.device.machine.playing import LONGEST_QUEUE, MOST_AHEAD
-from squeezefilm.instruments.device.wire.arguments import number
+from squeezefilm.instruments.device.wire.frames import number
 from squeezefilm.instruments.device.wire.messages import MOST_LEVELS
 
 _REPLAY_PERIOD: si.Second = 1e-3

@@ -29,7 +29,7 @@ from squeezefilm.core.kit.page_style import (
 )
 from squeezefilm.instruments.report.terminal import play_rows, play_warnings
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.lateness import class_ends
+from squeezefilm.instruments.session.loop.shared import class_ends
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -13,9 +13,9 @@ from squeezefilm.core.kit.terminal import heading, say, show_rows, table
 from squeezefilm.physics.render.fidelity.report import contrast_rows, lag_rows
 
 if TYPE_CHECKING:
-    from squeezefilm.instruments.bench.loop_check import DeviceCheck
     from squeezefilm.instruments.bench.play import PlayResult
     from squeezefilm.instruments.bench.played_session import Judged, PlayedSession
+    from squeezefilm.instruments.bench.timing_checks import DeviceCheck
     from squeezefilm.instruments.session.play.plan import PlayView
     from squeezefilm.instruments.session.record.trace import TraceExport
 

@@ -14,7 +14,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.contact.sliding.march import DryFriction
 from squeezefilm.physics.plate.thermal import LOSS_TANGENT, Thermal
-from squeezefilm.physics.render.motion.sensor import TOUCH_PANEL_240_HZ, SensorModel
+from squeezefilm.physics.render.motion.estimator import TOUCH_PANEL_240_HZ, SensorModel
 
 PerSecond = Annotated[float, si.Unit("1/s")]
 ASSUMED = "assumed"

@@ -57,13 +57,13 @@ class DesignArea:
         return await self._display(design.opened, str(text))
 
     async def _display(self, work: Callable[..., Answer], *arguments: str) -> Answer:
-        return {"type": "display", **await self._lab.workers.quick.do(None, work, *arguments)}
+        return {"type": "display", **await self._lab.quick.do(None, work, *arguments)}
 
     async def _edit(self, text: Text, path: design.ValuePath, value: design.TypedValue) -> Answer:
         return await self._display(design.changed, text, path, value)
 
     async def _compute(self, asked: ComputeDesign) -> Answer:
-        quick, slow, page = self._lab.workers.quick, self._lab.workers.slow, PAGE.get(None)
+        quick, slow, page = self._lab.quick, self._lab.slow, PAGE.get(None)
 
         def told(text: str, share: float) -> None:
             if page in self._lab.pages:
@@ -82,11 +82,11 @@ class DesignArea:
         return {"type": "design", **answer}
 
     async def _cancel(self) -> Answer:
-        self._lab.workers.cancel(PAGE.get(None))
+        self._lab.cancel(PAGE.get(None))
         return {"type": "cancelled"}
 
     async def _save(self, text: Text, name: FileName, replace: bool = False) -> Answer:
-        await self._lab.workers.quick.do(None, description.name_of, text)
+        await self._lab.quick.do(None, description.name_of, text)
         file = fresh(self._lab.folder, name, ".toml", replace=replace)
         write_whole(file, text)
         return {"type": "saved", "file": file.name}

@@ -98,9 +98,7 @@ class DeviceArea:
             raise InputError("the device is not armed; arm it on the page first")
         how = asked.model_dump(include={"mode", "stroke", "sensor", "compensation", "hold", "seed"})
         typed = (asked.display, _drive(asked.drive), asked.duration, asked.voltage, asked.stroke)
-        how["duration"], how["voltage"] = await self._lab.workers.quick.do(
-            None, require_playable, *typed
-        )
+        how["duration"], how["voltage"] = await self._lab.quick.do(None, require_playable, *typed)
         name = datetime.now(UTC).strftime("%Y%m%dT%H%M%S")
         display = str(await _display(self._lab, asked.display))
         texture = str(await _texture(self._lab, asked))
@@ -133,7 +131,7 @@ def _drive(text: str) -> str:
 
 
 async def _display(lab: Lab, text: str) -> Path:
-    await lab.workers.quick.do(None, name_of, text)
+    await lab.quick.do(None, name_of, text)
     file = lab.folder / "sessions" / ".display.toml"
     file.parent.mkdir(exist_ok=True)
     write_whole(file, text)
@@ -150,6 +148,6 @@ async def _texture(lab: Lab, asked: PlayDevice) -> Path:
     folder = lab.folder / "textures"
     folder.mkdir(exist_ok=True)
     file = folder / ".played.toml"
-    await lab.workers.quick.do(None, title_of, str(asked.texture), folder)
+    await lab.quick.do(None, title_of, str(asked.texture), folder)
     write_whole(file, str(asked.texture))
     return file

@@ -49,7 +49,7 @@ class FeelArea:
     """Answers the Feel area's messages."""
 
     def __init__(self, lab: Lab) -> None:
-        self._lab, self._folder, self._quick = lab, lab.folder / "textures", lab.workers.quick
+        self._lab, self._folder, self._quick = lab, lab.folder / "textures", lab.quick
         add = lab.experimenter.add
         add("textures", self._listing)
         add("texture text", self._text_of)
@@ -79,7 +79,7 @@ class FeelArea:
 
     async def _on_display(self, work: Callable[..., Answer], asked: OnDisplay) -> Answer:
         # What takes seconds stays out of a drag's way.
-        line = self._quick if asked.quality == "screening" else self._lab.workers.slow
+        line = self._quick if asked.quality == "screening" else self._lab.slow
         return await line.do(work.__name__, work, asked, self._folder, gives_way=True)
 
     async def _load(self, asked: OnDisplay) -> Answer:

@@ -105,7 +105,7 @@ class SearchArea:
         return {"type": "requirements text", "text": read_toml_text(path)}
 
     async def _asked(self, text: str) -> dict[str, Any]:
-        return await self._lab.workers.quick.do("requirements", asked_of, text, self._lab.folder)
+        return await self._lab.quick.do("requirements", asked_of, text, self._lab.folder)
 
     async def _check(self, text: Text) -> Answer:
         return {"type": "requirements checked", **await self._asked(text)}
@@ -151,7 +151,7 @@ class SearchArea:
         if running is None or design is None:
             raise InputError(f"no plate {name} is on the front; search again")
         work = display_text, running.text, self._lab.folder, design["shape"], design["values"]
-        return {"type": "found display", "text": await self._lab.workers.quick.do(None, *work)}
+        return {"type": "found display", "text": await self._lab.quick.do(None, *work)}
 
     def _tell(self, message: dict[str, Any]) -> None:
         if self._loop is not None and not self._loop.is_closed():

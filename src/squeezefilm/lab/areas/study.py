@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 from pydantic import Field
 
 from squeezefilm.core.errors import DeviceError, InputError
-from squeezefilm.lab.keys import CODE_LIFE
+from squeezefilm.lab.guard import CODE_LIFE
 from squeezefilm.lab.studying.devices import MeasuredDevice, StudyDevices
 from squeezefilm.lab.studying.jobs import analysis_of, rehearsed, report_of
 from squeezefilm.lab.studying.studies import PrepareSitting, Studies
@@ -132,7 +132,7 @@ class StudyArea:
 
     async def _exposed(self, display: str) -> Exposure:
         if display not in self._exposures:
-            self._exposures[display] = await self._lab.workers.slow.do(None, _exposure, display)
+            self._exposures[display] = await self._lab.slow.do(None, _exposure, display)
         return self._exposures[display]
 
     def _changed(self, study: str) -> None:
@@ -212,7 +212,7 @@ class StudyArea:
         self, study: str, slot: str | None, work: Callable[..., Answer], *more: Any
     ) -> Answer:
         path = await self._do(Studies.path, study)
-        return await self._lab.workers.slow.do(slot, work, path, *more)
+        return await self._lab.slow.do(slot, work, path, *more)
 
     async def _measured_last(self, sitting: Sitting) -> tuple[StudyDevice, str]:
         """The device after a sitting, which ends also where its device is gone: that is said."""

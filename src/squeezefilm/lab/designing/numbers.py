@@ -17,7 +17,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.calibration_record import CalibrationRecord, ComparedAnswer
 from squeezefilm.core.errors import InputError, QuantityError, SqueezefilmError
 from squeezefilm.core.progress import Pace
-from squeezefilm.core.results import stamp, to_json
+from squeezefilm.core.results import stamp, to_json, values_of
 from squeezefilm.lab.designing.form import (
     LONGEST_VALUE,
     covered,
@@ -279,10 +279,7 @@ def outline(text: str) -> dict[str, Any]:
     if isinstance(actuator, RectangularPlate):
         return {
             "kind": "plate",
-            "length_m": actuator.length,
-            "width_m": actuator.width,
-            "thickness_m": actuator.thickness,
-            "patches": to_json(actuator.patches),
+            **values_of(actuator, "length width thickness patches"),
         }
     if isinstance(actuator, DiscPlate):
         return {"kind": "disc", "diameter_m": actuator.diameter}

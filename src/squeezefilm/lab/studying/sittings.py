@@ -14,6 +14,7 @@ from typing import Any
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.results import values_of
 from squeezefilm.study.conduct.sessions import SessionConditions
 from squeezefilm.study.design.study_design import StudyDesign
 
@@ -92,12 +93,8 @@ def _si(name: str, value: Any, hint: Any) -> Any:
 def described(design: StudyDesign) -> dict[str, Any]:
     """A design, as the page lists it."""
     return {
-        "title": design.title,
-        "task": design.task,
-        "displays": list(design.displays),
+        **values_of(design, "title task displays answers note"),
         "stimuli": [stimulus.name for stimulus in design.stimuli],
-        "answers": list(design.answers),
         "question": design.spoken_question,
-        "note": design.note,
         "design": design.name,
     }

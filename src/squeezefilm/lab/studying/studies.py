@@ -15,7 +15,7 @@ from pydantic import Field
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.results import to_json
+from squeezefilm.core.results import to_json, values_of
 from squeezefilm.lab.files import existing, fresh, zipped
 from squeezefilm.lab.studying.sittings import (
     SurfacesByHand,
@@ -318,13 +318,9 @@ class Studies:
         [row] = store.rows("SELECT phase FROM trial WHERE uuid = ?", [token])
         feedback = row["phase"] == "practice"
         return {
-            "number": told.number,
-            "repeated": told.repeated,
-            "remaining": told.remaining,
+            **values_of(told, "number repeated remaining spoiled practice"),
             "right": told.right_answer if feedback else None,
             "correct": told.correct if feedback else None,
-            "spoiled": told.spoiled,
-            "practice": told.practice,
             "study": sitting.study,
         }
 

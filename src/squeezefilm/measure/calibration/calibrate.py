@@ -59,7 +59,6 @@ from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.chain.touch import touch
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.working_mode import WorkingMode
-from squeezefilm.physics.uncertainty.drawn import evaluate
 from squeezefilm.physics.uncertainty.draws import (
     Draw,
     Mixture,
@@ -67,7 +66,7 @@ from squeezefilm.physics.uncertainty.draws import (
     between_limits,
     mixture_of,
 )
-from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, quantiles
+from squeezefilm.physics.uncertainty.intervals import LEVEL, MOST_REFUSED, evaluate, quantiles
 from squeezefilm.physics.uncertainty.parameters import Parameter
 from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.calibration_record import ComparedAnswer
-from squeezefilm.core.results import to_json
+from squeezefilm.core.results import to_json, values_of
 from squeezefilm.measure.calibration.discrepancy import Misfit, touching
 from squeezefilm.measure.calibration.friction_posterior import FrictionDraws
 from squeezefilm.measure.calibration.identified import Identification, NextMeasurement
@@ -133,31 +133,24 @@ class Calibration:
         """Numbers as plain JSON values."""
         return {
             "display": self.display.name,
-            "observations": to_json(self.observations),
+            **values_of(
+                self,
+                "observations identification.combinations laws compared fits misfits solves seed",
+            ),
             "parameters": [
                 {
-                    "path": value.path,
+                    **values_of(value, "path median standard_deviation interval"),
                     "unit": value.unit.symbol,
                     "prior_interval": list(value.prior),
-                    "median": value.median,
-                    "standard_deviation": value.standard_deviation,
-                    "interval": list(value.interval),
                     "share_of_prior_spread_left": value.left,
                 }
                 for value in self.values
             ],
-            "combinations": to_json(self.identification.combinations),
-            "laws": to_json(self.laws),
-            "compared": to_json(self.compared),
-            "fits": self.fits,
-            "misfits": to_json(self.misfits),
             "relative_friction_before": to_json(self.before),
             "relative_friction": to_json(self.after),
             "interval_level": LEVEL,
             "measure_next": to_json(self.next_measurements),
             "emulator_relative_errors": to_json(self.emulator_errors),
-            "solves": self.solves,
-            "seed": self.seed,
             "said": list(self.sentences),
         }
 

@@ -17,7 +17,7 @@ from squeezefilm.core.errors import InputError, SqueezefilmError
 from squeezefilm.core.hard_limits import RECORDING_BYTES
 from squeezefilm.core.progress import SayProgress
 from squeezefilm.core.regular_file import read_regular
-from squeezefilm.core.results import Result, to_json, write_whole
+from squeezefilm.core.results import Result, values_of, write_whole
 from squeezefilm.measure.calibration.blind import Score, load_prediction, score
 from squeezefilm.measure.calibration.calibrate import calibrate
 from squeezefilm.measure.calibration.calibration import Calibration
@@ -67,9 +67,7 @@ class FolderCalibration(Result):
         """Numbers as plain JSON values."""
         return {
             **self.calibration.summary(),
-            "file": None if self.file is None else str(self.file),
-            "recordings": to_json(self.recordings),
-            "left_out": list(self.left_out),
+            **values_of(self, "file recordings left_out"),
         }
 
 

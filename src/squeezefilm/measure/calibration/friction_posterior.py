@@ -28,8 +28,8 @@ from squeezefilm.measure.calibration.discrepancy import (
 )
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.uncertainty.drawn import hash_of_draws
 from squeezefilm.physics.uncertainty.draws import Draw, Mixture, as_drawn, between_limits
+from squeezefilm.physics.uncertainty.intervals import hash_of_draws
 
 DRAWS, ROUNDS = 2048, 2
 """Draws from the priors, and how often half as many more are drawn where the observations point."""

@@ -25,7 +25,7 @@ from squeezefilm.core.calibration_record import (
     UsedRecording,
 )
 from squeezefilm.core.config.provenance import Provenance
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.distributions import Distribution, Normal, Uniform
 from squeezefilm.core.results import config_hash, to_json
 from squeezefilm.measure.calibration.calibration import CalibratedValue, Calibration, Joint

@@ -241,11 +241,6 @@ class FrictionCurve(_Rows):
     finger: str = ""
     reading_error: float = 0.0
 
-    def __post_init__(self) -> None:
-        # In newtons or a number: whatever the unit, each is finite.
-        si.require("friction", self.friction, si.Unit("1"))
-        super().__post_init__()
-
     @property
     def deviation(self) -> si.FloatArray | None:
         """Standard deviation of each point: its spread and the reading error together, (points,);

@@ -11,7 +11,7 @@ from typing import Any, ClassVar, cast
 from squeezefilm.core.config import load_text
 from squeezefilm.core.errors import ConfigError, InputError, errors_of
 from squeezefilm.core.regular_file import read_toml_text
-from squeezefilm.core.results import Result, to_json, write_whole
+from squeezefilm.core.results import Result, to_json, values_of, write_whole
 from squeezefilm.measure.recordings.assembled import assembled
 from squeezefilm.measure.recordings.circuits_read import fixture_description, without_fixture
 from squeezefilm.measure.recordings.described import Described
@@ -133,13 +133,8 @@ class RecordingCheck(Result):
     def summary(self) -> dict[str, Any]:
         """Numbers as plain JSON values: how the file was read, and not its numbers."""
         return {
-            "kind": self.kind,
-            "file": str(self.file),
-            "description": None if self.description is None else str(self.description),
-            "points": self.points,
+            **values_of(self, "kind file description points doubts recording.told"),
             "facts": [{"what": what, "how": how} for what, how in self.facts],
-            "doubts": list(self.doubts),
-            "told": to_json(self.recording.told),
         }
 
 
@@ -162,7 +157,7 @@ class FolderCheck:
         """Numbers as plain JSON values."""
         return {
             "recordings": [check.summary() for check in self.checks],
-            "refused": [{"file": str(check.file), "why": check.why} for check in self.refused],
+            "refused": to_json(self.refused),
         }
 
 

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from squeezefilm.core import quantities as si
+from squeezefilm.core.results import values_of
 from squeezefilm.physics.chain.pad_place import place_words
 
 CRITERIA: tuple[si.Dimensionless, ...] = (0.70, 0.80)
@@ -165,9 +166,7 @@ class ActiveArea:
             "relative_friction": None
             if self.best_place is None or self.worst_place is None
             else {
-                "best": self.best,
-                "median": self.median,
-                "worst": self.worst,
+                **values_of(self, "best median worst"),
                 "best_place_m": list(self.best_place),
                 "worst_place_m": list(self.worst_place),
             },

@@ -25,10 +25,9 @@ from squeezefilm.physics.render.motion.stroke import (
     Stroke,
     Trajectory,
 )
-from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.inverse import FrictionInverse, WaveCompensation
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import evaluate
-from squeezefilm.physics.render.program.wave import WaveCompensation
 from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.render.texture.image import Image
 from squeezefilm.physics.render.texture.pattern import SpeedScaled

@@ -22,7 +22,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError, OutOfRangeError, OutOfRangeWarning
 from squeezefilm.core.progress import NO_HURRY, Pace
-from squeezefilm.core.results import Result, to_json
+from squeezefilm.core.results import Result, to_json, values_of
 from squeezefilm.physics.chain.area_map import at_best_place
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
 from squeezefilm.physics.chain.pad_law import DEFAULT_MODEL, FrictionModel
@@ -182,37 +182,22 @@ class Prediction(Result):
     def summary(self) -> dict[str, Any]:
         """The numbers, with units in their keys."""
         return {
-            "display": self.display,
             "surface": self.surface.name,
             "mode": self.mode.label,
-            "voltage_V": self.voltage,
-            "frequency_Hz": self.frequency,
-            "normal_force_N": self.normal_force,
             "finger_speed_m_per_s": self.speed,
-            "resonance_frequency_Hz": self.mode.resonance_frequency,
             "resonance_frequency_error_Hz": self.mode.frequency_error,
-            "half_wavelength_m": self.mode.half_wavelength,
-            "amplitude_per_volt_m_per_V": self.mode.amplitude_per_volt,
-            "vibration_amplitude_m": self.vibration_amplitude,
             "place": self.place_summary(),
-            "amplitude_model": self.amplitude_model,
-            "squeeze_number": self.squeeze_number,
-            "mean_pressure": self.mean_pressure,
-            "mean_pressure_error": self.mean_pressure_error,
-            "relative_friction": self.relative_friction,
             "amplitude_kept_under_finger": self.touch.kept,
             "finger_impedance_N_s_per_m": to_json(self.touch.impedance),
-            "tangential_force_N": self.tangential_force,
-            "friction_coefficient": self.friction_coefficient,
-            "friction_reduction": self.friction_reduction,
-            "model": self.model,
-            "quality_factor": self.mode.quality_factor,
-            "envelope_time_constant_s": self.envelope_time_constant,
-            "neighbour": to_json(self.mode.neighbour),
-            "validity": to_json(self.validity),
-            "heat": to_json(self.heat),
-            "warnings": list(self.warnings),
-            "objections": list(self.objections),
+            **values_of(
+                self,
+                "display voltage frequency normal_force mode.resonance_frequency "
+                "mode.half_wavelength mode.amplitude_per_volt vibration_amplitude amplitude_model "
+                "squeeze_number mean_pressure mean_pressure_error relative_friction "
+                "tangential_force friction_coefficient friction_reduction model "
+                "mode.quality_factor envelope_time_constant mode.neighbour validity heat warnings "
+                "objections",
+            ),
         }
 
 

@@ -18,7 +18,7 @@ from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.core.results import Result, stamp, to_json, values_of
 from squeezefilm.physics.chain.pad_law import FrictionModel
 from squeezefilm.physics.chain.pad_place import FacePlace
 from squeezefilm.physics.chain.played_texture import (
@@ -45,15 +45,15 @@ from squeezefilm.physics.render.fidelity.report import (
     fidelity_report,
     strongest_lines,
 )
-from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_named
+from squeezefilm.physics.render.motion.estimator import SensorModel, sensor_named
 from squeezefilm.physics.render.motion.stroke import Stroke
 from squeezefilm.physics.render.program.renderer import Counters, render
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator.envelope import (
     COMPENSATIONS,
     Compensation,
     DrivenEnvelope,
+    envelope_time_constant,
 )
-from squeezefilm.physics.render.resonator.envelope import envelope_time_constant
 from squeezefilm.physics.texture_files.texture_file import NamedTexture, TextureFile
 from squeezefilm.physics.texture_files.trajectories import Motion, NamedMotion
 
@@ -154,10 +154,13 @@ class RenderAnalysis(Result):
         return {
             "display": self.display.name,
             "texture": self.texture.title or self.texture.texture.quantity,
-            "quantity": self.texture.texture.quantity,
             "surface": p.surface.name,
-            "voltage_V": p.voltage,
-            "normal_force_N": p.normal_force,
+            **values_of(
+                self,
+                "texture.texture.quantity prediction.voltage prediction.normal_force mean_speed "
+                "stroke.control_rate stroke.compensation stroke.envelope.braking wave "
+                "force.stuck_share fidelity prediction.warnings",
+            ),
             "finger": self.display.whose_finger,
             "place": p.place_summary(),
             "largest_amplitude_m": stroke.envelope.amplitude_limit,
@@ -166,14 +169,9 @@ class RenderAnalysis(Result):
             "resonance_frequency_Hz": resonance_with_finger(p)[1],
             "quality_factor": resonance_with_finger(p)[0],
             "envelope_time_constant_s": self.time_constant,
-            "control_rate_Hz": stroke.control_rate,
             "duration_s": float(stroke.time[-1]),
             "way_m": float(np.sum(np.abs(np.diff(self.finger.way)))),
-            "mean_speed_m_per_s": self.mean_speed,
             "sensor": None if stroke.sensor is None else stroke.sensor.name,
-            "compensation": stroke.compensation,
-            "braking": stroke.envelope.braking,
-            "wave": self.wave,
             "wave_least_factor": float(np.min(self.factor)),
             "wave_greatest_factor": float(np.max(self.factor)),
             "asked_friction_mean": float(np.mean(self.asked)),
@@ -196,11 +194,8 @@ class RenderAnalysis(Result):
             "samples": self.counters.ticks,
             "tangential_force_mean_N": float(np.mean(np.abs(force.friction_force))),
             "tangential_force_largest_N": float(np.max(np.abs(force.friction_force))),
-            "stuck_share": force.stuck_share,
             "not_judged_because": self.unjudged,
-            "fidelity": to_json(judged),
             "model": {"friction": p.model, "vibration": p.amplitude_model, "loop": stroke.model},
-            "warnings": list(p.warnings),
             "provenance": self.provenance(),
         }
 

@@ -16,9 +16,12 @@ from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.contact.sliding.march import SpeedFriction
 from squeezefilm.physics.display import Display
 from squeezefilm.physics.plate.layout import DiscPlate
-from squeezefilm.physics.render.program.inverse import FrictionInverse, FrictionTable
-from squeezefilm.physics.render.program.wave import WaveCompensation
-from squeezefilm.physics.render.texture.coordinate import AlongX, AlongY
+from squeezefilm.physics.render.program.inverse import (
+    FrictionInverse,
+    FrictionTable,
+    WaveCompensation,
+)
+from squeezefilm.physics.render.texture.pattern import AlongX, AlongY
 
 Wave = Literal["ignored", "felt", "compensated"]
 WAVES: tuple[Wave, ...] = get_args(Wave)

@@ -77,7 +77,7 @@ class FreeVibration(NamedTuple):
 def free_vibration(
     display: Display,
     mode: WorkingMode,
-    frequency: si.Hertz | None,
+    frequency: Annotated[si.Hertz, si.Above(0)] | None,
     voltage: si.Volt | None,
     vibration_amplitude: si.Metre | None,
 ) -> FreeVibration:
@@ -87,7 +87,6 @@ def free_vibration(
     below 0, or an amplitude beyond what is touched.
     """
     frequency = mode.resonance_frequency if frequency is None else frequency
-    si.require("frequency", frequency, si.Unit("Hz"), above=0)
     if vibration_amplitude is not None:
         require_within(TOUCHED_VIBRATION, vibration_amplitude, "vibration_amplitude")
         return FreeVibration(frequency, None, vibration_amplitude, "given")

@@ -30,7 +30,7 @@ from squeezefilm.physics.perception.senses import (
     line_amplitudes,
 )
 from squeezefilm.physics.perception.stimuli import Grating, Stimulus
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, SensorModel
 from squeezefilm.physics.render.motion.stroke import FingerPath, MinimumJerkStroke
 from squeezefilm.physics.texture_files.texture_file import TextureFile
 

@@ -17,9 +17,8 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import config_hash
 from squeezefilm.physics.render.texture.composition import Composable
-from squeezefilm.physics.render.texture.coordinate import FARTHEST, AlongDirection, Length
 from squeezefilm.physics.render.texture.levels import RelativeFriction
-from squeezefilm.physics.render.texture.pattern import Pattern
+from squeezefilm.physics.render.texture.pattern import FARTHEST, AlongDirection, Length, Pattern
 from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 from squeezefilm.physics.texture_files.texture_file import load_texture
 

@@ -154,7 +154,7 @@ def smooth_surface(
 
 @si.checked_numbers
 def ring_surface(
-    radius: Annotated[si.MetreArray, si.AtLeast(0.0)],
+    radius: Annotated[si.MetreArray, si.AtLeast(0.0), si.Rising(2)],
     velocity: si.ComplexArray,
     harmonic: Annotated[int, si.AtLeast(0)],
     frequency: Annotated[si.Hertz, si.Above(0.0)],
@@ -165,12 +165,8 @@ def ring_surface(
     in r, spectral in θ. Raises `InputError` for wrong shapes or a grid coarser than a quarter of
     the wave in air.
     """
-    radius = np.asarray(radius, dtype=float)
     values = np.asarray(velocity, dtype=complex)
-    if radius.size < 2 or np.any(np.diff(radius) <= 0) or values.shape != radius.shape:
-        raise InputError(
-            "radius must be two or more rising radii, with one velocity each", quantity="radius"
-        )
+    si.require_alike(radius=radius, velocity=values)
     _require_fine("radius", float(np.diff(radius).max()), frequency)
     waves = 2 * math.pi * radius[-1] * frequency / _SOUND_SPEED
     around = max(32, 8 * math.ceil(waves), 8 * harmonic)

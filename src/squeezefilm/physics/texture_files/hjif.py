@@ -27,9 +27,9 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.render.program.renderer import MadeForSpeed
-from squeezefilm.physics.render.texture.composition import Composable, require_texture
-from squeezefilm.physics.render.texture.coordinate import AlongX
+from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.render.texture.levels import RelativeFriction
+from squeezefilm.physics.render.texture.pattern import AlongX
 from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 
 VERSION, PROFILE, LEVEL, TIMESCALE = "2023", "Main", 1, 1000
@@ -117,7 +117,6 @@ def hjif_of(
         InputError: a value outside its range, a quantity that is not friction without
             `to_friction`, a friction beyond 0 to 1, or more than 65 535 keyframes.
     """
-    require_texture("texture", texture)
     si.require("end", end, si.Unit("m"), above=start, at_most=start + LONGEST)
     if to_friction is None and texture.quantity != "relative_friction":
         raise InputError(

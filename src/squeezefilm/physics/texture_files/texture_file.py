@@ -24,30 +24,29 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
+from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import ReadBy
 
 # Read for their classes: what a file may name is what is below Composable, Pattern, Coordinate.
 from squeezefilm.core.config.load import load, load_text
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.core.results import write_new
 from squeezefilm.physics.render.texture import image, levels, shapes
-from squeezefilm.physics.render.texture.composition import Composable, require_texture
+from squeezefilm.physics.render.texture.composition import Composable
 from squeezefilm.physics.texture_files import image_file
 
 MODULES = (image_file, levels, shapes, image)
 """The modules whose classes a file may name, beside those these import."""
 
 
+@si.checked_numbers
 @dataclass(frozen=True, slots=True)
 class TextureFile:
     """A texture and what it is called. Raises `InputError` for what is no texture."""
 
     texture: Composable
     title: str = ""
-
-    def __post_init__(self) -> None:
-        require_texture("texture", self.texture)
 
     @classmethod
     def of(cls, texture: TextureFile | Composable) -> TextureFile:

@@ -14,11 +14,10 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import OutOfRangeError
 from squeezefilm.core.kept.store import Kept
 from squeezefilm.core.progress import SayProgress
-from squeezefilm.core.results import Interval, to_json
+from squeezefilm.core.results import Interval, to_json, values_of
 from squeezefilm.physics.chain.friction import where_known
 from squeezefilm.physics.chain.prediction import Prediction
 from squeezefilm.physics.display import Display
-from squeezefilm.physics.uncertainty.drawn import evaluate, hash_of_draws, require_samples
 from squeezefilm.physics.uncertainty.draws import (
     Mixture,
     Outcome,
@@ -34,10 +33,13 @@ from squeezefilm.physics.uncertainty.intervals import (
     GroupInfluence,
     Influence,
     ends,
+    evaluate,
     followed,
     groups_of,
+    hash_of_draws,
     influences_of,
     quantiles,
+    require_samples,
 )
 
 SAMPLES, POINTS = 16, 8
@@ -132,14 +134,14 @@ class UncertainFriction:
             "measure_next": [
                 {
                     "parameter": item.parameter.path,
-                    "knowledge": item.parameter.knowledge,
+                    **values_of(
+                        item,
+                        "parameter.knowledge first_order first_order_error parameter.source",
+                    ),
                     "total_order": item.total,
                     "total_order_error": item.total_error,
-                    "first_order": item.first_order,
-                    "first_order_error": item.first_order_error,
                     "distribution": item.parameter.origin,
                     "range": list(item.parameter.spread),
-                    "source": item.parameter.source,
                 }
                 for item in self.influences
             ],

@@ -131,11 +131,9 @@ class BayesianAdaptive:
 
     def expected_information(self) -> si.FloatArray:
         """Mutual information of the next answer and what is of interest (nat), shape (stimuli,)."""
-        told = np.empty(len(self.design.stimuli))
         # The lapse rate runs fastest over the cells.
         nuisance = 1 if self.design.interest == "all" else self.design.cells[2]
-        information(self._weights, self._table[None], nuisance, told)
-        return told
+        return information(self._weights, self._table, nuisance)
 
     def next_stimulus(self) -> float:
         """The intensity whose answer tells the most; of equals the first in `design.stimuli`.
@@ -215,19 +213,15 @@ def _term(p: float) -> float:
 
 
 @compiled(error_model="numpy")
-def information(
-    weights: si.FloatArray, chances: si.FloatArray, nuisance: int, told: si.FloatArray
-) -> None:
-    """Mutual information (nat) of the next answer and what is of interest, of every stimulus.
+def information(weights: si.FloatArray, chances: si.FloatArray, nuisance: int) -> si.FloatArray:
+    """Mutual information (nat) of the next of two answers and what is of interest, shape
+    (stimuli,).
 
-    `weights` (cells,) sum to 1; `chances` (answers − 1, cells, stimuli) are the probabilities of
-    all answers but the last. Of every `nuisance` cells in a row only the sum is of interest. Fills
-    `told` (stimuli,).
+    `weights` (cells,) sum to 1; `chances` (cells, stimuli) are the probabilities of one answer. Of
+    every `nuisance` cells in a row only the sum is of interest.
     """
-    answers, cells, stimuli = chances.shape
-    total = np.zeros((answers, stimuli))
-    joint = np.empty((answers, stimuli))
-    told[:] = 0.0
+    cells, stimuli = chances.shape
+    told, total, joint = np.zeros(stimuli), np.zeros(stimuli), np.empty(stimuli)
     for first in range(0, cells, nuisance):
         share = 0.0
         for cell in range(first, first + nuisance):
@@ -235,23 +229,13 @@ def information(
         if share <= 0.0:
             continue
         joint[:] = 0.0
-        for answer in range(answers):
-            here = joint[answer]
-            for cell in range(first, first + nuisance):
-                weight, chance = weights[cell], chances[answer, cell]
-                for at in range(stimuli):
-                    here[at] += weight * chance[at]
+        for cell in range(first, first + nuisance):
+            weight, chance = weights[cell], chances[cell]
+            for at in range(stimuli):
+                joint[at] += weight * chance[at]
         for at in range(stimuli):
-            rest, known = share, 0.0
-            for answer in range(answers):
-                rest -= joint[answer, at]
-                total[answer, at] += joint[answer, at]
-                known += _term(joint[answer, at] / share)
-            told[at] -= share * (known + _term(rest / share))
+            total[at] += joint[at]
+            told[at] -= share * (_term(joint[at] / share) + _term((share - joint[at]) / share))
     for at in range(stimuli):
-        rest, guessed = 1.0, 0.0
-        for answer in range(answers):
-            p = total[answer, at]
-            rest -= p
-            guessed += _term(p)
-        told[at] += guessed + _term(rest)
+        told[at] += _term(total[at]) + _term(1.0 - total[at])
+    return told

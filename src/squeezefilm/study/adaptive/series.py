@@ -75,9 +75,8 @@ class ModelSeries:
         if self._asked % _SPREAD_EVERY == _SPREAD_EVERY - 1:
             # Steps of 17 come to each of the forty once before any comes again.
             return float(self._choices[real[17 * (self._asked // _SPREAD_EVERY) % real.size]])
-        told = np.empty(model.differences.size)
         nuisance = model.prior.size // model.thresholds.size
-        information(self._weights, model.chances[None], nuisance, told)
+        told = information(self._weights, model.chances, nuisance)
         return float(self._choices[real[int(np.argmax(told[real]))]])
 
     def update(self, intensity: si.Dimensionless, answered: bool | str) -> None:

@@ -46,7 +46,7 @@ from squeezefilm.instruments.twin.settings import PickupModel, TwinSettings
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
 from squeezefilm.physics.perception.stimuli import Stimulus
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ
 from squeezefilm.physics.texture_files.texture_file import TextureFile
 from squeezefilm.study.conduct.study_device import DeviceVerification, TrialMotion
 from squeezefilm.study.record.exploration import PATH_PERIOD, explored_table

@@ -17,7 +17,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.hard_limits import PLANNED_TRIALS, require_within
 from squeezefilm.core.regular_file import read_toml_text
-from squeezefilm.core.results import Result, write_named
+from squeezefilm.core.results import Result, values_of, write_named
 from squeezefilm.physics.contact.finger.fingertip import FingerpadDynamics
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.perception.observer import NamedObserver, Observer, load_observer
@@ -67,48 +67,35 @@ class StudyPlan(Result):
         """Numbers as plain JSON values; keys carry units."""
         design = self.design
         return {
-            "name": design.name,
-            "title": design.title,
-            "task": design.task,
+            **values_of(
+                self,
+                "design.name design.title design.task design.displays design.exploring "
+                "design.matched_with design.order design.note participants balanced_participants "
+                "seed doubts assumed",
+            ),
             "question": design.spoken_question,
-            "displays": list(design.displays),
-            "exploring": design.exploring,
-            "matched_with": design.matched_with,
             "stimuli": [
                 {
                     **_grooves(stimulus),
                     "second_period_m": _known(stimulus.second_period),
                     "surface": stimulus.kind,
-                    "surface_sha256": stimulus.surface_sha256,
-                    "waveform": stimulus.waveform,
-                    "friction_depth": stimulus.friction_depth,
+                    **values_of(stimulus, "surface_sha256 waveform friction_depth"),
                     "right_answer": design.answer_to(stimulus) if not design.compares else "",
                 }
                 for stimulus in design.stimuli
             ],
             "alternatives": [
-                {
-                    **_grooves(alternative),
-                    "ridge_height_m": alternative.ridge_height,
-                    "material": alternative.material,
-                }
+                {**_grooves(alternative), **values_of(alternative, "ridge_height material")}
                 for alternative in design.alternatives
             ],
-            "order": design.order,
-            "participants": self.participants,
-            "balanced_participants": self.balanced_participants,
             "trials_per_participant": len(self.schedules[0]),
             "trials_by_phase": self.phases,
             "duration_per_participant_s": self.duration,
             "duration_s": self.duration * self.participants,
-            "seed": self.seed,
             "first_trials": [
                 [" / ".join(trial.stimuli) for trial in schedule if trial.phase == "main"][:10]
                 for schedule in self.schedules
             ],
-            "doubts": list(self.doubts),
-            "assumed": list(self.assumed),
-            "note": design.note,
             "design_sha256": design.sha256,
         }
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from squeezefilm.core import quantities as si
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.results import Result, stamp, to_json
+from squeezefilm.core.results import Result, stamp, to_json, values_of
 from squeezefilm.study.identification.condition_means import (
     ConditionMean,
     Course,
@@ -20,8 +20,9 @@ from squeezefilm.study.identification.condition_means import (
     condition_means,
     response_time_summary,
 )
-from squeezefilm.study.identification.confusion import ConfusionMatrix, participant_counts
-from squeezefilm.study.identification.proportions import (
+from squeezefilm.study.identification.confusion import (
+    ConfusionMatrix,
+    participant_counts,
     participant_interval,
     permutation_test,
     proportion_interval,
@@ -129,15 +130,14 @@ class IdentificationAnalysis(DisplayAnalysis):
         matrix = self.matrix
         person = self.participant_correct
         values = {
-            "name": self.name,
-            "origin": self.origin,
-            "participants": self.participants,
-            "trials": matrix.trials,
-            "answers": matrix.answers,
-            "stimuli": matrix.stimuli,
+            **values_of(
+                self,
+                "name origin participants matrix.trials matrix.answers matrix.stimuli "
+                "proportion_correct matrix.chance permutation_p information sensitivity "
+                "response_times exploration course methods screening notes",
+            ),
             "confusion": matrix.counts,
             "confusion_percent": matrix.percent,
-            "proportion_correct": self.proportion_correct,
             "proportion_correct_intervals": self.intervals,
             "proportion_correct_by_stimulus": self.by_stimulus,
             "participant_proportion_correct": {
@@ -146,18 +146,8 @@ class IdentificationAnalysis(DisplayAnalysis):
                 "least": person.min(),
                 "greatest": person.max(),
             },
-            "chance": matrix.chance,
-            "permutation_p": self.permutation_p,
             "information_transfer_bit": self.information.estimate,
             "information_transfer_estimator": METHOD,
-            "information": self.information,
-            "sensitivity": self.sensitivity,
-            "response_times": self.response_times,
-            "exploration": self.exploration,
-            "course": self.course,
-            "methods": self.methods,
-            "screening": self.screening,
-            "notes": self.notes,
             "provenance": stamp(
                 {"name": self.name, "origin": self.origin, "counts": self.counts}, self.seed
             ),

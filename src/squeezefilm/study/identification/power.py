@@ -18,8 +18,7 @@ from scipy import stats
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import STUDIES, require_within
-from squeezefilm.study.identification.confusion import whole_counts
-from squeezefilm.study.identification.proportions import proportion_interval
+from squeezefilm.study.identification.confusion import proportion_interval, whole_counts
 
 ParticipantSimulator = Callable[[int, np.random.Generator], NDArray[Any]]
 """Draws so many participants: of each their counts or whatever else the test takes, in an array

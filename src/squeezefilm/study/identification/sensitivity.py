@@ -29,8 +29,11 @@ from scipy.special import chdtrc, entr, ndtr, xlogy
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.confusion import whole_counts
-from squeezefilm.study.identification.proportions import recentred_interval, resampled_counts
+from squeezefilm.study.identification.confusion import (
+    recentred_interval,
+    resampled_counts,
+    whole_counts,
+)
 from squeezefilm.study.psychometric.estimate import Estimate
 
 # Beyond this a position stands for "never confused": its likelihood is flat.
@@ -201,14 +204,13 @@ def _slopes(criteria: si.FloatArray, positions: si.FloatArray) -> si.FloatArray:
     stimuli = positions.shape[1]
     upper = criteria[:, :, None] - positions[:, None, :]
     density = np.exp(-0.5 * upper**2) / np.sqrt(2 * np.pi)
-    out = np.zeros((batch, cuts + 1, stimuli, cuts + stimuli - 1))
+    # Of the answers up to each criterion; none and all of them have no slope.
+    up_to = np.zeros((batch, cuts + 2, stimuli, cuts + stimuli - 1))
     for c in range(cuts):
-        out[:, c, :, c] += density[:, c]
-        out[:, c + 1, :, c] -= density[:, c]
+        up_to[:, c + 1, :, c] = density[:, c]
     for j in range(1, stimuli):
-        out[:, :-1, j, cuts + j - 1] -= density[:, :, j]
-        out[:, 1:, j, cuts + j - 1] += density[:, :, j]
-    return out
+        up_to[:, 1:-1, j, cuts + j - 1] = -density[:, :, j]
+    return np.diff(up_to, axis=1)
 
 
 def _information(weight: si.FloatArray, slopes: si.FloatArray) -> si.FloatArray:
@@ -288,30 +290,19 @@ def jackknife(counts: ArrayLike) -> si.FloatArray:
     n = whole_counts(counts).astype(float)
     column = n.sum(axis=-2)
     share = column / column.sum(axis=-1, keepdims=True)
-    divisor = np.where(column > 0, column, 1.0)
-    within = np.log(divisor) + entr(n).sum(axis=-2) / divisor
-    p = n / divisor[..., None, :]
+    p = n / np.maximum(column, 1.0)[..., None, :]
     answer = (p * share[..., None, :]).sum(axis=-1)
-    entropy = entr(answer).sum(axis=-1)
-    transfer = entropy - (share * within).sum(axis=-1)
-    less = np.where(column > 1, column - 1, 1.0)
-    # Without one trial of cell (i, j): the column's own entropy, then the answers'.
-    changed = entr(n).sum(axis=-2)[..., None, :] - entr(n) + entr(np.maximum(n - 1, 0))
-    within_less = np.log(less)[..., None, :] + changed / less[..., None, :]
-    grown = p * (column / less)[..., None, :]
-    moved = answer[..., None] + share[..., None, :] * (grown - p)
-    removed = share / less
-    others = entr(moved).sum(axis=-2)
-    own = entr(np.maximum(moved - removed[..., None, :], 0.0)) - entr(moved)
-    entropy_less = others[..., None, :] + own
-    transfer_less = (
-        entropy_less
-        - (share * within).sum(axis=-1)[..., None, None]
-        + share[..., None, :] * (within[..., None, :] - within_less)
-    )
-    weight = n * (less / divisor)[..., None, :]
-    change = np.where(n > 0, transfer[..., None, None] - transfer_less, 0.0)
-    estimate = transfer + (weight * change).sum(axis=(-2, -1))
+    entropy, within = entr(answer).sum(axis=-1, keepdims=True), entr(p).sum(axis=-2)
+    estimate = entropy[..., 0] - (share * within).sum(axis=-1)
+    fewer = np.maximum(column - 1.0, 1.0)
+    for i in range(n.shape[-2]):
+        # One trial less of this answer, of each stimulus by itself.
+        less = n.copy()
+        less[..., i, :] = np.maximum(n[..., i, :] - 1.0, 0.0)
+        left = less / fewer[..., None, :]
+        moved = np.maximum(answer[..., None] + share[..., None, :] * (left - p), 0.0)
+        change = entropy - entr(moved).sum(axis=-2) + share * (entr(left).sum(axis=-2) - within)
+        estimate += (p[..., i, :] * fewer * change).sum(axis=-1)
     return np.asarray(np.where(np.any(column == 1, axis=-1), np.nan, estimate) / _LN2)
 
 

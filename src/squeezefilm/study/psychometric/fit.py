@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +14,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.called_with import called_with
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.results import Interval, Result, to_json
+from squeezefilm.core.results import Interval, Result, values_of
 from squeezefilm.study.psychometric import kernel
 from squeezefilm.study.psychometric.estimate import holding
 from squeezefilm.study.psychometric.function import (
@@ -102,18 +102,14 @@ class PsychometricFit(Result):
     def summary(self) -> dict[str, Any]:
         """The numbers for JSON."""
         return {
-            "shape": self.function.shape,
-            "axis": self.function.axis,
             **{name: getattr(self.function, name) for name in PARAMETERS},
-            "fitted": list(self.fitted),
+            **values_of(
+                self,
+                "function.shape function.axis fitted posterior_interval deviance bounded_by_prior "
+                "falling_p notes prior",
+            ),
             "interval_level": self.level,
-            "posterior_interval": {k: list(v) for k, v in self.posterior_interval.items()},
-            "deviance": self.deviance,
             "trials": int(self.trials.sum()),
-            "bounded_by_prior": list(self.bounded_by_prior),
-            "falling_p": self.falling_p,
-            "notes": list(self.notes),
-            "prior": to_json(self.prior),
         }
 
     def _table(self) -> Any:
@@ -131,9 +127,9 @@ class FitRequest:
     _: KW_ONLY
     shape: Shape = "logistic"
     axis: Axis = "linear"
-    guess_rate: si.Dimensionless | None = 0.5
+    guess_rate: Annotated[si.Dimensionless, si.AtLeast(0.0), si.AtMost(0.5)] | None = 0.5
     prior: PsychometricPrior | None = None
-    level: si.Dimensionless = 0.95
+    level: Annotated[si.Dimensionless, si.Above(0.0), si.Below(1.0)] = 0.95
 
 
 @reads_text
@@ -158,9 +154,6 @@ def fit_psychometric(asked: FitRequest) -> PsychometricFit:
     """
     axis, level, guess_rate = asked.axis, asked.level, asked.guess_rate
     code = shape_code(asked.shape, axis)
-    si.require("level", level, above=0.0, below=1.0)
-    if guess_rate is not None:
-        si.require("guess_rate", guess_rate, at_least=0.0, at_most=0.5)
     places, k, n = _by_place(asked.intensity, asked.positive, asked.trials)
     prior = PsychometricPrior.for_stimuli(places, axis) if asked.prior is None else asked.prior
     answered = Answered(code, axis, prior, guess_rate, on_axis(places, axis), k, n)

@@ -8,6 +8,7 @@ the width, from S = 5 % to S = 95 %. What is held possible of them before the da
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Annotated, Literal, get_args
 
@@ -139,13 +140,11 @@ class PsychometricFunction:
 
 def _standard_quantile(code: int, share: float) -> float:
     """z = (x − m)/width at which S = share."""
-    tail = 0.05
     if code == kernel.LOGISTIC:
-        return float(np.log(share / (1 - share)) / (2 * np.log(1 / tail - 1)))
+        return math.log(share / (1 - share)) / kernel.K_LOGISTIC
     if code == kernel.GAUSSIAN:
-        return float(ndtri(share) / (2 * ndtri(1 - tail)))
-    reach = np.log(-np.log(tail)) - np.log(-np.log(1 - tail))
-    return float((np.log(-np.log1p(-share)) - np.log(np.log(2))) / reach)
+        return float(ndtri(share)) / kernel.K_GAUSSIAN
+    return (math.log(-math.log1p(-share)) - kernel.LN_LN_2) / kernel.K_GUMBEL
 
 
 LARGEST_RATE: si.Dimensionless = 0.5

@@ -20,10 +20,10 @@ THRESHOLD, LOG_WIDTH, LAPSE, GUESS = range(4)
 
 # The share of the rise left out on either side of the width.
 _TAIL = 0.05
-_K_LOGISTIC = 2 * math.log(1 / _TAIL - 1)
-_K_GAUSSIAN = 2 * 1.6448536269514722
-_K_GUMBEL = math.log(-math.log(_TAIL)) - math.log(-math.log(1 - _TAIL))
-_LN_LN_2 = math.log(math.log(2.0))
+K_LOGISTIC = 2 * math.log(1 / _TAIL - 1)
+K_GAUSSIAN = 2 * 1.6448536269514722
+K_GUMBEL = math.log(-math.log(_TAIL)) - math.log(-math.log(1 - _TAIL))
+LN_LN_2 = math.log(math.log(2.0))
 # Probabilities nearer to 0 or 1 than this are not told apart; they occur only where the data
 # are impossible under the parameters anyway.
 _LEAST = 1e-12
@@ -33,15 +33,15 @@ _LEAST = 1e-12
 def sigmoid(shape: int, z: float) -> tuple[float, float]:
     """S and 1 − S of a shape at z = (x − m)/width; S(0) = ½, from 5 to 95 % over Δz = 1."""
     if shape == 0:
-        t = _K_LOGISTIC * z
+        t = K_LOGISTIC * z
         e = math.exp(-abs(t))
         small, large = e / (1.0 + e), 1.0 / (1.0 + e)
         return (large, small) if t > 0 else (small, large)
     if shape == 1:
-        t = _K_GAUSSIAN * z
+        t = K_GAUSSIAN * z
         half = math.sqrt(0.5)
         return 0.5 * math.erfc(-half * t), 0.5 * math.erfc(half * t)
-    e = math.exp(min(_K_GUMBEL * z + _LN_LN_2, 700.0))
+    e = math.exp(min(K_GUMBEL * z + LN_LN_2, 700.0))
     return -math.expm1(-e), math.exp(-e)
 
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import ConfigError, InputError
@@ -55,10 +54,14 @@ class Exploration:
     coverage: si.Dimensionless
 
 
+_Place = Annotated[si.MetreArray, si.AtLeast(-_FARTHEST), si.AtMost(_FARTHEST)]
+
+
+@si.checked_numbers
 def exploration(
-    time: ArrayLike,
-    x: ArrayLike,
-    y: ArrayLike | None = None,
+    time: Annotated[si.SecondArray, si.Rising(2)],
+    x: _Place,
+    y: _Place | None = None,
     *,
     face: tuple[si.Metre, si.Metre] | None = None,
     longest_step: si.Second = math.inf,
@@ -79,16 +82,17 @@ def exploration(
         InputError: fewer than two samples, unequal lengths, times that do not rise, or values
             that are not finite.
     """
-    t, along, across = _checked(time, x, y)
-    steps = np.diff(t)
+    y = np.zeros_like(x) if y is None else y
+    si.require_alike(time=time, x=x, y=y)
+    steps = np.diff(time)
     down = steps <= longest_step
-    way, steps = np.hypot(np.diff(along), np.diff(across))[down], steps[down]
+    way, steps = np.hypot(np.diff(x), np.diff(y))[down], steps[down]
     touched = float(steps.sum())
-    paths = touches(t, along, across, longest_step)
+    paths = touches(time, x, y, longest_step)
     runs = [run for path in paths for run in straight_runs(path)]
     length = sum(run.length for run in runs)
     return Exploration(
-        duration=float(t[-1] - t[0]),
+        duration=float(time[-1] - time[0]),
         touched=touched,
         path_length=float(way.sum()),
         mean_speed=float(way.sum()) / touched if touched else math.nan,
@@ -97,25 +101,6 @@ def exploration(
         along_x_share=sum(r.length for r in runs if r.along_x) / length if runs else math.nan,
         coverage=math.nan if face is None else coverage(paths, face),
     )
-
-
-def _checked(
-    time: ArrayLike, x: ArrayLike, y: ArrayLike | None
-) -> tuple[si.FloatArray, si.FloatArray, si.FloatArray]:
-    t, along = np.asarray(time, dtype=float), np.asarray(x, dtype=float)
-    across = np.zeros_like(along) if y is None else np.asarray(y, dtype=float)
-    shapes = {t.shape, along.shape, across.shape}
-    if len(shapes) != 1 or t.ndim != 1 or t.size < 2:
-        raise InputError(
-            "time, x and y must be rows of the same length with at least 2 samples; their shapes "
-            f"are {sorted(shapes)}"
-        )
-    si.require("time", t, si.Unit("s"))
-    if np.any(np.diff(t) <= 0):
-        raise InputError("time must rise from sample to sample; sort the trace, drop repeats")
-    for name, places in (("x", along), ("y", across)):
-        si.require(name, places, si.Unit("m"), at_least=-_FARTHEST, at_most=_FARTHEST)
-    return t, along, across
 
 
 def touches(

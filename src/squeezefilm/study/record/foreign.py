@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -92,25 +93,16 @@ def read_answers(
             raise InputError(
                 f"{file} has no row with an answer; is the column of the choice right?"
             )
-        numbered = _in_order_of_trials(numbered)
-        require_plausible_rows(file, design, numbered, known)
-        rows += [row for _, row in numbered]
+        people: dict[str, list[tuple[int, dict[str, Cell]]]] = defaultdict(list)
+        for line, row in numbered:
+            people[str(row["participant_id"])].append((line, row))
+        for mine in people.values():
+            # Each person's in the order of their trials, however the file is sorted.
+            mine.sort(key=lambda pair: int(str(pair[1]["trial"])))
+        require_plausible_rows(file, design, people, known)
+        rows += [row for mine in people.values() for _, row in mine]
         require_within(FOREIGN_TRIALS, len(rows), enough="give a part of them")
     return answers_of(design, rows, PEOPLE)
-
-
-def _in_order_of_trials(
-    numbered: list[tuple[int, dict[str, Cell]]],
-) -> list[tuple[int, dict[str, Cell]]]:
-    """Rows of a file, each person's in the order of their trials, however the file is sorted."""
-    of_person: dict[Cell, list[tuple[int, dict[str, Cell]]]] = {}
-    for line, row in numbered:
-        of_person.setdefault(row["participant_id"], []).append((line, row))
-    return [
-        pair
-        for mine in of_person.values()
-        for pair in sorted(mine, key=lambda pair: int(str(pair[1]["trial"])))
-    ]
 
 
 def _files(path: str | Path) -> list[Path]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import re
 import unicodedata
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
-from itertools import combinations, pairwise
 from pathlib import Path
 from statistics import median
 
@@ -32,10 +32,10 @@ _TIMED = (*_ANSWERED, "response_time_s")
 def require_plausible_rows(
     path: str | Path,
     design: StudyDesign,
-    rows: Numbered,
+    people: Mapping[str, Numbered],
     known: dict[Answered, str],
 ) -> None:
-    """Refuse rows that cannot be what they say, with their line.
+    """Refuse rows of `people` that cannot be what they say, with their line.
 
     `known` has the answers of people in other files, and takes up those of this one.
 
@@ -44,9 +44,7 @@ def require_plausible_rows(
     others, a trial that is there twice, a part that was pasted twice, a person without a name or
     with two ways to write it, and two people with the same answers.
     """
-    people: dict[str, list[tuple[int, Mapping[str, Cell]]]] = defaultdict(list)
-    for line, row in rows:
-        people[str(row["participant_id"])].append((line, row))
+    for line, row in itertools.chain(*people.values()):
         time = _value_of(row, "response_time_s")
         if time < 0 or math.isinf(time):
             raise _refused(path, line, "response_time_s", f"{time:g} s is no response time")
@@ -131,7 +129,7 @@ def _require_seconds(path: str | Path, who: str, mine: Numbered) -> None:
                 'milliseconds, say so by columns = "response_time_ms=COLUMN"'
             )
             raise _refused(path, line, "response_time_s", said)
-    if len(times) >= _FEWEST and all(then > now for now, then in pairwise(times)):
+    if len(times) >= _FEWEST and all(then > now for now, then in itertools.pairwise(times)):
         said = f"'{who}' takes longer in every row: are these moments in place of durations?"
         raise _refused(path, timed[0][0], "response_time_s", said)
 
@@ -184,7 +182,7 @@ def _require_one_scale(path: str | Path, design: StudyDesign, who: str, mine: Nu
     levels = {name: design.level(design.stimulus(name)) for name in middles}
     slopes = [
         (middles[one] - middles[other]) / (levels[one] - levels[other])
-        for one, other in combinations(middles, 2)
+        for one, other in itertools.combinations(middles, 2)
         if levels[one] != levels[other]
     ]
     if len(middles) < _FEWEST_SURFACES or not slopes:

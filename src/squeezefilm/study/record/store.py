@@ -98,7 +98,7 @@ class StudyStore(Database):
         return store
 
     def _fill(self, design: StudyDesign, seed: int, station: int, stations: int) -> None:
-        from squeezefilm.core.config.write import text_of
+        from squeezefilm.core.config.schema import text_of
 
         row = {
             "uuid": str(uuid.uuid4()),

@@ -18,7 +18,7 @@ from squeezefilm.core.kit.folder import json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import M, printable, shown
 from squeezefilm.core.kit.page_style import bullets, links, page, section, stamped, text_table
 from squeezefilm.core.kit.sheet import sheet_figure
-from squeezefilm.core.results import stamp
+from squeezefilm.core.results import stamp, values_of
 from squeezefilm.physics.perception.stimuli import Grating
 from squeezefilm.study.design.study_design import StudyDesign
 
@@ -139,17 +139,11 @@ def write_boards(design: StudyDesign, folder: Path, tolerance: si.Metre = TOLERA
 def _numbers(board: Board) -> dict[str, object]:
     grating = board.grating
     return {
-        "name": grating.name,
         "length_means": grating.period_means,
         "spatial_period_m": grating.period,
-        "ridge_width_m": board.ridge_width,
-        "groove_width_m": board.groove_width,
-        "ridge_height_m": grating.ridge_height,
-        "length_m": grating.length,
-        "width_m": grating.width,
-        "ridges": board.ridges,
+        **values_of(board, "ridge_width groove_width ridges"),
+        **values_of(grating, "name ridge_height length width material"),
         "last_ridge_width_m": float(board.end[-1] - board.begin[-1]),
-        "material": grating.material,
     }
 
 

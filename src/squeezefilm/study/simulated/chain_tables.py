@@ -214,7 +214,7 @@ def chain_tables(
         plates = tuple(load_display(name) for name in design.displays)
         if finger != "new":
             # Recordings are read, which what was felt before needs no code for.
-            from squeezefilm.measure.fits.friction.person import with_finger
+            from squeezefilm.measure.fits.friction.friction_scores import with_finger
 
             plates = tuple(with_finger(plate, finger) for plate in plates)
     runs = apparatus if isinstance(apparatus, tuple) else (apparatus or Apparatus(),) * len(plates)

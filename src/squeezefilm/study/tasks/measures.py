@@ -18,7 +18,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.adaptive.series import adaptive_method
 from squeezefilm.study.adaptive.staircase import Staircase
-from squeezefilm.study.identification.proportions import proportion_interval
+from squeezefilm.study.identification.confusion import proportion_interval
 from squeezefilm.study.psychometric.discrimination import MODELS, corrected_proportion, sensitivity
 from squeezefilm.study.psychometric.estimate import Estimate, student, t_interval
 from squeezefilm.study.record.answers import Answers

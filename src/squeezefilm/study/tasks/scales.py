@@ -21,7 +21,7 @@ from scipy.special import softmax
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.proportions import proportion_interval
+from squeezefilm.study.identification.confusion import proportion_interval
 from squeezefilm.study.psychometric.estimate import Estimate, student, t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import ConditionFinding, PersonEstimate, through
@@ -192,11 +192,11 @@ def magnitude_conditions(
     """Geometric mean of the numbers given to each stimulus, people's own scales taken out; and what
     needs care."""
     logs, people = np.log(main.estimate), np.unique(main.participant)
-    own = np.full(main.trials, math.nan)
-    counts = []
+    scales, counts = [], []
     for person in people:
         mine = main.participant == person
-        own[mine] = logs[mine].mean()
+        scales.append(logs[mine].mean())
+        logs[mine] -= scales[-1]
         counts.append(np.bincount(main.presented[0][mine], minlength=len(main.surfaces)).tolist())
     notes = []
     if any(count != counts[0] for count in counts):
@@ -204,7 +204,7 @@ def magnitude_conditions(
             "people have not judged the stimuli equally often, so that their scales cannot be "
             "taken out exactly; the exponents do not suffer from it"
         )
-    logs = logs - own + float(np.mean([own[main.participant == one][0] for one in people]))
+    logs += np.mean(scales)
     findings = []
     for stimulus in sorted(np.unique(main.presented[0]), key=lambda s: main.values[s]):
         here = main.presented[0] == stimulus

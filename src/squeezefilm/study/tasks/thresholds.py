@@ -21,8 +21,8 @@ from scipy.special import betaln, ndtr
 from squeezefilm.core import quantities as si
 from squeezefilm.study.adaptive.series import adaptive_method
 from squeezefilm.study.adaptive.staircase import Ending, Runs
+from squeezefilm.study.design.tasks.surfaces import QUARTILE
 from squeezefilm.study.design.tasks.task import DifferenceModel
-from squeezefilm.study.design.tasks.two_surfaces import QUARTILE
 from squeezefilm.study.psychometric.estimate import Estimate, student, t_interval
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.tasks.findings import (

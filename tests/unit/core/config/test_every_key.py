@@ -23,8 +23,7 @@ from squeezefilm.actuators.described import load_actuator
 from squeezefilm.core import presets
 from squeezefilm.core import quantities as si
 from squeezefilm.core.config import load, load_text
-from squeezefilm.core.config.schema import family, reads_from_file
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import family, reads_from_file, text_of
 from squeezefilm.core.errors import ConfigError, InputError, QuantityError
 from squeezefilm.core.quantities.require import bounds_of
 from squeezefilm.design.search.requirements import Requirements, load_requirements

@@ -8,7 +8,7 @@ import pytest
 from tests.unit.core.formats.read_sound import read_sound
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.formats.wav import Encoding, Waveform, wav_bytes
+from squeezefilm.core.formats.traces import Encoding, Waveform, wav_bytes
 
 
 def envelope(n: int = 1001) -> Waveform:
@@ -87,10 +87,10 @@ def test_a_rate_is_a_whole_number_of_samples() -> None:
 
 
 def test_what_does_not_fit_into_a_file_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    from squeezefilm.core.formats import wav
+    from squeezefilm.core.formats import traces
 
     wave = Waveform(np.zeros(100), 8000.0, "V", 1.0)
-    monkeypatch.setattr(wav, "_MOST_BYTES", 200)
+    monkeypatch.setattr(traces, "_MOST_BYTES", 200)
     assert len(wav_bytes(wave, "int16")) > 200
     with pytest.raises(InputError, match="100 samples of 3 bytes do not fit"):
         wav_bytes(wave, "int24")

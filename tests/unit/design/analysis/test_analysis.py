@@ -18,7 +18,7 @@ from squeezefilm.physics.chain.friction import friction_law
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.laminate import plate_laminate
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.uncertainty.drawn import description_of
+from squeezefilm.physics.uncertainty.intervals import description_of
 
 
 @pytest.fixture(scope="module")

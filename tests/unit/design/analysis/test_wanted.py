@@ -17,9 +17,9 @@ from squeezefilm.design.analysis.wanted import (
 )
 from squeezefilm.physics.chain.prediction import Prediction, predict
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.physics.uncertainty.drawn import evaluate
 from squeezefilm.physics.uncertainty.draws import Mixture, outcome_of
 from squeezefilm.physics.uncertainty.free_amplitude import FreeAmplitude
+from squeezefilm.physics.uncertainty.intervals import evaluate
 from squeezefilm.physics.uncertainty.uncertainty import POINTS, sobol_points
 
 

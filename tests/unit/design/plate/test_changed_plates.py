@@ -12,8 +12,8 @@ import pytest
 
 from squeezefilm.core.errors import ContradictionError, InputError
 from squeezefilm.core.materials import VACUUM_PERMITTIVITY, ElasticMaterial
-from squeezefilm.design.plate import changed_plates
-from squeezefilm.design.plate.changed_plates import (
+from squeezefilm.design.plate import solved
+from squeezefilm.design.plate.solved import (
     LOSSLESS,
     with_ceramic_stiffness,
     with_glue,
@@ -77,10 +77,10 @@ class Bench:
 @pytest.fixture
 def bench(monkeypatch: pytest.MonkeyPatch) -> Iterator[Bench]:
     made = Bench([], [])
-    monkeypatch.setattr(changed_plates, "solve_modes", made.solve)
-    monkeypatch.setattr(changed_plates, "harmonic_response", made.respond)
+    monkeypatch.setattr(solved, "solve_modes", made.solve)
+    monkeypatch.setattr(solved, "harmonic_response", made.respond)
     # What is kept of plates that were solved is neither asked here nor left behind.
-    kept = (changed_plates._solved, changed_plates._amplitude)
+    kept = (solved._solved, solved._amplitude)
     for one in kept:
         one.cache_clear()
     yield made
@@ -121,7 +121,7 @@ def test_a_sharp_resonance_is_swept_over_a_per_cent(
     def sharp(plate: RectangularPlate, *, mode: Any) -> Solved:
         return dataclasses.replace(bench.solve(plate, mode=mode), quality_factors=np.full(2, 4e3))
 
-    monkeypatch.setattr(changed_plates, "solve_modes", sharp)
+    monkeypatch.setattr(solved, "solve_modes", sharp)
     working_point(paper)
     ((_, swept),) = bench.driven
     assert swept[[0, -1]] == pytest.approx([0.99 * 33e3, 1.01 * 33e3])
@@ -133,7 +133,7 @@ def test_a_plate_is_solved_once_and_its_fields_are_not_kept(
     for _ in range(2):
         working_point(paper)
     assert (len(bench.solved), len(bench.driven)) == (1, 1)
-    kept = changed_plates._solved(paper, (8, 0))
+    kept = solved._solved(paper, (8, 0))
     assert (kept._fields, kept._again) == ((), None)
 
 
@@ -148,10 +148,10 @@ def test_what_was_solved_before_a_kill_is_read_from_disk(
     plate = RectangularPlate(40e-3, 20e-3, 1.5e-3, 3, 60.0, steel, paper.ceramic, (ceramic,))
     found = working_point(plate)
     # As in another process, which solves nothing.
-    for one in (changed_plates._solved, changed_plates._amplitude):
+    for one in (solved._solved, solved._amplitude):
         one.cache_clear()
     for name in ("solve_modes", "harmonic_response"):
-        monkeypatch.setattr(changed_plates, name, None)
+        monkeypatch.setattr(solved, name, None)
     assert working_point(plate) == found
     assert {one.name for one in tmp_path.iterdir()} == {"compared-modes", "compared-amplitudes"}
 

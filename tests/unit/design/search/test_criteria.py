@@ -14,7 +14,7 @@ from squeezefilm.design.search.criteria import (
     finest_period_felt,
     numbers_of_prediction,
 )
-from squeezefilm.design.search.reasons import LimitReason, limit_in_words
+from squeezefilm.design.search.limits import LimitReason, limit_in_words
 from squeezefilm.design.search.requirements import Limits
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display

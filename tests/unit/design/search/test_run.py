@@ -18,9 +18,8 @@ from squeezefilm.core.results import config_hash
 from squeezefilm.design.search import candidate
 from squeezefilm.design.search.candidate import Design, Evaluated, Level
 from squeezefilm.design.search.found import DesignSearch
-from squeezefilm.design.search.reasons import limit_in_words, margins
+from squeezefilm.design.search.limits import Made, limit_in_words, margins
 from squeezefilm.design.search.requirements import Requirements
-from squeezefilm.design.search.tolerance import Made
 from squeezefilm.design.sweep.tasks import NoAnswer
 
 FEW = {"screened": 40, "solved": 6}
@@ -308,7 +307,7 @@ def test_a_plate_of_the_front_is_a_display_that_can_be_written_and_read(
     whole: DesignSearch,
 ) -> None:
     from squeezefilm.core import config
-    from squeezefilm.core.config.write import text_of
+    from squeezefilm.core.config.schema import text_of
     from squeezefilm.physics.display import Display
 
     found = whole

@@ -8,8 +8,8 @@ import pytest
 from tests.unit.design.search.made_up import formula, random_designs, requirements
 
 from squeezefilm.core.errors import InputError
+from squeezefilm.design.search.limits import Made
 from squeezefilm.design.search.store import FILE, DesignStore
-from squeezefilm.design.search.tolerance import Made
 
 
 def test_what_was_found_is_there_again(tmp_path: Path) -> None:

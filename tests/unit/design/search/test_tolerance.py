@@ -10,7 +10,7 @@ from tests.unit.design.search.made_up import random_designs, requirements
 
 from squeezefilm.core.errors import GeometryError
 from squeezefilm.design.fabrication.report.sheet_parts import tolerance_said
-from squeezefilm.design.search import tolerance
+from squeezefilm.design.search import limits
 from squeezefilm.design.search.candidate import (
     Design,
     Evaluated,
@@ -18,13 +18,13 @@ from squeezefilm.design.search.candidate import (
     evaluate,
     sourced_display_of,
 )
+from squeezefilm.design.search.limits import as_made, made_of
 from squeezefilm.design.search.requirements import (
     Limits,
     Requirements,
     load_requirements,
     toleranced,
 )
-from squeezefilm.design.search.tolerance import as_made, made_of
 from squeezefilm.physics.plate.layout import RectangularPlate
 from squeezefilm.physics.uncertainty.parameters import uncertain_parameters, value_at
 
@@ -110,14 +110,14 @@ def test_an_effect_on_the_thickness_is_that_of_the_sheet(
 def test_a_fault_of_ours_costs_the_plate_that_has_it_and_no_search(
     wanted: Requirements, solved: Evaluated, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    real, calls = tolerance.screened, itertools.count()
+    real, calls = limits.screened, itertools.count()
 
     def at_times(*asked: Any) -> dict[str, float]:
         if next(calls) == 3:  # the first is the plate as drawn
             raise ZeroDivisionError("of ours")
         return real(*asked)
 
-    monkeypatch.setattr(tolerance, "screened", at_times)
+    monkeypatch.setattr(limits, "screened", at_times)
     assert made_of(wanted, solved, draws=8).failed == 1
 
 

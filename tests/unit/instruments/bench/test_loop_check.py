@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.bench import loop_check
-from squeezefilm.instruments.bench.loop_check import check_loop, loop_lateness, loop_result
-from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness, lateness_class
+from squeezefilm.instruments.bench import timing_checks
+from squeezefilm.instruments.bench.timing_checks import check_loop, loop_lateness, loop_result
 from squeezefilm.instruments.session.loop.plan import LoopPlan
+from squeezefilm.instruments.session.loop.shared import CLASSES, Lateness, lateness_class
 
 
 def lateness(made: int, lost: int, late_ns: float = 12_000.0) -> Lateness:
@@ -69,8 +69,8 @@ def loops(monkeypatch: pytest.MonkeyPatch) -> list[Loop]:
         Loop.made[-1].now += 0.25
 
     clock = SimpleNamespace(monotonic=lambda: 50.0 + Loop.made[-1].now, sleep=sleep)
-    monkeypatch.setattr(loop_check, "LoopProcess", Loop)
-    monkeypatch.setattr(loop_check, "time", clock)
+    monkeypatch.setattr(timing_checks, "LoopProcess", Loop)
+    monkeypatch.setattr(timing_checks, "time", clock)
     return Loop.made
 
 
@@ -110,8 +110,8 @@ def test_what_the_computers_host_took_meanwhile_is_counted(monkeypatch: pytest.M
         asked.append((rate, duration))
         return lateness(10_000, 500)
 
-    monkeypatch.setattr(loop_check, "stolen_time", lambda: stolen.pop(0))
-    monkeypatch.setattr(loop_check, "loop_lateness", late)
+    monkeypatch.setattr(timing_checks, "stolen_time", lambda: stolen.pop(0))
+    monkeypatch.setattr(timing_checks, "loop_lateness", late)
     found = check_loop(5e3)
     assert asked == [(5e3, 3.0)]
     assert found == loop_result(lateness(10_000, 500), 0.25)
@@ -156,7 +156,7 @@ def test_the_time_that_programs_waited_is_what_the_system_tells(
                 raise FileNotFoundError
             return text
 
-    monkeypatch.setattr(loop_check, "Path", Told)
-    monkeypatch.setattr(loop_check, "stolen_time", lambda: 0.25)
-    assert loop_check.waited_time() == pytest.approx(waited + 0.25)
+    monkeypatch.setattr(timing_checks, "Path", Told)
+    monkeypatch.setattr(timing_checks, "stolen_time", lambda: 0.25)
+    assert timing_checks.waited_time() == pytest.approx(waited + 0.25)
     assert asked == ["/proc/pressure/cpu"]

@@ -20,7 +20,7 @@ from squeezefilm.instruments.session.play.plan import Ending
 from squeezefilm.instruments.session.play.real_time import PlayOutcome
 from squeezefilm.instruments.twin.settings import TwinSettings
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, TOUCH_PANEL_240_HZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, TOUCH_PANEL_240_HZ
 from squeezefilm.physics.render.program.renderer import MadeForSpeed
 
 DISPLAY, TEXTURE = "biet2008-plate", "biet2008-square-4mm"

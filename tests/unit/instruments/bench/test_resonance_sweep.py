@@ -21,7 +21,7 @@ from squeezefilm.instruments.twin.hand import hand_from
 from squeezefilm.instruments.twin.settings import PickupModel, PlateDrift, TwinSettings
 from squeezefilm.instruments.twin.working_point import WorkingPoint, working_point
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ
 
 DISPLAY = load_display("biet2008-plate")
 SETTINGS = TwinSettings(sensor=LVDT_10_KHZ, pickup=PickupModel(kind="sensing_patch"))

@@ -15,7 +15,7 @@ from squeezefilm.core.kit.style import BLUE, GREEN, ORANGE
 from squeezefilm.instruments.bench.played_session import PlayedWay
 from squeezefilm.instruments.report.page import amplitude, friction, lateness
 from squeezefilm.instruments.session.loop import rows as column
-from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness, lateness_class
+from squeezefilm.instruments.session.loop.shared import CLASSES, Lateness, lateness_class
 
 pytestmark = pytest.mark.usefixtures("figures_as_described")
 

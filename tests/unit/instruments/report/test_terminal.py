@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from tests.unit.printed import printed
 
-from squeezefilm.instruments.bench.loop_check import CheckResult, DeviceCheck
+from squeezefilm.instruments.bench.timing_checks import CheckResult, DeviceCheck
 from squeezefilm.instruments.device.wire.frames import Fault, State
 from squeezefilm.instruments.report.terminal import (
     line_a_second,

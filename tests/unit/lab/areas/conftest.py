@@ -10,8 +10,7 @@ from typing import Any
 
 import pytest
 
-from squeezefilm.lab.guard import Places
-from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.guard import Keys, Places
 from squeezefilm.lab.server import Lab
 from squeezefilm.lab.worker import Told
 
@@ -54,7 +53,7 @@ class Talk:
             self.told = told
             return work(*arguments)
 
-        monkeypatch.setattr(getattr(self.lab.workers, line), "do", do)
+        monkeypatch.setattr(getattr(self.lab, line), "do", do)
 
     def say(self, type: str, **fields: Any) -> dict[str, Any]:
         """A page asks, the participant's where the type is one of its own; the answer."""

@@ -127,7 +127,7 @@ def test_how_far_it_is_is_told_the_page_that_asked_as_long_as_it_is_open(lab: Ta
 
 def test_a_page_cancels_its_own_work(lab: Talk, monkeypatch: pytest.MonkeyPatch) -> None:
     cancelled: list[Any] = []
-    monkeypatch.setattr(lab.lab.workers, "cancel", cancelled.append)
+    monkeypatch.setattr(type(lab.lab), "cancel", lambda _, page: cancelled.append(page))
     context = contextvars.copy_context()
     context.run(PAGE.set, "a")  # type: ignore[arg-type]
     assert context.run(lab.say, "cancel design") == {"type": "cancelled"}

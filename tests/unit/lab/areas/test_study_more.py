@@ -19,7 +19,7 @@ from squeezefilm.lab.areas import study as study_area
 from squeezefilm.lab.areas.study import (
     StudyArea,
 )
-from squeezefilm.lab.keys import CODE_LIFE
+from squeezefilm.lab.guard import CODE_LIFE
 from squeezefilm.lab.server import LanPlace
 from squeezefilm.lab.studying.devices import StudyDevices
 from squeezefilm.lab.worker import PAGE

@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.design.search.found import DesignSearch, FrontMember
-from squeezefilm.design.search.reasons import EmptyCorner, corner_in_words
-from squeezefilm.design.search.tolerance import Made
+from squeezefilm.design.search.limits import EmptyCorner, Made, corner_in_words
 from squeezefilm.lab import search_process as shown
 from squeezefilm.lab.wire import as_text
 

@@ -17,8 +17,7 @@ from squeezefilm.lab import own_process
 from squeezefilm.lab.areas import study as study_area
 from squeezefilm.lab.areas.device import DeviceArea
 from squeezefilm.lab.areas.study import StudyArea
-from squeezefilm.lab.guard import Places
-from squeezefilm.lab.keys import Keys
+from squeezefilm.lab.guard import Keys, Places
 from squeezefilm.lab.own_process import DeviceSession
 from squeezefilm.lab.server import PAGE, Lab
 from squeezefilm.lab.studying.devices import StudyDevices
@@ -194,7 +193,7 @@ class Talk:
         async def exposed(*_: object) -> Exposure:
             return EXPOSURE
 
-        monkeypatch.setattr(self.lab.workers.slow, "do", exposed)
+        monkeypatch.setattr(self.lab.slow, "do", exposed)
         StudyArea(self.lab, StudyDevices(lambda *_: fake))
         DeviceArea(self.lab)
         self.store = folder / "studies" / "one.sqlite"
@@ -339,7 +338,7 @@ def test_a_check_is_asked_of_the_drive_with_the_display_on_the_page(
     async def named(*_: object) -> str:
         return "mine"
 
-    monkeypatch.setattr(talk.lab.workers.quick, "do", named)
+    monkeypatch.setattr(talk.lab.quick, "do", named)
 
     async def work() -> None:
         text = 'name = "mine"'

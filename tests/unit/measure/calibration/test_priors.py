@@ -11,7 +11,7 @@ from scipy.special import ndtri
 from squeezefilm.core.distributions import Normal, Uniform
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.materials import Piezoceramic
-from squeezefilm.design.plate.changed_plates import with_ceramic_stiffness, with_glue
+from squeezefilm.design.plate.solved import with_ceramic_stiffness, with_glue
 from squeezefilm.measure.calibration.priors import (
     CHARGE_SHARE,
     PERMITTIVITY_SHARE,

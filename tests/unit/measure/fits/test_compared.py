@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.measure.fits.friction import friction_curve, person
+from squeezefilm.measure.fits.friction import friction_curve, friction_scores
 from squeezefilm.measure.fits.friction.friction_curve import compare_friction_curve
-from squeezefilm.measure.fits.friction.person import with_finger
+from squeezefilm.measure.fits.friction.friction_scores import with_finger
 from squeezefilm.measure.recordings.kinds import (
     DetectionThresholds,
     FingertipImpedances,
@@ -246,13 +246,13 @@ def test_fingertips_are_compared_where_they_were_pressed(monkeypatch: pytest.Mon
 
 def test_a_finger_is_taken_from_a_curve_of_one_condition(monkeypatch: pytest.MonkeyPatch) -> None:
     curve = CURVE
-    monkeypatch.setattr(person, "read_recording", lambda _: curve)
+    monkeypatch.setattr(friction_scores, "read_recording", lambda _: curve)
     assert with_finger(DISPLAY, "new") is DISPLAY
     with pytest.raises(InputError, match="'thumb' is no finger; allowed are new, mean, and a file"):
         with_finger(DISPLAY, "thumb")
     curve = replace(CURVE, speed=np.array([0.02, 0.05, 0.02, 0.05]))
     with pytest.raises(InputError, match="mixes forces, speeds or frequencies"):
         with_finger(DISPLAY, "mine.toml")
-    monkeypatch.setattr(person, "read_recording", lambda _: "a ring-down")
+    monkeypatch.setattr(friction_scores, "read_recording", lambda _: "a ring-down")
     with pytest.raises(InputError, match=r"mine\.toml holds no friction curve"):
         with_finger(DISPLAY, Path("mine.toml"))

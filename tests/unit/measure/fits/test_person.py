@@ -10,7 +10,11 @@ import pytest
 
 from squeezefilm.core import presets
 from squeezefilm.core.errors import InputError
-from squeezefilm.measure.fits.friction.person import fitted_person, with_decay_length, with_finger
+from squeezefilm.measure.fits.friction.friction_scores import (
+    fitted_person,
+    with_decay_length,
+    with_finger,
+)
 from squeezefilm.measure.recordings.kinds import FrictionCurve
 from squeezefilm.physics.chain.friction import FrictionLaw, friction_law
 from squeezefilm.physics.display import load_display

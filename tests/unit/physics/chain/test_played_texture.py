@@ -18,10 +18,9 @@ from squeezefilm.physics.chain.played_texture import (
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.render.motion.stroke import FingerPath, Stroke
 from squeezefilm.physics.render.program.lowering import lower
-from squeezefilm.physics.render.texture.coordinate import AlongDirection
 from squeezefilm.physics.render.texture.image import Image
 from squeezefilm.physics.render.texture.levels import Amplitude
-from squeezefilm.physics.render.texture.pattern import SpeedScaled
+from squeezefilm.physics.render.texture.pattern import AlongDirection, SpeedScaled
 from squeezefilm.physics.render.texture.shapes import Bump, SineWave
 
 LARGEST = 2e-6

@@ -24,11 +24,11 @@ from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.contact.sliding.march import SpeedFriction
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.render.fidelity.report import strongest_lines
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ
 from squeezefilm.physics.render.motion.stroke import FingerPath, Stroke
-from squeezefilm.physics.render.texture.coordinate import AlongDirection
 from squeezefilm.physics.render.texture.image import Image
 from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
+from squeezefilm.physics.render.texture.pattern import AlongDirection
 from squeezefilm.physics.render.texture.shapes import Constant, SineWave, SquareWave
 from squeezefilm.physics.texture_files.texture_file import TextureFile
 

@@ -18,7 +18,7 @@ from squeezefilm.physics.chain.standing_wave import (
 )
 from squeezefilm.physics.display import load_display
 from squeezefilm.physics.plate.layout import RectangularPlate
-from squeezefilm.physics.render.texture.coordinate import AlongX, AlongY
+from squeezefilm.physics.render.texture.pattern import AlongX, AlongY
 
 STATOR = load_display("biet2008-stator")
 

@@ -18,7 +18,7 @@ from squeezefilm.physics.contact.sliding.march import (
     slide,
 )
 from squeezefilm.physics.render.motion.stroke import Stroke
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 
 DT = 1e-4
 BONE = 0.08 * DT * np.arange(2000)
@@ -39,11 +39,11 @@ RISING = SpeedFriction(SPEEDS, np.array([0.1, 0.4, 0.5]))
         (lambda: slide(BONE, DT, -0.5, 0.5), "friction_coefficient"),
         (lambda: slide(BONE, DT, 0.5, -0.5), "normal_force"),
         (lambda: slide(BONE, DT, np.ones(3), 0.5), "one value per sample"),
-        (lambda: SpeedFriction(SPEEDS[:1], np.ones(1)), "at least two"),
+        (lambda: SpeedFriction(SPEEDS[:1], np.ones(1)), "at least 2"),
         (lambda: SpeedFriction(SPEEDS + 0.1, np.ones(3)), "begin at 0"),
         (lambda: SpeedFriction(SPEEDS[[0, 2, 1]], np.ones(3)), "rise from each"),
         (lambda: SpeedFriction(SPEEDS[[0, 0, 1]], np.ones(3)), "rise from each"),
-        (lambda: SpeedFriction(SPEEDS[:, np.newaxis], np.ones(3)), "row of speeds"),
+        (lambda: SpeedFriction(SPEEDS[:, np.newaxis], np.ones(3)), "one row"),
         (lambda: SpeedFriction(SPEEDS, -np.ones(3)), "coefficient"),
         (lambda: SpeedFriction(SPEEDS, np.full(3, math.nan)), "coefficient"),
         (lambda: SpeedFriction(SPEEDS, np.ones(4)), "does not fit 3 speeds"),

@@ -6,8 +6,7 @@ import itertools
 
 import pytest
 
-from squeezefilm.physics.film.gas import FIRST, NO_SLIP, SECOND, SLIP_LAWS
-from squeezefilm.physics.film.mobility import mobility
+from squeezefilm.physics.film.gas import FIRST, NO_SLIP, SECOND, SLIP_LAWS, mobility
 
 H, P, KN = 0.7, 1.6, 0.08
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.film.gas import SLIP_LAWS, slip_law
-from squeezefilm.physics.film.mobility import slip_factor
+from squeezefilm.physics.film.gas import SLIP_LAWS, slip_factor, slip_law
 
 
 def flow_factor(knudsen, slip="first"):

@@ -117,12 +117,12 @@ def test_what_no_sound_can_be_computed_of_is_refused() -> None:
     with pytest.raises(InputError, match="name at least one") as caught:
         sound_field(one, ())
     assert caught.value.quantity == "distances"
-    for radius, velocity in (
-        (np.array([1e-3]), np.ones(1)),
-        (np.array([1e-3, 1e-3]), np.ones(2)),
-        (np.array([1e-3, 2e-3]), np.ones(3)),
+    for radius, velocity, said in (
+        (np.array([1e-3]), np.ones(1), "at least 2"),
+        (np.array([1e-3, 1e-3]), np.ones(2), "must rise"),
+        (np.array([1e-3, 2e-3]), np.ones(3), "equal length"),
     ):
-        with pytest.raises(InputError, match="two or more rising radii"):
+        with pytest.raises(InputError, match=said):
             ring_surface(radius, velocity, 0, F)
 
 

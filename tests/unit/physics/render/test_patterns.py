@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.render.texture.coordinate import AlongDirection, AlongY, FromPoint
 from squeezefilm.physics.render.texture.image import Image, Noise, NoiseField
-from squeezefilm.physics.render.texture.pattern import Pattern
+from squeezefilm.physics.render.texture.pattern import AlongDirection, AlongY, FromPoint, Pattern
 from squeezefilm.physics.render.texture.shapes import (
     Attack,
     Band,

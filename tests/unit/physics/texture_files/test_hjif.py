@@ -10,10 +10,9 @@ from tests.unit.core.formats.hjif_conformance import require_hjif
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.program.renderer import MadeForSpeed
 from squeezefilm.physics.render.texture.composition import Composable
-from squeezefilm.physics.render.texture.coordinate import AlongY
 from squeezefilm.physics.render.texture.image import Noise
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.physics.render.texture.pattern import Pattern
+from squeezefilm.physics.render.texture.pattern import AlongY, Pattern
 from squeezefilm.physics.render.texture.shapes import Band, Bump, Pulse, Ramp, SineWave, SquareWave
 from squeezefilm.physics.texture_files import hjif
 from squeezefilm.physics.texture_files.hjif import ReferenceDevice, friction_along, hjif_of

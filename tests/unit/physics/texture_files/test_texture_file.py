@@ -5,10 +5,9 @@ from pathlib import Path
 import pytest
 
 from squeezefilm.core.errors import ConfigError, InputError
-from squeezefilm.physics.render.texture.coordinate import AlongDirection
 from squeezefilm.physics.render.texture.image import Image, Noise
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.physics.render.texture.pattern import Complement, Pattern, Times
+from squeezefilm.physics.render.texture.pattern import AlongDirection, Complement, Pattern, Times
 from squeezefilm.physics.render.texture.shapes import Band, SquareWave
 from squeezefilm.physics.texture_files.texture_file import (
     TextureFile,

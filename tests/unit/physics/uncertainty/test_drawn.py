@@ -14,7 +14,7 @@ from squeezefilm.core.kept.store import CACHE_VARIABLE
 from squeezefilm.design.analysis import area_odds, felt
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import Display, load_display
-from squeezefilm.physics.uncertainty import drawn
+from squeezefilm.physics.uncertainty import intervals
 from squeezefilm.physics.uncertainty.draws import Mixture
 from squeezefilm.physics.uncertainty.uncertainty import sobol_points
 
@@ -30,20 +30,20 @@ def calls(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[int]:
     """How many draws were drawn, each time that some were."""
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     found: list[int] = []
-    draw = drawn._drawn_now
+    draw = intervals._drawn_now
 
     def counted(mixture: Mixture, points: np.ndarray, new: np.ndarray, *rest: object) -> object:
         found.append(new.size)
         return draw(mixture, points, new, *rest)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(drawn, "_drawn_now", counted)
+    monkeypatch.setattr(intervals, "_drawn_now", counted)
     return found
 
 
 def test_the_same_draws_are_found_by_another_mixture(calls: list[int]) -> None:
     points = sobol_points(_mixture(STATOR), 128, 1)
-    first, refused = drawn.evaluate(_mixture(STATOR), points, lambda _: None)
-    again, refused_again = drawn.evaluate(_mixture(STATOR), points, lambda _: None)
+    first, refused = intervals.evaluate(_mixture(STATOR), points, lambda _: None)
+    again, refused_again = intervals.evaluate(_mixture(STATOR), points, lambda _: None)
     assert calls == [128]
     for one, other in zip(first, again, strict=True):
         assert np.array_equal(one, other, equal_nan=True)
@@ -67,19 +67,19 @@ def test_whatever_draws_come_from_makes_them_others(calls: list[int]) -> None:
         _mixture(STATOR, speed=0.02),
         _mixture(STATOR, vibration_amplitude=1.5e-6),
     )
-    asked = {drawn.hash_of_draws(one, points) for one in others}
+    asked = {intervals.hash_of_draws(one, points) for one in others}
     assert len(asked) == len(others)
     # A range is a part of what is drawn, though displays of other ranges count as equal.
     measured = _mixture(narrower)
-    assert drawn.hash_of_draws(measured, points[:, : len(measured.inputs)]) not in asked
-    assert drawn.hash_of_draws(others[0], points[:64]) not in asked
+    assert intervals.hash_of_draws(measured, points[:, : len(measured.inputs)]) not in asked
+    assert intervals.hash_of_draws(others[0], points[:64]) not in asked
     assert calls == []
 
 
 def test_few_draws_are_not_kept(calls: list[int], tmp_path: Path) -> None:
     points = sobol_points(_mixture(STATOR), 16, 1)
     for _ in range(2):
-        drawn.evaluate(_mixture(STATOR), points, lambda _: None)
+        intervals.evaluate(_mixture(STATOR), points, lambda _: None)
     assert calls == [16, 16]
     assert not (tmp_path / "draws").exists()
 
@@ -90,7 +90,7 @@ def test_felt_gratings_and_odds_over_the_area_are_found_again(
 ) -> None:
     monkeypatch.setenv(CACHE_VARIABLE, str(tmp_path))
     plate, called = load_display("biet2008-plate"), []
-    monkeypatch.setattr(drawn, "_drawn_now", _told(drawn._drawn_now, "interval", called))
+    monkeypatch.setattr(intervals, "_drawn_now", _told(intervals._drawn_now, "interval", called))
     monkeypatch.setattr(felt, "_felt_of_draws", _told(felt._felt_of_draws, "felt", called))
     monkeypatch.setattr(area_odds, "_drawn", _told(area_odds._drawn, "area", called))
     found = []

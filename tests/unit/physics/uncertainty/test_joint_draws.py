@@ -10,8 +10,8 @@ import pytest
 from squeezefilm.core.calibration_record import JointSpread
 from squeezefilm.physics.chain.prediction import predict
 from squeezefilm.physics.display import load_display
-from squeezefilm.physics.uncertainty.drawn import evaluate
 from squeezefilm.physics.uncertainty.draws import Mixture
+from squeezefilm.physics.uncertainty.intervals import evaluate
 from squeezefilm.physics.uncertainty.model_choices import (
     AMPLITUDE_SHARE,
     FRICTION_OFFSET,

@@ -15,8 +15,8 @@ from squeezefilm.study.adaptive.staircase import Staircase
 from squeezefilm.study.design.rules import AdaptiveCondition
 from squeezefilm.study.design.tasks.every_task import TASKS
 from squeezefilm.study.design.tasks.same_different import share_right
+from squeezefilm.study.design.tasks.surfaces import QUARTILE
 from squeezefilm.study.design.tasks.task import Task
-from squeezefilm.study.design.tasks.two_surfaces import QUARTILE
 
 STAIRS = AdaptiveCondition("s", "staircase", start=0.4, step=0.08, lowest=0.01, down=3, count=9)
 BAYES = AdaptiveCondition("b", "bayesian", lowest=0.01, highest=0.8, count=9)

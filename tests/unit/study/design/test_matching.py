@@ -11,7 +11,7 @@ import pytest
 from PIL import Image as Picture
 
 from squeezefilm.core.config.load import load_text
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.physics.perception.stimuli import Stimulus
 from squeezefilm.physics.render.texture.shapes import Band

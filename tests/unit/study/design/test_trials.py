@@ -162,6 +162,6 @@ def test_numbers_below_zero_are_refused() -> None:
 
 
 def test_a_design_is_written_and_read_back() -> None:
-    from squeezefilm.core.config.write import text_of
+    from squeezefilm.core.config.schema import text_of
 
     assert config.load_text(StudyDesign, text_of(PAIRS)) == PAIRS

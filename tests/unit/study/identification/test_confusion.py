@@ -16,11 +16,9 @@ from scipy import stats
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.confusion import (
     ConfusionMatrix,
-    participant_counts,
-)
-from squeezefilm.study.identification.proportions import (
     Method,
     expansion,
+    participant_counts,
     participant_interval,
     permutation_test,
     proportion_interval,

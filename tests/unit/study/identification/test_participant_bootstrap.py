@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.study.identification.proportions import recentred_interval
+from squeezefilm.study.identification.confusion import recentred_interval
 
 SPREAD = np.random.default_rng(1).normal(5.0, 0.2, 4000)
 

@@ -50,9 +50,9 @@ def test_traces_of_two_samples_are_enough_and_say_where_they_lie() -> None:
             exploration([0.0, 1.0], [0.0, 1.0], [0.0, wrong])
         with pytest.raises(InputError, match="time"):
             exploration([0.0, wrong], [0.0, 1.0])
-    with pytest.raises(InputError, match="at least 2 samples"):
+    with pytest.raises(InputError, match="one row of at least 2"):
         exploration([[0.0, 1.0]], [[0.0, 1.0]])
-    with pytest.raises(InputError, match="time must rise"):
+    with pytest.raises(InputError, match=r"time .* must rise"):
         exploration([0.0, 1.0, 1.0], [0.0, 1.0, 2.0])
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.design.study_design import StudyDesign
 from squeezefilm.study.record.store import StudyStore

@@ -10,7 +10,7 @@ import pytest
 from squeezefilm.core.errors import InputError
 from squeezefilm.study.design.study_design import load_design
 from squeezefilm.study.simulated.answers import SimulatedStudy
-from squeezefilm.study.tasks.methods import _stimuli, _trials
+from squeezefilm.study.tasks.analyze import _stimuli, _trials
 
 
 def test_a_series_has_its_reference_and_fixed_stimuli_have_all() -> None:

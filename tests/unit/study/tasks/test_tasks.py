@@ -17,10 +17,9 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.study.identification.condition_means import attention, course_of, drift
 from squeezefilm.study.psychometric.estimate import t_interval
 from squeezefilm.study.record.answers import Answers
-from squeezefilm.study.tasks.analyze import analyze_answers
+from squeezefilm.study.tasks.analyze import analyze_answers, methods_text
 from squeezefilm.study.tasks.findings import TaskAnalysis
 from squeezefilm.study.tasks.measures import comparisons, false_alarms
-from squeezefilm.study.tasks.methods import methods_text
 from squeezefilm.study.tasks.scales import exponents, magnitude_conditions
 from squeezefilm.study.tasks.thresholds import PeopleOnGrid, on_grid
 

@@ -11,7 +11,7 @@ from matplotlib.colors import to_hex
 
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.style import BLUE, ORANGE
-from squeezefilm.design.plate.changed_plates import PlatePoint
+from squeezefilm.design.plate.solved import PlatePoint
 from squeezefilm.validation.explanations import (
     MEASUREMENTS,
     Explanation,

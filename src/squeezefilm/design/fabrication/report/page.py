@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.formats.drawing import Drawing, dxf_text
 from squeezefilm.core.kit import style

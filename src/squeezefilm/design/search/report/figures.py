@@ -16,7 +16,7 @@ from squeezefilm.core.kit.page_style import FigureOf
 from squeezefilm.core.kit.terminal import bullets, heading, say, table
 from squeezefilm.design.search.criteria import criterion_of
 from squeezefilm.design.search.found import DesignSearch
-from squeezefilm.design.search.reasons import corner_in_words
+from squeezefilm.design.search.limits import corner_in_words
 from squeezefilm.design.search.report.words import (
     asked_sentences,
     chosen_sentences,

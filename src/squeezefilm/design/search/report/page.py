@@ -9,7 +9,7 @@ from html import escape
 from pathlib import Path
 
 from squeezefilm.core import quantities as si
-from squeezefilm.core.config.write import text_of
+from squeezefilm.core.config.schema import text_of
 from squeezefilm.core.kit import style
 from squeezefilm.core.kit.folder import csv_text, json_text, require_folder, write_folder
 from squeezefilm.core.kit.numbers import printable
@@ -29,7 +29,7 @@ from squeezefilm.core.kit.page_style import (
 from squeezefilm.design.search.candidate import Design, sourced_display_of
 from squeezefilm.design.search.criteria import CRITERIA, bounded
 from squeezefilm.design.search.found import DesignSearch, FrontMember
-from squeezefilm.design.search.reasons import margins
+from squeezefilm.design.search.limits import margins
 from squeezefilm.design.search.report.figures import FIGURES, MARKED
 from squeezefilm.design.search.report.words import (
     asked_sentences,

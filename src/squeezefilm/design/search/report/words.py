@@ -12,7 +12,7 @@ from squeezefilm.core.kit.numbers import changed, shown, signed
 from squeezefilm.design.search.candidate import Design, Evaluated
 from squeezefilm.design.search.criteria import CRITERIA, OF_SOLVED, bounded, criterion_of
 from squeezefilm.design.search.found import DesignSearch, FrontMember
-from squeezefilm.design.search.reasons import (
+from squeezefilm.design.search.limits import (
     conflict_of,
     gains_in_words,
     limit_in_words,

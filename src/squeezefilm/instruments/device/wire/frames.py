@@ -1,4 +1,5 @@
-"""Frames: a header, a payload and a CRC-32, stuffed by COBS and ended by a zero byte.
+"""Frames: a header, a payload and a CRC-32, stuffed by COBS and ended by a zero byte; and
+the numbers that a host may send in one.
 
 Before stuffing a frame is `version u8, type u8, sequence u16, payload, CRC-32 u32`, little-endian;
 the CRC (that of zlib) covers everything before it, in every frame. `docs/development/protocol.md`
@@ -7,12 +8,18 @@ is the description byte by byte.
 
 from __future__ import annotations
 
+import operator
 import struct
 import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
+import numpy as np
+
+from squeezefilm.core import quantities as si
+from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE
 from squeezefilm.core.errors import InputError
 
 VERSION = 1
@@ -165,3 +172,50 @@ class Reason(IntEnum):
     TILE = 9
     FULL = 10
     NO_LOOPS = 11
+
+
+# Anything else than what the wire can carry is refused here. The device refuses a whole frame for
+# one bad number, when it is too late to say whose it was.
+def number(name: str, value: Any, unit: si.Unit, at_least: float, at_most: float) -> float:
+    """One finite number between two bounds in SI. Raises `InputError` for anything else."""
+    array = _numbers(name, value, 0, f"one number in {unit.symbol}")
+    # Every command of a loop in real time comes here: what is in order costs no more than this.
+    if not at_least <= array <= at_most:
+        si.require(name, array, unit, at_least=at_least, at_most=at_most)
+    return float(array)
+
+
+def whole_number(name: str, value: Any) -> int:
+    """An integer. Raises `InputError` for anything else."""
+    try:
+        return operator.index(value)
+    except TypeError as error:
+        raise InputError(f"{name} is {value!r}; give a whole number", quantity=name) from error
+
+
+def amplitudes(levels: Any, at_most: si.Volt = HIGHEST_VOLTAGE) -> si.FloatArray:
+    """Amplitudes (V, zero-to-peak), shape (n,), each from 0 to `at_most`.
+
+    Raises `InputError` for anything else.
+    """
+    array = _numbers("levels", levels, 1, "a row of amplitudes in V")
+    if not (array.size and array.min() >= 0.0 and array.max() <= at_most):
+        si.require("levels", array, si.Unit("V"), at_least=0.0, at_most=at_most)
+    return array
+
+
+def binary32_below(values: Any) -> np.ndarray[Any, np.dtype[np.float32]]:
+    """The largest binary32 not above each value, which is not negative and below 1e38."""
+    exact = np.asarray(values, dtype=float)
+    near = exact.astype(np.float32)
+    return np.where(near > exact, np.nextafter(near, np.float32(0)), near).astype(np.float32)
+
+
+def _numbers(name: str, value: Any, dimensions: int, wanted: str) -> si.FloatArray:
+    try:
+        array = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        array = np.asarray(None)
+    if array.dtype.kind not in "biuf" or array.ndim != dimensions:
+        raise InputError(f"{name} is {value!r:.60}; give {wanted}", quantity=name)
+    return array.astype(float)

@@ -18,8 +18,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.drive_limits import Limits
 from squeezefilm.core.errors import InputError
 from squeezefilm.instruments.control.plate_loop import LoopGains
-from squeezefilm.instruments.device.wire.arguments import amplitudes, binary32_below
-from squeezefilm.instruments.device.wire.frames import Frame
+from squeezefilm.instruments.device.wire.frames import Frame, amplitudes, binary32_below
 
 T = TypeVar("T")
 

@@ -14,7 +14,7 @@ from squeezefilm.physics.render.motion.estimator import MotionEstimator
 from squeezefilm.physics.render.program.inverse import FrictionTable
 from squeezefilm.physics.render.program.lowering import Program
 from squeezefilm.physics.render.program.renderer import new_state
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 
 LoopCompensation = Literal["none", "inverse"]
 

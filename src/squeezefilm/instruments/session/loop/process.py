@@ -24,11 +24,11 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, LoopError, SqueezefilmWarning
 from squeezefilm.instruments.session.loop import shared
-from squeezefilm.instruments.session.loop.lateness import Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.rows import COMMAND_TIME, SAMPLE_COLUMNS
 from squeezefilm.instruments.session.loop.shared import (
     DROPPED,
+    Lateness,
     load_acquire,
     ring_put_all,
     store_release,

@@ -1,4 +1,5 @@
-"""The memory that a loop and its host share: control words, a histogram and three rings of rows.
+"""The memory that a loop and its host share: control words, a histogram of lateness,
+three rings of rows.
 
 One stretch of memory, mapped by both. Control words are int64 on cache lines of their own; each is
 written by one side only. An aligned 64-bit word is read whole or not at all on x86-64 and ARM64;
@@ -14,7 +15,9 @@ do not wrap within the life of anything (2^63 rows).
 
 from __future__ import annotations
 
+import math
 import mmap
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numba
@@ -22,11 +25,82 @@ import numpy as np
 from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
+from numpy.typing import NDArray
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.instruments.session.loop.lateness import CLASSES
+from squeezefilm.core.results import to_json
 from squeezefilm.instruments.session.loop.rows import COLUMNS, COMMAND_COLUMNS, SAMPLE_COLUMNS
+
+CLASSES_PER_DECADE = 20
+_DECADES = 8
+_FIRST_NS = 100.0
+CLASSES = CLASSES_PER_DECADE * _DECADES + 2
+"""Classes of the histogram: below 100 ns, 20 per decade up to 10 s, and above."""
+
+
+@compiled()
+def lateness_class(late: float) -> int:
+    """The class of the histogram that a lateness (ns) falls into."""
+    if not late >= _FIRST_NS:
+        return 0
+    return min(1 + int(CLASSES_PER_DECADE * math.log10(late / _FIRST_NS)), CLASSES - 1)
+
+
+def class_ends() -> si.SecondArray:
+    """The upper end of every class (s), the last infinite; shape (CLASSES,)."""
+    decades = np.arange(CLASSES - 1) / CLASSES_PER_DECADE
+    return np.append(_FIRST_NS * 1e-9 * 10.0**decades, math.inf)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Lateness:
+    """Lateness of ticks, and the number of those that were not made at all.
+
+    A tick is late by the time from when it was due to when it was begun. One that could not begin
+    before the next was due is lost: it is not made up for, and stands in no class.
+
+    Attributes:
+        rate: of the ticks (Hz).
+        made, lost: ticks; together those that were due.
+        longest: greatest time by which the loop was late at any moment (s), those that cost ticks
+            included.
+        counts: ticks made in each class, see `class_ends`.
+    """
+
+    rate: si.Hertz
+    made: int
+    lost: int
+    longest: si.Second
+    counts: NDArray[np.int64]
+
+    @property
+    def share_made(self) -> si.Dimensionless:
+        """Share of the ticks due that were made (1); not a number before the first."""
+        due = self.made + self.lost
+        return self.made / due if due else math.nan
+
+    def quantile(self, share: si.Dimensionless) -> si.Second:
+        """The lateness (s) that a share of the ticks made did not exceed; NaN if none was made.
+
+        The upper end of its class, at most 12 % too high; never above `longest`.
+        """
+        if self.made == 0:
+            return math.nan
+        place = int(np.searchsorted(np.cumsum(self.counts), math.ceil(share * self.made)))
+        return min(float(class_ends()[place]), self.longest)
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain JSON values: the fields, and the figures that people ask for."""
+        values: dict[str, Any] = to_json(self)
+        figures: dict[str, float] = {
+            "share_made": self.share_made,
+            "p50_s": self.quantile(0.5),
+            "p99_s": self.quantile(0.99),
+            "p99_9_s": self.quantile(0.999),
+        }
+        return {**values, **to_json(figures)}
+
 
 # A number written with `store_release` and seen by `load_acquire`, in any process that maps the
 # same memory, makes everything visible that the writer wrote before it. Compiled, they are LLVM's

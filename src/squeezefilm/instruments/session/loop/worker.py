@@ -37,9 +37,8 @@ from squeezefilm.instruments.device.priority import collect_garbage_first, real_
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop import shared
-from squeezefilm.instruments.session.loop.lateness import lateness_class
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.instruments.session.loop.shared import load_acquire, store_release
+from squeezefilm.instruments.session.loop.shared import lateness_class, load_acquire, store_release
 from squeezefilm.instruments.session.loop.tick import make_tick
 
 # On 64-bit Linux a compiled loop calls `clock_gettime` and `clock_nanosleep` (to a point in time,

@@ -23,7 +23,7 @@ from squeezefilm.instruments.device.wire.messages import LONGEST_TILE
 from squeezefilm.instruments.session.loop.plan import LoopPlan
 from squeezefilm.instruments.session.loop.rows import COLUMNS
 from squeezefilm.physics.render.fidelity.rendered_stroke import RelativeFriction
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ, SensorModel
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ, SensorModel
 from squeezefilm.physics.render.program.layout import FASTEST
 from squeezefilm.physics.render.program.lowering import Program
 from squeezefilm.physics.render.program.renderer import MadeForSpeed, render

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.progress import SayProgress, said_with_time_left, within
-from squeezefilm.core.results import to_json
+from squeezefilm.core.results import to_json, values_of
 from squeezefilm.measure.fits.estimate import Adequacy, FitResult, Observation
 from squeezefilm.measure.fits.friction.friction_scores import (
     SHAPES,
@@ -130,37 +130,27 @@ class CurveComparison(FitResult):
         c = self.curve
         return {
             "recording": to_json(c.told),
-            "display": self.display,
-            "finger": c.finger,
-            "frequency_Hz": to_json(c.frequency),
-            "normal_force_N": to_json(self.normal_force),
-            "speed_m_per_s": to_json(self.speed),
-            "assumed": list(self.assumed),
-            "vibration_amplitude_m": to_json(c.vibration_amplitude),
-            "quantity": c.quantity,
+            **values_of(
+                self,
+                "display curve.finger curve.frequency normal_force speed assumed "
+                "curve.vibration_amplitude curve.quantity curve.deviation adequacy",
+            ),
             "measured": to_json(c.friction),
-            "deviation": to_json(c.deviation),
             "friction_at_rest": self.at_rest,
             "interval": {
-                "level": self.band.level,
-                "low": to_json(self.band.low),
-                "high": to_json(self.band.high),
+                **values_of(self.band, "level low high"),
                 "inside": list(self.inside),
                 "points_inside": self.points_inside[0],
                 "points_asked": self.points_inside[1],
             },
             "models": [
                 {
-                    "model": score.model,
-                    "fitted": score.fitted,
+                    **values_of(score, "model fitted answered friction"),
                     "rms_difference": score.difference,
                     "rms_difference_in_spreads": score.in_spreads,
-                    "answered": score.answered,
-                    "friction": to_json(score.friction),
                 }
                 for score in self.models
             ],
-            "adequacy": to_json(self.adequacy),
         }
 
 

@@ -99,20 +99,14 @@ class SpeedFriction:
         InputError: a value outside its range, speeds that do not rise from 0, or another shape.
     """
 
-    speed: si.MetrePerSecondArray
+    speed: Annotated[si.MetrePerSecondArray, si.Rising(2)]
     coefficient: Annotated[si.DimensionlessArray, si.AtLeast(0.0)]
 
     def __post_init__(self) -> None:
-        speed, shape = np.asarray(self.speed, dtype=float), np.shape(self.coefficient)
-        if speed.ndim != 1 or speed.size < 2:
+        speed, shape = self.speed, self.coefficient.shape
+        if speed[0] != 0:
             raise InputError(
-                f"speed of shape {speed.shape} cannot be used: give a row of speeds, at least two",
-                quantity="speed",
-            )
-        if speed[0] != 0 or np.any(np.diff(speed) <= 0):
-            raise InputError(
-                "speed must begin at 0, where the value that limits sticking stands, and rise from "
-                "each to the next",
+                "speed must begin at 0, where the value that limits sticking stands",
                 quantity="speed",
             )
         if len(shape) not in (1, 2) or shape[-1] != speed.size:

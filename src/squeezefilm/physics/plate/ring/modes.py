@@ -96,7 +96,7 @@ def annular_modes(
     near: Annotated[si.Hertz, si.AtLeast(0.0)] = 0.0,
     count: Annotated[int, si.AtLeast(1)] = 4,
     degree: Annotated[int, si.AtLeast(3), si.AtMost(12)] = DEFAULT_DEGREE,
-    quality_factor: si.Dimensionless | None = None,
+    quality_factor: Annotated[si.Dimensionless, si.Above(0.5)] | None = None,
 ) -> tuple[AnnularMode, ...]:
     """The `count` modes of one Fourier harmonic nearest to a frequency, in rising order.
 
@@ -108,8 +108,6 @@ def annular_modes(
     `OutOfRangeError` for a frequency of waves across a layer; `ConvergenceError` if the eigenvalues
     do not converge.
     """
-    if quality_factor is not None:
-        si.require("quality_factor", quality_factor, above=0.5)
     require_half_wave(near, section.shear_times, "near =")
     mesh = ring_mesh(section)
     fine = harmonic_system(section, harmonic, degree, mesh)

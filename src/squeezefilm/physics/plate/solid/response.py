@@ -6,7 +6,7 @@ import dataclasses
 import functools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar
+from typing import Annotated, ClassVar
 
 import numpy as np
 from scipy.linalg import eigh
@@ -168,9 +168,9 @@ def _largest(coordinates: si.ComplexArray, face: si.FloatArray) -> float:
 @si.checked_numbers
 def harmonic_response(
     plate: RectangularPlate,
-    frequencies: si.HertzArray,
+    frequencies: Annotated[si.HertzArray, si.Above(0.0), si.Rising()],
     *,
-    steps: int | None = None,
+    steps: Annotated[int, si.AtLeast(1)] | None = None,
     resolution: Resolution = NORMAL,
     extrapolate: bool = True,
     progress: Callable[[str, float], None] | None = None,
@@ -191,30 +191,30 @@ def harmonic_response(
     Raises `InputError` for frequencies that are not ascending and positive or a plate without a
     driven electrode.
     """
-    f = np.atleast_1d(np.asarray(frequencies, dtype=float))
-    si.require("frequencies", f, si.Unit("Hz"), above=0)
-    if f.size > 1 and np.any(np.diff(f) <= 0):
-        raise InputError("frequencies must ascend", quantity="frequencies")
     if not np.any(drive_signs(plate)):
         raise InputError("no electrode is driven; give at least one patch electrode = 'driven'")
-    band = float(f[0]), float(f[-1])
+    band = float(frequencies[0]), float(frequencies[-1])
     if steps is None:
         # With the modes about its middle known few are left that the space must find.
         least, wider = (8, 10) if solved else (14, 40)
         steps = min(int(least + wider * (band[1] - band[0]) / band[1]), 60)
-    si.require("steps", steps, at_least=1)
     with one_blas_thread():
         parts = _reduced(plate, band, steps, resolution, extrapolate, progress, solved)
-        omega = 2 * np.pi * f
+        omega = 2 * np.pi * frequencies
         q, potentials, charge = harmonic_solution(parts, omega)
         admittance = 1j * omega * charge
         error = _truncation(parts, omega, admittance)
     again = functools.partial(
-        harmonic_response, plate, f, steps=steps, resolution=resolution, extrapolate=extrapolate
+        harmonic_response,
+        plate,
+        frequencies,
+        steps=steps,
+        resolution=resolution,
+        extrapolate=extrapolate,
     )
     return HarmonicResponse(
         plate,
-        f,
+        frequencies,
         admittance,
         f"reduced to {q.shape[1]} coordinates",
         error,

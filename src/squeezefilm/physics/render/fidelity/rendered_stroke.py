@@ -19,12 +19,13 @@ from squeezefilm.core.hard_limits import RENDER_STEPS, require_motion
 from squeezefilm.physics.render.motion.estimator import (
     MotionEstimate,
     MotionEstimator,
+    SensorModel,
     estimate_motion,
+    sensor_stream,
 )
-from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_stream
 from squeezefilm.physics.render.motion.stroke import Stroke, Trajectory
 from squeezefilm.physics.render.resonator import kernel
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator.envelope import (
     CompensatedDrive,
     Compensation,
     DrivenEnvelope,

@@ -178,21 +178,14 @@ class FingerPath:
             not rise, or a finger that does not move at all.
     """
 
-    time: si.SecondArray
+    time: Annotated[si.SecondArray, si.Rising(2)]
     x: Annotated[si.MetreArray, si.AtLeast(-_FARTHEST), si.AtMost(_FARTHEST)]
     y: Annotated[si.MetreArray, si.AtLeast(-_FARTHEST), si.AtMost(_FARTHEST)]
     _way: si.FloatArray = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        shapes = {np.shape(self.time), np.shape(self.x), np.shape(self.y)}
-        if len(shapes) > 1 or len(self.time.shape) != 1 or self.time.size < 2:
-            raise InputError(
-                f"time, x and y of shapes {sorted(shapes)} are no motion; give three lists of one "
-                "length, at least 2"
-            )
+        si.require_alike(time=self.time, x=self.x, y=self.y)
         require_within(MOTION_SAMPLES, self.time.size)
-        if np.any(np.diff(self.time) <= 0.0):
-            raise InputError("the times of a motion must rise from each sample to the next")
         steps = np.hypot(np.diff(self.x), np.diff(self.y))
         way = np.concatenate([[0.0], np.cumsum(steps)])
         if way[-1] == 0.0:

@@ -1,5 +1,8 @@
-"""A friction law as a table, which what takes many samples asks in place of the law, and the table
-read backwards: the amplitude that makes a wanted friction."""
+"""Inverses of a display, as tables that a renderer takes: the amplitude that makes a wanted
+friction, and the share that a contact meets of it along the wave, by which it is divided.
+
+A friction law is also asked as a table by what takes many samples.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,7 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError, OutOfRangeError
+from squeezefilm.physics.render.texture.pattern import FARTHEST, X_AXIS, Coordinate, FromPoint
 
 _METRE, _SPEED = si.Unit("m"), si.Unit("m/s")
 _MOST_KNOTS = 65_536
@@ -44,8 +48,8 @@ class FrictionTable:
     Raises `InputError` for arrays of other shapes, knots that do not rise, or friction beyond 0…1.
     """
 
-    amplitude: Annotated[si.MetreArray, si.AtLeast(0.0)]
-    speed: Annotated[si.MetrePerSecondArray, si.AtLeast(0.0)]
+    amplitude: Annotated[si.MetreArray, si.AtLeast(0.0), si.Rising(2)]
+    speed: Annotated[si.MetrePerSecondArray, si.AtLeast(0.0), si.Rising()]
     relative_friction: Annotated[
         si.DimensionlessArray, si.AtLeast(-_ROUNDING), si.AtMost(1.0 + _ROUNDING)
     ]
@@ -54,12 +58,11 @@ class FrictionTable:
     def __post_init__(self) -> None:
         a, v, known = self.amplitude, self.speed, self.relative_friction
         object.__setattr__(self, "relative_friction", np.clip(known, 0.0, 1.0))
-        rise = a.ndim == v.ndim == 1 and np.all(np.diff(a) > 0.0) and np.all(np.diff(v) > 0.0)
-        if not rise or a.size < 2 or a[0] != 0.0 or known.shape != (v.size, a.size):
+        if a[0] != 0.0 or known.shape != (v.size, a.size):
             raise InputError(
                 f"relative_friction of shape {known.shape} over {v.shape} speeds and {a.shape} "
-                "amplitudes is no table; give speeds that rise, at least two amplitudes that rise "
-                "from 0, and of friction one row for each speed"
+                "amplitudes is no table; give amplitudes that rise from 0, and of friction one row "
+                "for each speed"
             )
 
     @si.checked_numbers
@@ -282,3 +285,82 @@ def _falling(
 
 def _changes_nothing() -> InputError:
     return InputError("friction does not fall with amplitude, so nothing can be rendered by it")
+
+
+# A plate in a standing wave |cos(πx/λ½)| vibrates at antinodes and rests at nodes, so a texture
+# that asks for one amplitude is felt with a ripple of period λ½, half the wavelength.
+_MOST_FACTORS = 65_536
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True)
+class WaveCompensation:
+    """Compensation of the wave's weakness, place by place; a renderer divides amplitudes by it.
+
+    Build it with `from_ripple`.
+
+    Args:
+        half_wavelength: the period (m); from 1 µm to 10 m.
+        factors: local amplitude over that at the strongest place (1), evenly spaced over one
+            period from coordinate 0; above 0, at most 1. The least is the greatest gain's inverse.
+        along: the coordinate across the nodal lines; no distance from a point.
+
+    Raises:
+        InputError: a value outside its range.
+    """
+
+    half_wavelength: Annotated[si.Metre, si.AtLeast(1e-06), si.AtMost(FARTHEST)]
+    factors: Annotated[tuple[si.Dimensionless, ...], si.Above(0.0), si.AtMost(1.0)]
+    along: Coordinate = X_AXIS
+
+    def __post_init__(self) -> None:
+        if not 2 <= len(self.factors) <= _MOST_FACTORS:
+            raise InputError(f"{len(self.factors)} factors cannot be used; give 2 to 65 536")
+        if isinstance(self.along, FromPoint):
+            raise InputError("a wave runs along a direction; give AlongX, AlongY, AlongDirection")
+
+    @classmethod
+    @si.checked_numbers
+    def from_ripple(
+        cls,
+        position: si.MetreArray,
+        relative_friction: si.DimensionlessArray,
+        inverse: FrictionInverse,
+        half_wavelength: si.Metre,
+        *,
+        least: Annotated[si.Dimensionless, si.Above(0.0), si.AtMost(1.0)] = 0.1,
+        along: Coordinate = X_AXIS,
+    ) -> WaveCompensation:
+        """Compensation by friction, computed or measured, of a pad that crosses the wave at a
+        drive.
+
+        `position` (m) are evenly spaced places over one `half_wavelength` from 0 on, its end left
+        out; `relative_friction` (1) the friction there; `inverse` that of the pad where friction
+        falls most. The amplitude that explains the friction at each place, over the largest such,
+        is the factor. Exact where the place acts as a factor on the amplitude.
+
+        Raises:
+            InputError: places that are not such, or a friction the inverse does not reach.
+        """
+        places = np.asarray(position, dtype=float)
+        friction = np.asarray(relative_friction, dtype=float)
+        even = np.arange(places.size) / max(places.size, 1) * half_wavelength
+        if places.ndim != 1 or places.shape != friction.shape or places.size < 4:
+            raise InputError("position and relative_friction must be two lists of one length, ≥ 4")
+        if np.max(np.abs(places - even)) > 1e-6 * half_wavelength:
+            raise InputError(
+                "position must be evenly spaced from 0 over one half wavelength, its end left out"
+            )
+        amplitude = inverse.amplitude_for(friction)
+        largest = float(np.max(amplitude))
+        if largest == 0.0:
+            raise InputError("nothing vibrates at any of these places, so there is no ripple")
+        factors = np.clip(amplitude / largest, least, 1.0)
+        return cls(half_wavelength, tuple(factors.tolist()), along)
+
+    @si.checked_numbers
+    def factor(self, x: si.MetreLike, y: si.MetreLike = 0.0) -> si.DimensionlessArray:
+        """The factor at places (1), as the renderer reads it: linear between those of a period."""
+        where = self.along.at(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        places = np.arange(len(self.factors)) / len(self.factors)
+        return np.asarray(np.interp(where / self.half_wavelength, places, self.factors, period=1))

@@ -12,11 +12,10 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render import opcodes as op
 from squeezefilm.physics.render.opcodes import Assembler
 from squeezefilm.physics.render.program import layout as at
-from squeezefilm.physics.render.program.inverse import FrictionInverse
-from squeezefilm.physics.render.program.wave import WaveCompensation
-from squeezefilm.physics.render.texture.composition import Composable, Quantity, require_texture
-from squeezefilm.physics.render.texture.coordinate import FARTHEST, METRE
+from squeezefilm.physics.render.program.inverse import FrictionInverse, WaveCompensation
+from squeezefilm.physics.render.texture.composition import Composable, Quantity
 from squeezefilm.physics.render.texture.levels import LARGEST_AMPLITUDE
+from squeezefilm.physics.render.texture.pattern import FARTHEST, METRE
 
 QUANTITIES: tuple[Quantity, ...] = get_args(Quantity)
 """The quantities in the order of their number in a program."""
@@ -109,7 +108,6 @@ def lower(
         InputError: a texture too deep or large, or an argument missing, out of range or not
             belonging to the texture's quantity.
     """
-    require_texture("texture", texture)
     quantity = texture.quantity
     _require_what_belongs(quantity, inverse, friction_coefficient)
     if largest_amplitude is None:

@@ -33,19 +33,15 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.opcodes import ADD, CROSS, FADE, MULTIPLY, WEIGH, Assembler
-from squeezefilm.physics.render.texture.coordinate import (
-    X_AXIS,
-    Coordinate,
-    Place,
-    require_coordinate,
-    require_fade,
-)
 from squeezefilm.physics.render.texture.pattern import (
     MOST_PARTS,
+    X_AXIS,
+    Coordinate,
     Pattern,
+    Place,
     TexturePart,
     part,
-    require_pattern,
+    require_fade,
 )
 
 Quantity = Literal["amplitude", "relative_friction", "friction_reduction"]
@@ -83,6 +79,9 @@ class Composable(TexturePart):
     """A texture with a quantity that composes with others; the base of every texture here."""
 
     __slots__ = ()
+    WANTED: ClassVar[str] = (
+        "texture with a quantity; give one such as Amplitude(pattern, low, high)"
+    )
     _quantity: ClassVar[Quantity]
 
     @property
@@ -157,24 +156,12 @@ def _terms(texture: Composable) -> tuple[Composable, ...]:
     return texture.textures if isinstance(texture, Sum) else (texture,)
 
 
-def require_texture(name: str, value: object) -> None:
-    """Refuse what is no `Composable` texture."""
-    if not isinstance(value, Composable):
-        raise InputError(
-            f"{name} = {value!r} is no texture with a quantity; give one such as "
-            "Amplitude(pattern, low, high)",
-            quantity=name,
-        )
-
-
 def _require_alike(textures: SequenceOf[Composable], what: str) -> None:
     if not 1 <= len(textures) <= MOST_PARTS:
         raise InputError(
             f"a {what} of {len(textures)} textures cannot be made: give 1 to {MOST_PARTS}",
             quantity="textures",
         )
-    for texture in textures:
-        require_texture("textures", texture)
     quantities = list(dict.fromkeys(texture.quantity for texture in textures))
     if len(quantities) > 1:
         raise InputError(
@@ -216,9 +203,6 @@ class _Changed(Composable):
 
     texture: Composable
 
-    def __post_init__(self) -> None:
-        require_texture("texture", self.texture)
-
     @property
     def quantity(self) -> Quantity:
         """Quantity of its texture."""
@@ -230,10 +214,6 @@ class _Shaped(_Changed):
     """A texture that a pattern shapes."""
 
     pattern: Pattern
-
-    def __post_init__(self) -> None:
-        _Changed.__post_init__(self)
-        require_pattern("pattern", self.pattern)
 
 
 @part
@@ -291,7 +271,6 @@ class Sequence(_Several):
 
     def __post_init__(self) -> None:
         _require_alike(self.textures, "sequence")
-        require_coordinate(self.along)
         if len(self.edges) != len(self.textures) - 1:
             raise InputError(
                 f"a sequence of {len(self.textures)} textures needs {len(self.textures) - 1} edges "

@@ -21,13 +21,13 @@ from squeezefilm.physics.render.opcodes import (
     Assembler,
     mixed,
 )
-from squeezefilm.physics.render.texture.coordinate import (
+from squeezefilm.physics.render.texture.pattern import (
     X_AXIS,
     Coordinate,
+    Pattern,
     Place,
-    require_coordinate,
+    part,
 )
-from squeezefilm.physics.render.texture.pattern import Pattern, part
 
 LARGEST_PIXEL: si.Metre = 0.1
 MOST_PIXELS = int(PIXELS.most)
@@ -165,9 +165,6 @@ class Noise(_Added):
     """
 
     along: Coordinate = X_AXIS
-
-    def __post_init__(self) -> None:
-        require_coordinate(self.along)
 
     def _lower_octave(self, assembler: Assembler, period: si.Metre, state: int) -> None:
         self.along._lower(assembler)

@@ -9,8 +9,7 @@ from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.opcodes import BETWEEN, Assembler
 from squeezefilm.physics.render.texture.composition import Composable, Quantity
-from squeezefilm.physics.render.texture.coordinate import METRE, X_AXIS
-from squeezefilm.physics.render.texture.pattern import Pattern, part, require_pattern
+from squeezefilm.physics.render.texture.pattern import METRE, X_AXIS, Pattern, part
 from squeezefilm.physics.render.texture.shapes import Constant
 
 LARGEST_AMPLITUDE: si.Metre = 1e-3
@@ -31,7 +30,6 @@ class _Level(Composable):
     _unit: ClassVar[si.Unit] = si.Unit("1")
 
     def __post_init__(self) -> None:
-        require_pattern("pattern", self.pattern)
         if self.low > self.high:
             raise InputError(
                 f"low = {si.format_quantity(self.low, self._unit)} lies above high = "

@@ -1,4 +1,5 @@
-"""Patterns: dimensionless shapes between 0 and 1 over place, speed and time, and their algebra.
+"""Patterns: dimensionless shapes between 0 and 1 over place, speed and time, their algebra, and the
+coordinates along which they run.
 
 A pattern alone says nothing about friction; `levels` gives it two ends with a quantity, and a
 texture takes it as a mask. Patterns compose: with a, b patterns,
@@ -13,6 +14,7 @@ Morgan). There is no +: it would leave 0…1. Add textures, which have a quantit
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field
 from typing import Annotated, Any, ClassVar, Literal, TypeVar, dataclass_transform
@@ -22,7 +24,9 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.arguments import reads_text
 from squeezefilm.core.errors import InputError
+from squeezefilm.core.hard_limits import TEXTURE_LENGTH
 from squeezefilm.physics.render.opcodes import (
+    ALONG,
     COMPLEMENT,
     END,
     ENTER_SCALE,
@@ -30,6 +34,7 @@ from squeezefilm.physics.render.opcodes import (
     LEAST,
     LEAVE_SCALE,
     MULTIPLY,
+    RADIUS,
     Assembler,
 )
 
@@ -90,6 +95,10 @@ class Pattern(TexturePart):
     """A dimensionless shape, 0 to 1; the base of every generator and composite."""
 
     __slots__ = ()
+    WANTED: ClassVar[str] = (
+        "pattern; give a dimensionless one like SquareWave, Band or Noise (a texture has a "
+        "quantity of its own and can be no mask)"
+    )
 
     def __invert__(self) -> Pattern:
         return self.pattern if isinstance(self, Complement) else Complement(self)
@@ -129,24 +138,11 @@ def _parts(kind: type[_Joined], *operands: Pattern) -> tuple[Pattern, ...]:
     return tuple(patterns)
 
 
-def require_pattern(name: str, value: object) -> None:
-    """Refuse what is no `Pattern`."""
-    if not isinstance(value, Pattern):
-        raise InputError(
-            f"{name} = {value!r} is no pattern; give a dimensionless one like SquareWave, Band or "
-            "Noise (a texture has a quantity of its own and can be no mask)",
-            quantity=name,
-        )
-
-
 @part
 class Complement(Pattern):
     """1 − `pattern`: its ends exchanged."""
 
     pattern: Pattern
-
-    def __post_init__(self) -> None:
-        require_pattern("pattern", self.pattern)
 
     def _lower(self, assembler: Assembler) -> None:
         self.pattern._lower(assembler)
@@ -166,8 +162,6 @@ class _Joined(Pattern):
                 f"{len(self.patterns)} patterns cannot be joined; give 1 to {MOST_PARTS}",
                 quantity="patterns",
             )
-        for pattern in self.patterns:
-            require_pattern("patterns", pattern)
 
     def _lower(self, assembler: Assembler) -> None:
         for index, pattern in enumerate(self.patterns):
@@ -217,11 +211,121 @@ class SpeedScaled(Pattern):
     slowest: Annotated[si.MetrePerSecond, si.AtLeast(1e-06), si.AtMost(10.0)] = 0.001
     fastest: Annotated[si.MetrePerSecond, si.AtLeast("slowest"), si.AtMost(10.0)] = 1.0
 
-    def __post_init__(self) -> None:
-        require_pattern("pattern", self.pattern)
-
     def _lower(self, assembler: Assembler) -> None:
         low, high = self.slowest / self.reference_speed, self.fastest / self.reference_speed
         assembler.emit(ENTER_SCALE, self.reference_speed, low, high)
         self.pattern._lower(assembler)
         assembler.emit(LEAVE_SCALE)
+
+
+METRE = si.Unit("m")
+FARTHEST: si.Metre = 10.0
+"""Farthest place (m): no display is ten metres long, and a place beyond is a slip of unit."""
+
+Place = Annotated[si.Metre, si.AtLeast(-FARTHEST), si.AtMost(FARTHEST)]
+"""A place on a display, in annotations: at most 10 m from the origin."""
+
+FINEST: si.Metre = 1e-9
+"""Finest width (m): no texture is finer than a nanometre, and less is a slip of unit."""
+
+Length = Annotated[si.Metre, TEXTURE_LENGTH]
+"""A period or a width on a display, in annotations: from 1 nm to 0.5 m."""
+
+
+class Coordinate:
+    """A length (m) read off the finger's place; the base of the family `AlongX`, `AlongY`,
+    `AlongDirection` and `FromPoint`."""
+
+    __slots__ = ()
+    WANTED: ClassVar[str] = (
+        "coordinate; give AlongX(), AlongY(), AlongDirection(angle) or FromPoint(x, y)"
+    )
+
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
+        """The coordinate (m) at places `x`, `y` (m), in their shape."""
+        raise NotImplementedError
+
+    def _lower(self, assembler: Assembler) -> None:
+        raise NotImplementedError
+
+
+class _Straight(Coordinate):
+    """The way along a line through the origin."""
+
+    __slots__ = ()
+
+    @property
+    def _direction(self) -> tuple[float, float]:
+        """Components along x and y."""
+        raise NotImplementedError
+
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
+        """The way along the line (m)."""
+        p, q = self._direction
+        return np.asarray(p * x + q * y)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(ALONG, *self._direction, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class AlongX(_Straight):
+    """The coordinate x."""
+
+    type: Literal["x"] = field(default="x", repr=False)
+    _direction = (1.0, 0.0)
+
+
+X_AXIS = AlongX()
+"""The coordinate that patterns run along unless they are told another."""
+
+
+@dataclass(frozen=True, slots=True)
+class AlongY(_Straight):
+    """The coordinate y."""
+
+    type: Literal["y"] = field(default="y", repr=False)
+    _direction = (0.0, 1.0)
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True)
+class AlongDirection(_Straight):
+    """x cos(angle) + y sin(angle): the way along a line at `angle` (rad) from x towards y.
+
+    Raises `InputError` for an angle that is not finite.
+    """
+
+    angle: si.Radian
+    type: Literal["direction"] = field(default="direction", repr=False)
+
+    @property
+    def _direction(self) -> tuple[float, float]:
+        return math.cos(self.angle), math.sin(self.angle)
+
+
+@si.checked_numbers
+@dataclass(frozen=True, slots=True)
+class FromPoint(Coordinate):
+    """The distance from the point (`x`, `y`), for rings and discs; never negative.
+
+    Raises `InputError` for a point that is not within ±10 m.
+    """
+
+    x: Place = 0.0
+    y: Place = 0.0
+    type: Literal["radius"] = field(default="radius", repr=False)
+
+    def at(self, x: si.MetreArray, y: si.MetreArray) -> si.MetreArray:
+        """The distance (m)."""
+        # Not hypot: a plain root is the same operation in every interpreter of a program.
+        return np.sqrt((x - self.x) ** 2 + (y - self.y) ** 2)
+
+    def _lower(self, assembler: Assembler) -> None:
+        assembler.emit(RADIUS, self.x, self.y)
+
+
+def require_fade(value: si.Metre, at_most: si.Metre) -> None:
+    """Refuse a fade (m) that is neither 0 nor between a nanometre and `at_most`."""
+    if value != 0.0:
+        si.require("fade", value, METRE, at_least=FINEST, at_most=at_most)

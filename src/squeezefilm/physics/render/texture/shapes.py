@@ -29,16 +29,16 @@ from squeezefilm.physics.render.opcodes import (
     WITHIN,
     Assembler,
 )
-from squeezefilm.physics.render.texture.coordinate import (
+from squeezefilm.physics.render.texture.pattern import (
     X_AXIS,
     Coordinate,
     FromPoint,
     Length,
+    Pattern,
     Place,
-    require_coordinate,
+    part,
     require_fade,
 )
-from squeezefilm.physics.render.texture.pattern import Pattern, part
 
 # Full width at half height of a Gaussian, in standard deviations.
 _FULL_WIDTH = 2.0 * math.sqrt(2.0 * math.log(2.0))
@@ -59,9 +59,6 @@ class _Along(Pattern):
 
     __slots__ = ()
     along: Coordinate
-
-    def __post_init__(self) -> None:
-        require_coordinate(self.along)
 
 
 @part
@@ -149,7 +146,6 @@ class Ramp(_Along):
     along: Coordinate = X_AXIS
 
     def __post_init__(self) -> None:
-        _Along.__post_init__(self)
         if abs(self.end - self.start) < 1e-9:
             raise InputError(
                 "start and end of a ramp are the same; they must be a nanometre apart at least; "
@@ -184,7 +180,6 @@ class Band(_Along):
 
     def __post_init__(self) -> None:
         require_fade(self.fade, self.end - self.start)
-        _Along.__post_init__(self)
 
     @classmethod
     @reads_text

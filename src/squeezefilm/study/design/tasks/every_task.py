@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE, YES_NO
 from squeezefilm.study.design.tasks.same_different import (
     ODD_ONE_OUT,
     ODD_ONE_OUT_OF_FIVE,
     ODD_ONE_OUT_OF_FOUR,
     SAME_DIFFERENT,
 )
-from squeezefilm.study.design.tasks.task import StudyTask
-from squeezefilm.study.design.tasks.two_surfaces import (
+from squeezefilm.study.design.tasks.surfaces import (
     ADJUSTMENT,
     DETECTION,
     DIRECTION,
+    MAGNITUDE_ESTIMATION,
+    MATCH_TO_SAMPLE,
     PAIRED_COMPARISON,
     RANKING,
     TWO_INTERVAL,
+    YES_NO,
 )
+from squeezefilm.study.design.tasks.task import StudyTask
 
 TASKS: dict[str, StudyTask] = {
     task.name: task

@@ -14,9 +14,9 @@ from squeezefilm.core.results import stamp
 from squeezefilm.design.search.candidate import Design, Evaluated, Level, design_of
 from squeezefilm.design.search.criteria import breaches
 from squeezefilm.design.search.found import DesignSearch, FrontMember
+from squeezefilm.design.search.limits import Made
 from squeezefilm.design.search.requirements import Requirements, load_requirements
 from squeezefilm.design.search.shapes import EdgeStrips
-from squeezefilm.design.search.tolerance import Made
 from squeezefilm.design.search.worth_solving import learned
 from squeezefilm.design.sweep.tradeoffs import front_of
 

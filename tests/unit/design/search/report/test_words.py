@@ -10,7 +10,7 @@ from tests.unit.design.search.report.made_search import made_search, requirement
 from squeezefilm.design.search.candidate import Evaluated, design_of
 from squeezefilm.design.search.criteria import CRITERIA, OF_SOLVED, Breach
 from squeezefilm.design.search.found import DesignSearch
-from squeezefilm.design.search.reasons import conflict_of, nearest_of
+from squeezefilm.design.search.limits import conflict_of, nearest_of
 from squeezefilm.design.search.report import words
 from squeezefilm.design.search.requirements import Requirements
 

@@ -11,7 +11,7 @@ import pytest
 from squeezefilm.core.drive_limits import HIGHEST_VOLTAGE
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.quantities import Unit
-from squeezefilm.instruments.device.wire.arguments import (
+from squeezefilm.instruments.device.wire.frames import (
     amplitudes,
     binary32_below,
     number,

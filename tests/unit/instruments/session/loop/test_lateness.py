@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from squeezefilm.instruments.session.loop.lateness import (
+from squeezefilm.instruments.session.loop.shared import (
     CLASSES,
     Lateness,
     class_ends,

@@ -12,9 +12,8 @@ import pytest
 from squeezefilm.instruments.session.loop import plan as at
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop import shared, worker
-from squeezefilm.instruments.session.loop.lateness import lateness_class
 from squeezefilm.instruments.session.loop.plan import LoopPlan, tick_arrays
-from squeezefilm.instruments.session.loop.shared import ring_take
+from squeezefilm.instruments.session.loop.shared import lateness_class, ring_take
 from squeezefilm.instruments.session.loop.worker import (
     compiled_loop,
     due_ns,

@@ -14,7 +14,7 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.session.loop import rows as column
 from squeezefilm.instruments.session.loop.plan import LoopPlan
-from squeezefilm.physics.render.motion.sensor import SensorModel, sensor_stream
+from squeezefilm.physics.render.motion.estimator import SensorModel, sensor_stream
 
 PlanOf = Callable[..., LoopPlan]
 RATE = 5e3

@@ -22,7 +22,7 @@ from squeezefilm.physics.render.program import layout
 from squeezefilm.physics.render.program.inverse import FrictionTable
 from squeezefilm.physics.render.program.lowering import lower
 from squeezefilm.physics.render.resonator import kernel as compensation_kernel
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
 
 PlanOf = Callable[..., LoopPlan]

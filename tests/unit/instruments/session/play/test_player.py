@@ -30,7 +30,7 @@ from squeezefilm.instruments.session.play.plan import (
     TextureTile,
 )
 from squeezefilm.instruments.session.play.player import FADE, LOOP_LIMIT, Player
-from squeezefilm.physics.render.motion.sensor import LVDT_10_KHZ
+from squeezefilm.physics.render.motion.estimator import LVDT_10_KHZ
 
 PlanOf = Callable[..., LoopPlan]
 LIMITS = Limits(120.0, 1e6, 120.0, 0.0, 20e3, 60e3, insulation="glass")

@@ -14,8 +14,8 @@ import pytest
 
 from squeezefilm.core.errors import DeviceError, InputError, LoopError, RecordError
 from squeezefilm.instruments.device.wire.frames import Fault, State
-from squeezefilm.instruments.session.loop.lateness import CLASSES, Lateness
 from squeezefilm.instruments.session.loop.plan import LoopPlan
+from squeezefilm.instruments.session.loop.shared import CLASSES, Lateness
 from squeezefilm.instruments.session.play import real_time
 from squeezefilm.instruments.session.play.plan import Ending
 from squeezefilm.instruments.session.play.player import FADE

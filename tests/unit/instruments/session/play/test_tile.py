@@ -15,10 +15,9 @@ from squeezefilm.physics.contact.finger.fingertip import EXPLORING_SPEED
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.texture.composition import Composable
-from squeezefilm.physics.render.texture.coordinate import AlongDirection
 from squeezefilm.physics.render.texture.image import NoiseField
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
-from squeezefilm.physics.render.texture.pattern import Pattern
+from squeezefilm.physics.render.texture.pattern import AlongDirection, Pattern
 from squeezefilm.physics.render.texture.shapes import (
     Bump,
     Decay,

@@ -12,10 +12,14 @@ from squeezefilm.core.quantities import FloatArray
 from squeezefilm.core.results import to_json
 from squeezefilm.physics.render.fidelity.rendered_stroke import rendered_stroke
 from squeezefilm.physics.render.fidelity.report import fidelity_report
-from squeezefilm.physics.render.motion.estimator import MotionEstimator, MotionModel
-from squeezefilm.physics.render.motion.sensor import TOUCH_PANEL_120_HZ, TOUCH_PANEL_240_HZ
+from squeezefilm.physics.render.motion.estimator import (
+    TOUCH_PANEL_120_HZ,
+    TOUCH_PANEL_240_HZ,
+    MotionEstimator,
+    MotionModel,
+)
 from squeezefilm.physics.render.motion.stroke import Stroke
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope
+from squeezefilm.physics.render.resonator.envelope import DrivenEnvelope
 from squeezefilm.physics.render.texture.levels import Amplitude
 from squeezefilm.physics.render.texture.shapes import SquareWave
 

@@ -15,21 +15,22 @@ from squeezefilm.core.quantities import FloatArray
 from squeezefilm.core.results import to_json
 from squeezefilm.physics.render.motion import kernel
 from squeezefilm.physics.render.motion.estimator import (
+    LVDT_10_KHZ,
+    TOUCH_PANEL_60_HZ,
     MotionCounts,
     MotionEstimator,
     MotionModel,
-    estimate_motion,
-)
-from squeezefilm.physics.render.motion.sensor import (
-    LVDT_10_KHZ,
-    TOUCH_PANEL_60_HZ,
     SensorStream,
+    estimate_motion,
     sensor_stream,
 )
 from squeezefilm.physics.render.motion.stroke import MinimumJerkStroke
 from squeezefilm.physics.render.resonator import kernel as compensation_kernel
-from squeezefilm.physics.render.resonator.compensation import DrivenEnvelope, preview_work
-from squeezefilm.physics.render.resonator.envelope import carrier_block
+from squeezefilm.physics.render.resonator.envelope import (
+    DrivenEnvelope,
+    carrier_block,
+    preview_work,
+)
 
 ESTIMATOR = MotionEstimator(MotionModel(), 2e-5)
 

@@ -49,9 +49,9 @@ def test_only_a_motion_on_the_axis_keeps_to_it() -> None:
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        ({"x": np.zeros(2)}, r"shapes \[\(2,\), \(3,\)\] are no motion"),
-        (dict.fromkeys("xy", np.ones((3, 1))) | {"time": np.ones((3, 1))}, "are no motion"),
-        (dict.fromkeys("xy", np.ones(1)) | {"time": np.ones(1)}, "are no motion"),
+        ({"x": np.zeros(2)}, "arrays of equal length"),
+        (dict.fromkeys("xy", np.ones((3, 1))) | {"time": np.ones((3, 1))}, "one row of at least 2"),
+        (dict.fromkeys("xy", np.ones(1)) | {"time": np.ones(1)}, "one row of at least 2"),
         ({"time": np.array([0.0, 1.0, 1.0])}, "must rise"),
         ({"x": np.ones(3), "y": np.ones(3)}, "does not move at all"),
         ({"x": np.array([0.0, 11.0, 0.0])}, "x"),

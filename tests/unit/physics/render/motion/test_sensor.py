@@ -11,7 +11,7 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import to_json
-from squeezefilm.physics.render.motion.sensor import (
+from squeezefilm.physics.render.motion.estimator import (
     LVDT_10_KHZ,
     SENSORS,
     TOUCH_PANEL_60_HZ,

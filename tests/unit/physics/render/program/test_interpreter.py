@@ -15,10 +15,9 @@ from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, lower
 from squeezefilm.physics.render.program.renderer import Renderer, evaluate
 from squeezefilm.physics.render.texture.composition import Composable
-from squeezefilm.physics.render.texture.coordinate import AlongDirection, AlongY, FromPoint
 from squeezefilm.physics.render.texture.image import Image, Noise, NoiseField
 from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
-from squeezefilm.physics.render.texture.pattern import Pattern
+from squeezefilm.physics.render.texture.pattern import AlongDirection, AlongY, FromPoint, Pattern
 from squeezefilm.physics.render.texture.shapes import (
     Attack,
     Band,

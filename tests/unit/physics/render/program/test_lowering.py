@@ -13,9 +13,8 @@ from squeezefilm.core.errors import InputError
 from squeezefilm.core.quantities import FloatArray
 from squeezefilm.physics.render import opcodes as op
 from squeezefilm.physics.render.program import layout as at
-from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.inverse import FrictionInverse, WaveCompensation
 from squeezefilm.physics.render.program.lowering import Program, checked, lower
-from squeezefilm.physics.render.program.wave import WaveCompensation
 from squeezefilm.physics.render.texture.levels import FrictionReduction, RelativeFriction
 from squeezefilm.physics.render.texture.shapes import SineWave
 

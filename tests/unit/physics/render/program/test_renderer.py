@@ -16,9 +16,9 @@ from squeezefilm.physics.render.program import interpreter, layout
 from squeezefilm.physics.render.program.inverse import FrictionInverse
 from squeezefilm.physics.render.program.lowering import Program, checked, lower
 from squeezefilm.physics.render.program.renderer import Renderer, evaluate, render
-from squeezefilm.physics.render.texture.coordinate import FromPoint
 from squeezefilm.physics.render.texture.image import Image, Noise
 from squeezefilm.physics.render.texture.levels import Amplitude, FrictionReduction, RelativeFriction
+from squeezefilm.physics.render.texture.pattern import FromPoint
 from squeezefilm.physics.render.texture.shapes import Constant, Ramp, SquareWave
 
 INVERSE = FrictionInverse.from_function(lambda a: 1 - 0.5 * a / 4e-6, 4e-6)

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.render.program.inverse import FrictionInverse
+from squeezefilm.physics.render.program.inverse import FrictionInverse, WaveCompensation
 from squeezefilm.physics.render.program.lowering import lower
 from squeezefilm.physics.render.program.renderer import render
-from squeezefilm.physics.render.program.wave import WaveCompensation
-from squeezefilm.physics.render.texture.coordinate import AlongDirection, AlongY, FromPoint
 from squeezefilm.physics.render.texture.levels import Amplitude, RelativeFriction
+from squeezefilm.physics.render.texture.pattern import AlongDirection, AlongY, FromPoint
 from squeezefilm.physics.render.texture.shapes import SquareWave
 
 HALF = 8e-3

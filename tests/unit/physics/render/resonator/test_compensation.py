@@ -10,14 +10,15 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.results import to_json
-from squeezefilm.physics.render.resonator import compensation, kernel
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator import envelope, kernel
+from squeezefilm.physics.render.resonator.envelope import (
     DrivenEnvelope,
+    carrier_block,
     compensated_drive,
     preview_samples,
     preview_work,
+    samples_per_command,
 )
-from squeezefilm.physics.render.resonator.envelope import carrier_block, samples_per_command
 
 ENVELOPE = DrivenEnvelope(1e-3, 1e-3, 1e-6)
 
@@ -55,7 +56,7 @@ def test_without_compensation_the_command_is_the_wish_within_the_limit() -> None
 
 def test_preview_without_a_future_is_the_inverse(monkeypatch: pytest.MonkeyPatch) -> None:
     assert preview_samples(ENVELOPE, 2e-4) == 15
-    monkeypatch.setattr(compensation, "preview_samples", lambda *_: 1)
+    monkeypatch.setattr(envelope, "preview_samples", lambda *_: 1)
     random = np.random.default_rng(3)
     wanted = random.uniform(0, 1.5e-6, 200)
     one = compensated_drive(wanted, 2e-4, ENVELOPE, "inverse")

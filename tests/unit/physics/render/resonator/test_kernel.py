@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from squeezefilm.physics.render.resonator.compensation import (
+from squeezefilm.physics.render.resonator.envelope import (
     DrivenEnvelope,
     compensated_drive,
     preview_samples,

@@ -7,8 +7,8 @@ import pytest
 
 from squeezefilm.core.errors import InputError
 from squeezefilm.physics.render.texture.composition import Texture
-from squeezefilm.physics.render.texture.coordinate import AlongY
 from squeezefilm.physics.render.texture.levels import Amplitude
+from squeezefilm.physics.render.texture.pattern import AlongY
 from squeezefilm.physics.render.texture.shapes import SineWave, SquareWave
 
 LOW, HIGH = 0.5e-6, 2e-6

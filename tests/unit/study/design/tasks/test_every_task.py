@@ -8,10 +8,13 @@ import numpy as np
 import pytest
 
 from squeezefilm.study.design.tasks.every_task import TASKS
-from squeezefilm.study.design.tasks.one_surface import MAGNITUDE_ESTIMATION, MATCH_TO_SAMPLE
 from squeezefilm.study.design.tasks.same_different import SAME_DIFFERENT
+from squeezefilm.study.design.tasks.surfaces import (
+    MAGNITUDE_ESTIMATION,
+    MATCH_TO_SAMPLE,
+    TWO_INTERVAL,
+)
 from squeezefilm.study.design.tasks.task import Percepts, StudyTask, Task
-from squeezefilm.study.design.tasks.two_surfaces import TWO_INTERVAL
 
 
 def test_every_name_of_a_task_has_its_record() -> None:

@@ -14,8 +14,8 @@ import pytest
 from squeezefilm.core.errors import ConfigError, InputError
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.study_design import StudyDesign, load_design
+from squeezefilm.study.design.tasks.surfaces import PAIRED_COMPARISON, RANKING
 from squeezefilm.study.design.tasks.task import Percepts
-from squeezefilm.study.design.tasks.two_surfaces import PAIRED_COMPARISON, RANKING
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.record.foreign import read_answers
 from squeezefilm.study.report.page import write_study

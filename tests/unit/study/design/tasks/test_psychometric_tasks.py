@@ -17,9 +17,8 @@ from squeezefilm.study.conduct.run import Acknowledgement, Presentation
 from squeezefilm.study.conduct.terminal_run import Desk, open_study, run_session
 from squeezefilm.study.design.plan import plan_study
 from squeezefilm.study.design.study_design import StudyDesign, load_design
-from squeezefilm.study.design.tasks.one_surface import YES_NO
+from squeezefilm.study.design.tasks.surfaces import DETECTION, DIRECTION, QUARTILE, YES_NO
 from squeezefilm.study.design.tasks.task import Percepts
-from squeezefilm.study.design.tasks.two_surfaces import DETECTION, DIRECTION, QUARTILE
 from squeezefilm.study.record.answers import Answers
 from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.report.page import write_study

@@ -18,8 +18,8 @@ from squeezefilm.study.conduct.run import Acknowledgement, Presentation
 from squeezefilm.study.conduct.terminal_run import Desk, run_session
 from squeezefilm.study.design.rules import AdaptiveCondition, ExclusionRule
 from squeezefilm.study.design.study_design import StudyDesign, load_design
+from squeezefilm.study.design.tasks.surfaces import ADJUSTMENT
 from squeezefilm.study.design.tasks.task import Percepts
-from squeezefilm.study.design.tasks.two_surfaces import ADJUSTMENT
 from squeezefilm.study.psychometric.estimate import Estimate
 from squeezefilm.study.record.exports import export_study
 from squeezefilm.study.record.store import StudyStore
