@@ -253,11 +253,13 @@ _FEWEST_POINTS = 16
 
 @dataclass(frozen=True)
 class SweepPeaks:
-    """Frequencies (Hz) that can be read off a sweep without any model: those of the largest
-    conductance and of the largest resistance, the real parts of Y and of 1/Y."""
+    """Peaks that can be read off a sweep without any model: the largest conductance (S) and the
+    largest resistance (Ω), the real parts of Y and of 1/Y, and the frequencies (Hz) of both."""
 
     conductance_frequency: si.Hertz
+    conductance: si.Siemens
     resistance_frequency: si.Hertz
+    resistance: si.Ohm
 
 
 def require_passive(sweep: ImpedanceSweep) -> None:
@@ -311,21 +313,23 @@ def require_passive(sweep: ImpedanceSweep) -> None:
 
 
 def sweep_peaks(sweep: ImpedanceSweep) -> SweepPeaks:
-    """Where conductance and resistance are largest, by a parabola through the three highest points
-    of the inverse of each, which is one near a resonance. Raises `InputError` as `fit_impedance`
-    does."""
+    """The largest conductance and resistance, by a parabola through the three highest points of
+    the inverse of each, which is one near a resonance. Noise makes them too large by some of it.
+    Raises `InputError` as `fit_impedance` does.
+    """
     require_passive(sweep)
     at_series = _peak(sweep.frequency, sweep.admittance.real)
-    return SweepPeaks(at_series, _peak(sweep.frequency, (1 / sweep.admittance).real))
+    at_parallel = _peak(sweep.frequency, (1 / sweep.admittance).real)
+    return SweepPeaks(*at_series, *at_parallel)
 
 
-def _peak(frequency: si.HertzArray, values: si.FloatArray) -> float:
+def _peak(frequency: si.HertzArray, values: si.FloatArray) -> tuple[float, float]:
     top = int(np.argmax(values))
     near = slice(max(top - 1, 0), top + 2)
     if values[near].size < 3 or np.any(values[near] <= 0):
-        return float(frequency[top])
+        return float(frequency[top]), float(values[top])
     x = frequency[near] - frequency[top]
-    a, b, _ = np.polyfit(x, 1 / values[near], 2)
+    a, b, c = np.polyfit(x, 1 / values[near], 2)
     if a <= 0 or not x[0] <= -b / (2 * a) <= x[-1]:
-        return float(frequency[top])
-    return float(frequency[top] - b / (2 * a))
+        return float(frequency[top]), float(values[top])
+    return float(frequency[top] - b / (2 * a)), float(1 / (c - b**2 / (4 * a)))

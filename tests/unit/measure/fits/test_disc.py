@@ -202,9 +202,9 @@ def test_a_body_without_losses_tells_its_coupling_and_permittivity() -> None:
         return np.sum(parts, axis=0) + 1 - sum(shares)
 
     opened = resonances[0] * math.sqrt(1 + square * shares[0] / (1 - square * shares[0]))
-    read = coupling_read(SweepPeaks(resonances[0], opened), shares[0])
+    read = coupling_read(SweepPeaks(resonances[0], 1.0, opened, 1.0), shares[0])
     assert read == pytest.approx(square)
-    assert coupling_read(SweepPeaks(65e3, 200e3), 0.5) == 0.9
+    assert coupling_read(SweepPeaks(65e3, 1.0, 200e3, 1.0), 0.5) == 0.9
     f = np.linspace(30e3, 60e3, 40)
     y = 2j * np.pi * f * 1700 * VACUUM_PERMITTIVITY * geometry * (1 + square * (motion(f) - 1))
     assert permittivity_read(

@@ -218,6 +218,7 @@ def test_peaks_are_read_without_a_model() -> None:
     fit = fit_impedance(PLAIN).strongest
     assert peaks.conductance_frequency == pytest.approx(fit.series_resonance.value, rel=2e-4)
     assert peaks.resistance_frequency == pytest.approx(fit.parallel_resonance.value, rel=2e-4)
+    assert peaks.conductance == pytest.approx(1 / fit.motional_resistance.value, rel=0.02)
 
 
 def test_the_parallel_resonance_lies_between_two_branches() -> None:
