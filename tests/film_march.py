@@ -16,7 +16,8 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.film.gas import ISOTHERMAL, CompiledGas, FilmGas, mobility
+from squeezefilm.physics.film.gas import ISOTHERMAL, CompiledGas, FilmGas
+from squeezefilm.physics.film.mobility import mobility
 from squeezefilm.physics.film.planar.grid import edge_graded, edge_layer, refined_line
 
 Gap = Callable[[si.FloatArray, si.FloatArray], si.FloatArray]

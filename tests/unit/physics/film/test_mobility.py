@@ -6,7 +6,8 @@ import itertools
 
 import pytest
 
-from squeezefilm.physics.film.gas import FIRST, NO_SLIP, SECOND, SLIP_LAWS, mobility
+from squeezefilm.physics.film.gas import FIRST, NO_SLIP, SECOND, SLIP_LAWS
+from squeezefilm.physics.film.mobility import mobility
 
 H, P, KN = 0.7, 1.6, 0.08
 

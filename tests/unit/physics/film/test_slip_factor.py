@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from squeezefilm.core.errors import InputError
-from squeezefilm.physics.film.gas import SLIP_LAWS, slip_factor, slip_law
+from squeezefilm.physics.film.gas import SLIP_LAWS, slip_law
+from squeezefilm.physics.film.mobility import slip_factor
 
 
 def flow_factor(knudsen, slip="first"):

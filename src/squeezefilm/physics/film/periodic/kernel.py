@@ -18,7 +18,8 @@ from typing import NamedTuple
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.film.gas import NO_SLIP, CompiledGas, slip_factor
+from squeezefilm.physics.film.gas import NO_SLIP, CompiledGas
+from squeezefilm.physics.film.mobility import slip_factor
 from squeezefilm.physics.film.periodic.lanes import (
     LANES,
     add,

@@ -65,7 +65,7 @@ def small_vibration(films: Films) -> SmallVibration:
 def flow_factor(knudsen_number: si.FloatArray, law: int) -> tuple[si.FloatArray, si.FloatArray]:
     """φ(Kn) of a law of slip by its number, and Kn dφ/dKn."""
     kn = np.asarray(knudsen_number, dtype=float)
-    from squeezefilm.physics.film.gas import slip_factor
+    from squeezefilm.physics.film.mobility import slip_factor
 
     pairs = np.array([slip_factor(law, float(k)) for k in kn.ravel()]).reshape(*kn.shape, 2)
     return pairs[..., 0], kn * pairs[..., 1]

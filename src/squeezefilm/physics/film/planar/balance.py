@@ -20,7 +20,8 @@ from scipy.linalg import lapack
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.film.gas import CompiledGas, mobility
+from squeezefilm.physics.film.gas import CompiledGas
+from squeezefilm.physics.film.mobility import mobility
 from squeezefilm.physics.film.periodic.resolution import derivative
 from squeezefilm.physics.film.planar.grid import Faces, PlanarGap, PlanarGrid, gap_values
 

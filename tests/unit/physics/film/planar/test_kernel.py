@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from squeezefilm.physics.film.gas import CompiledGas, mobility
+from squeezefilm.physics.film.gas import CompiledGas
+from squeezefilm.physics.film.mobility import mobility
 from squeezefilm.physics.film.planar.balance import (
     Balances,
     Storage,
