@@ -1,5 +1,4 @@
-"""The gas of a film: laws of slip, what no solver has, what compiled solvers are given of it, and
-its mobility in the gap, compiled.
+"""The gas of a film: laws of slip, what no solver has, and what compiled solvers are given of it.
 
 The laws of slip are known by name, and to compiled code by numbers.
 """

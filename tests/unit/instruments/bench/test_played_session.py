@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
-from squeezefilm.core.quantities import FloatArray
 from squeezefilm.instruments.bench import played_session as played
 from squeezefilm.instruments.bench.played_session import PlayedWay, judge_session, recorded_way
 from squeezefilm.instruments.session.loop import rows as column
@@ -54,7 +54,7 @@ def setup() -> Any:
     )  # fmt: skip
 
 
-def rows_of(count: int, **columns: Any) -> FloatArray:
+def rows_of(count: int, **columns: Any) -> si.FloatArray:
     """Rows 1 ms apart of a finger at 50 mm/s from 0.5 mm on."""
     rows = np.full((count, len(column.COLUMNS)), math.nan)
     time = np.arange(count) * 1e-3
@@ -65,7 +65,7 @@ def rows_of(count: int, **columns: Any) -> FloatArray:
     return rows
 
 
-def trace_of(rows: FloatArray, *events: TraceEvent) -> Trace:
+def trace_of(rows: si.FloatArray, *events: TraceEvent) -> Trace:
     return Trace(column.COLUMNS, rows, events, {"display": "one"}, Damage(0, 0, True, ()))
 
 
@@ -128,7 +128,7 @@ def test_a_finger_that_was_never_seen_met_nothing(setup: Any) -> None:
 TRUTH = ("time_s", "x_m", "speed_m_per_s", "amplitude_m", "relative_friction", "normal_force_N")
 
 
-def truth_file(folder: Path, rows: FloatArray) -> Path:
+def truth_file(folder: Path, rows: si.FloatArray) -> Path:
     file = folder / "truth.csv"
     lines = [",".join(repr(float(one)) for one in row) for row in rows]
     file.write_text("\n".join([",".join(TRUTH), *lines]) + "\n")
@@ -210,7 +210,7 @@ def test_flags_lags_and_events_are_summed_up(setup: Any) -> None:
         judge_session(setup, other)
 
 
-def way_of(time: FloatArray, x: FloatArray) -> PlayedWay:
+def way_of(time: si.FloatArray, x: si.FloatArray) -> PlayedWay:
     ones = np.ones(time.size)
     wanted = np.asarray(SQUARE(x, 0.0, 0.05, 0.0))
     return PlayedWay(time, x, wanted, ones * 0.3e-6, friction_of(wanted), ones * 0.85, "somebody")
@@ -357,15 +357,34 @@ def test_the_json_of_what_was_judged_leaves_out_what_is_no_number() -> None:
     assert played._judged_json(played.Judged(none, None, ""))["friction_rms_error"] is None
 
 
+@dataclasses.dataclass
+class Predicted:
+    """A prediction, as far as a summary asks: its keys take their units from annotations."""
+
+    surface: Any
+    voltage: si.Volt
+    warnings: tuple[str, ...]
+
+
+@dataclasses.dataclass
+class Planned:
+    """A plan, as far as a summary asks."""
+
+    mode: str
+    frequency: si.Hertz
+    loop: Any
+    limits: Any
+    tile: Any
+    device: Any
+
+
 def test_a_summary_says_what_was_to_be_played_and_what_became_of_it(
     monkeypatch: pytest.MonkeyPatch, setup: Any
 ) -> None:
     trace = trace_of(rows_of(20), end(why="over", faded_at_s=math.nan))
     session = judge_session(setup, trace)
-    prediction = SimpleNamespace(
-        surface=SimpleNamespace(name="bare"), voltage=15.0, warnings=("careful",)
-    )
-    plan = SimpleNamespace(
+    prediction = Predicted(SimpleNamespace(name="bare"), 15.0, ("careful",))
+    plan = Planned(
         mode="stream",
         frequency=40e3,
         loop=setup.plan.loop,

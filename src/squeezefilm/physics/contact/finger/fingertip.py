@@ -87,10 +87,8 @@ class FingerpadDynamics:
     mass: Annotated[si.Kilogram, PAD_MASS] = 1.67e-4
 
     @classmethod
-    def pressed(
-        cls, normal_force: Annotated[si.Newton, si.Above(0.0), si.AtMost(2.0)]
-    ) -> FingerpadDynamics:
-        """The published pad at a normal force (N). Raises `InputError` for one out of range."""
+    def pressed(cls, normal_force: si.Newton) -> FingerpadDynamics:
+        """The published pad at a normal force (N): above 0, at most 2, or an `InputError`."""
         si.require("normal_force", normal_force, si.Unit("N"), above=0.0, at_most=2.0)
         rise = normal_force**0.35
         return cls(1480.0 * rise, 1.78 * rise, 0.20e-3 * normal_force**0.26)

@@ -35,7 +35,7 @@ def test_a_plan_refuses_what_it_cannot_do(
 
 
 def test_a_friction_curve_must_be_one() -> None:
-    with pytest.raises(InputError, match="no table"):
+    with pytest.raises(InputError, match="must rise"):
         FrictionTable(np.array([0.0, 0.0]), np.zeros(1), np.array([[1.0, 0.5]]), 0.0)
     with pytest.raises(InputError, match="relative_friction"):
         FrictionTable(np.array([0.0, 1.0]), np.zeros(1), np.array([[1.2, 0.5]]), 0.0)
