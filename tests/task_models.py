@@ -74,7 +74,8 @@ class Placement:
         share = weights.sum(axis=1, keepdims=True)
         cells = chances.reshape(len(chances), *weights.shape, -1)
         joint = np.einsum("gn,agns->ags", weights, cells)
-        known = (share * entr(joint / share)).sum(axis=(0, 1))
+        # A group that underflowed to 0 tells nothing.
+        known = (share * entr(joint / np.where(share > 0, share, 1.0))).sum(axis=(0, 1))
         return np.asarray(entr(joint.sum(axis=1)).sum(axis=0) - known)
 
     def next_stimulus(self) -> int:

@@ -222,7 +222,7 @@ def test_the_gaussian_overlap_is_its_integral() -> None:
 
 @pytest.mark.parametrize("heights", ["exponential", "gaussian"])
 def test_period_means_agree_with_quadrature_and_with_the_compiled_code(heights: str) -> None:
-    from squeezefilm.physics.contact.asperities import asperity_mean
+    from squeezefilm.physics.contact.asperity_kernel import asperity_mean
 
     law = AsperityLaw(heights=heights)  # type: ignore[arg-type]
     assert isinstance(law.compiled(), CompiledAsperities)
@@ -267,7 +267,7 @@ def test_the_mean_of_the_exponential_law_holds_for_swings_of_many_decay_lengths(
 @pytest.mark.parametrize("stiffness", [0.0, 4e11])
 def test_no_energy_is_created(table: FilmTable, damping: float, stiffness: float) -> None:
     # What the plate puts in per period, Im(p̂ ā), is what film and skin take: asperities keep none.
-    from squeezefilm.physics.contact.asperities import asperity_mean
+    from squeezefilm.physics.contact.asperity_kernel import asperity_mean
     from squeezefilm.physics.contact.sharing.kernel import film_value
 
     skin = Skin(stiffness_per_area=stiffness, damping_per_area=damping)

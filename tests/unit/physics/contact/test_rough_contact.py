@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from scipy.special import erf
 
 from squeezefilm.core.errors import InputError, OutOfRangeError
-from squeezefilm.physics.contact.asperities import asperity_mean
+from squeezefilm.physics.contact.asperity_kernel import asperity_mean
 from squeezefilm.physics.contact.rough_contact import LEAST_GAP, RoughContact, Spectrum
 
 SHAPES = [(0.8, 100.0), (0.5, 1000.0), (1.0, 20.0), (0.95, 3.0)]

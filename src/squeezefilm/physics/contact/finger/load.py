@@ -22,7 +22,8 @@ import numpy as np
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
 from squeezefilm.core.materials import Gas
-from squeezefilm.physics.contact.asperities import CompiledAsperities, asperity_mean
+from squeezefilm.physics.contact.asperities import CompiledAsperities
+from squeezefilm.physics.contact.asperity_kernel import asperity_mean
 from squeezefilm.physics.contact.finger.fingertip import Skin
 from squeezefilm.physics.film.gap import squeeze_number
 

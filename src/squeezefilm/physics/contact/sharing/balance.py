@@ -107,7 +107,7 @@ def _swings(
     """
     from scipy.optimize import brentq
 
-    from squeezefilm.physics.contact.asperities import asperity_mean
+    from squeezefilm.physics.contact.asperity_kernel import asperity_mean
     from squeezefilm.physics.contact.sharing import kernel
 
     if amplitude == 0:

@@ -13,7 +13,8 @@ import numpy as np
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.compiled import compiled
-from squeezefilm.physics.contact.asperities import CompiledAsperities, asperity_mean
+from squeezefilm.physics.contact.asperities import CompiledAsperities
+from squeezefilm.physics.contact.asperity_kernel import asperity_mean
 from squeezefilm.physics.contact.finger.load import CompiledFinger, felt
 
 BALANCED, NEEDS_PANEL, PRESSED_THROUGH, OUT_OF_TABLE, UNSETTLED = range(5)
