@@ -17,7 +17,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import stats
+from scipy import special
 
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
@@ -196,7 +196,7 @@ def expansion(participants: int, level: float) -> float:
     """Number of standard deviations of a bootstrap of n clusters an interval must reach:
     √(n/(n−1)) t_{n−1}, instead of the normal quantile (Hesterberg 2015,
     10.1080/00031305.2015.1089789, "expanded percentile interval")."""
-    t = float(stats.t.isf((1 - level) / 2, participants - 1))
+    t = -float(special.stdtrit(participants - 1, (1 - level) / 2))
     return t * math.sqrt(participants / (participants - 1))
 
 
@@ -222,7 +222,7 @@ def recentred_interval(
     if values.size == 0:
         raise InputError("no resample gave a finite value; there is no interval")
     tail = (1 - level) / 2
-    wide = expansion(participants, level) / float(stats.norm.isf(tail))
+    wide = expansion(participants, level) / -float(special.ndtri(tail))
     ends = estimate + wide * (np.quantile(values, [tail, 1 - tail]) - values.mean())
     # An unbiased estimate may lie beyond what can be, and all resamples to one side of their mean.
     low, high = np.clip(ends, least, greatest)
@@ -249,6 +249,8 @@ def proportion_interval(
     Raises:
         InputError: another method, counts that do not fit, or a level not between 0 and 1.
     """
+    from scipy import stats
+
     share = successes / trials
     if method != "Jeffreys":
         exact = method == "Clopper–Pearson"
@@ -282,7 +284,7 @@ def participant_interval(
     whole = _square(counts)
     pooled = resampled_counts(whole, resamples, seed)
     right = np.trace(pooled, axis1=1, axis2=2) / pooled.sum(axis=(1, 2))
-    tail = float(stats.norm.sf(expansion(whole.shape[0], level)))
+    tail = float(special.ndtr(-expansion(whole.shape[0], level)))
     correct = float(np.trace(whole.sum(axis=0)) / whole.sum())
     low, high = np.quantile(right, [tail, 1 - tail])
     return holding(correct, low, high, level, "participant bootstrap")
@@ -305,6 +307,8 @@ def permutation_test(
     Raises:
         InputError: matrices that are not square, or fewer than one permutation.
     """
+    from scipy import stats
+
     whole = _square(counts)
     si.require("permutations", permutations, at_least=1)
     observed = int(np.trace(whole, axis1=1, axis2=2).sum())
@@ -332,7 +336,7 @@ def _normal_permutation(answers: si.IntArray, presented: si.IntArray, observed: 
     if spread == 0.0:
         return 1.0
     z = (observed - 0.5 - float(mean.sum())) / spread
-    return float(stats.norm.sf(z))
+    return float(special.ndtr(-z))
 
 
 def _square(counts: ArrayLike) -> si.IntArray:

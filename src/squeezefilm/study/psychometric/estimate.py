@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from scipy import stats
-
 from squeezefilm.core import quantities as si
 
 
@@ -43,6 +41,8 @@ def student(
 ) -> Estimate:
     """An estimate of a standard error with Student's interval of so many degrees of freedom; with
     infinitely many a normal one."""
+    from scipy import stats
+
     reach = float(stats.t.isf((1 - level) / 2, free)) * error
     return Estimate(value, value - reach, value + reach, level, method)
 

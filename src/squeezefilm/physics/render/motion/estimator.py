@@ -30,7 +30,6 @@ from numpy.typing import NDArray
 from squeezefilm.core import quantities as si
 from squeezefilm.core.errors import InputError
 from squeezefilm.core.hard_limits import MOTION_SAMPLES, require_motion
-from squeezefilm.physics.render.motion import kernel
 
 
 # Finger sensors as numbers. A touch panel samples the finger seldom, late and irregularly; a
@@ -291,6 +290,8 @@ class MotionEstimator:
 
     def new_state(self) -> si.FloatArray:
         """The state before the first sample, shape (19,): see `motion_kernel`."""
+        from squeezefilm.physics.render.motion import kernel
+
         return np.zeros(kernel.STATE_SIZE)
 
 
@@ -309,6 +310,8 @@ class MotionCounts:
     @classmethod
     def of(cls, state: si.FloatArray) -> MotionCounts:
         """The counts in an estimator's state."""
+        from squeezefilm.physics.render.motion import kernel
+
         first = kernel.USED
         return cls(*(int(count) for count in state[first : kernel.STATE_SIZE]))
 
@@ -359,6 +362,8 @@ def estimate_motion(
     Raises:
         InputError: render times that are empty, not finite or falling, or `ahead` below 0.
     """
+    from squeezefilm.physics.render.motion import kernel
+
     times = np.ascontiguousarray(render, dtype=float)
     if times.ndim != 1 or times.size == 0 or bool(np.any(np.diff(times) < 0)):
         raise InputError(
