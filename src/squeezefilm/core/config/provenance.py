@@ -246,8 +246,6 @@ def source_doubt(provenance: Mapping[str, Provenance]) -> str | None:
     return f"{', and '.join(parts)}: squeezefilm show lists them." if parts else None
 
 
-# Both are resolved in the tree that TOML gave, before anything is checked: what comes after sees
-# one file with everything in it, and every value with its own source.
 COPIED_FROM = "copied_from"
 """The key of a file that says of which one it is a changed copy."""
 MATERIAL = "material"

@@ -132,9 +132,10 @@ class _Arguments:
                 shapes.append((name, value.shape))
         if len(shapes) > 1:
             _require_broadcast(shapes)
-        for name, rule in self.between:
+        if self.between:
             asked = self._defaults | dict(zip(self.names, given, strict=False)) | kwargs
-            _require_between(name, asked.get(name), rule, asked)
+            for name, rule in self.between:
+                _require_between(name, asked.get(name), rule, asked)
         return given
 
     def beyond(self, args: Sequence[Any], kwargs: Mapping[str, Any], why: str) -> OutOfRangeError:
